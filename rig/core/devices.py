@@ -1,0 +1,102 @@
+"""What a device promises, real or simulated: bytes or physics inside, SI outside, reading never waits.
+
+Life of a device: `connect` (moves and energises nothing) → `read` … → `close`. A drive is energised by `enable` and
+made torque-free by `halt`, which works in any state, any number of times, and never raises.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+from rig.core.sample import Setpoint
+
+
+class Identity(NamedTuple):
+    """Who answered: as read from the device, not from the configuration."""
+
+    model: str
+    serial: str = ""
+    firmware: str = ""
+
+
+class AngleReading(NamedTuple):
+    """The newest angle. `t` is when it was latched, on the clock of the loop [s]."""
+
+    t: float
+    theta: float  # rad, unwrapped, sign as configured
+    counts: int  # raw, unwrapped
+    flags: int = 0
+
+
+class TorqueReading(NamedTuple):
+    """The newest torque-sensor value. `t` is when it was latched, on the clock of the loop [s]."""
+
+    t: float
+    tau: float  # N·m
+    flags: int = 0
+
+
+class DriveReading(NamedTuple):
+    """The newest state of the drive: its encoder, the torque it reports, its fault in words ("" = none)."""
+
+    t: float
+    theta_m: float  # rad
+    counts: int
+    tau_m: float  # N·m
+    flags: int = 0
+    fault: str = ""
+
+
+class Device(ABC):
+    """Anything the bench can open."""
+
+    name: str
+
+    @abstractmethod
+    def connect(self) -> Identity:
+        """Open and identify. Moves and energises nothing. Raises NotReady with the reason."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of the device. Idempotent; never raises."""
+
+
+class Encoder(Device):
+    """An angle sensor of its own (the load side; the motor's encoder is read through the drive)."""
+
+    @abstractmethod
+    def read(self) -> AngleReading:
+        """The newest angle; never waits for one."""
+
+
+class TorqueSensor(Device):
+    """The torque sensor between gear and load."""
+
+    @abstractmethod
+    def read(self) -> TorqueReading:
+        """The newest torque; never waits for one."""
+
+
+class Drive(Device):
+    """The servo drive with its motor encoder."""
+
+    @abstractmethod
+    def enable(self) -> None:
+        """Energise with zero torque. Idempotent. Raises NotReady when the drive refuses."""
+
+    @abstractmethod
+    def read(self) -> DriveReading:
+        """The newest state; never waits for one."""
+
+    @abstractmethod
+    def write(self, setpoint: Setpoint) -> float:
+        """Command it; returns the motor torque the frame could carry [N·m]. Zero unless enabled."""
+
+    @abstractmethod
+    def halt(self) -> bool:
+        """Torque off now (stop category 0). Any state, any number of times, never raises; True when the drive confirmed."""
+
+    @abstractmethod
+    def reset_fault(self) -> None:
+        """Clear a fault of the drive. Never energises it."""

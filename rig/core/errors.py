@@ -1,0 +1,49 @@
+"""Errors a person reads: each is one sentence that says who, what, the number with its unit, and what was expected."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Exit(IntEnum):
+    """Exit codes of every hdrig command."""
+
+    PASS = 0
+    OUT_OF_LIMITS = 1  # measured, and not good enough
+    USAGE = 2  # the command line, a file or a configuration is wrong
+    NOT_READY = 3  # a device is absent, a check failed, a calibration expired
+    STOPPED = 4  # by the operator
+    TRIPPED = 5  # by the guard
+    INCOMPLETE = 6  # data incomplete, or the result is inconclusive
+    INTERNAL = 70
+    HALTED = 130  # second Ctrl-C
+
+
+class HdrigError(Exception):
+    """A sentence for the person at the rig, and the exit code of the command that ends with it."""
+
+    exit = Exit.INTERNAL
+
+
+class UsageError(HdrigError):
+    """Something the operator wrote (option, file, key) cannot be meant as it stands."""
+
+    exit = Exit.USAGE
+
+
+class NotReady(HdrigError):
+    """The rig is not in the state this act needs. Nothing was moved."""
+
+    exit = Exit.NOT_READY
+
+
+class DataError(HdrigError):
+    """A file is damaged or lacks what was asked of it."""
+
+    exit = Exit.INCOMPLETE
+
+
+class RecorderError(HdrigError):
+    """Samples can no longer be kept."""
+
+    exit = Exit.TRIPPED

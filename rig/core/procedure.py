@@ -1,0 +1,54 @@
+"""A procedure is a generator: one `yield` is one tick. The same one runs on the twin, over the wire and on the rig."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from rig.core.sample import Sample, Setpoint
+
+Steps = Generator[Setpoint, Sample, None]
+"""Receives the newest sample, yields what to ask of the drive, once a tick."""
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """What a procedure will ask for at most. The dry run prints it, the guard holds the run to it."""
+
+    duration: float  # s of rig time
+    travel: float  # rad of motor angle, either way from where the run starts
+    speed: float  # rad/s of the motor, nominal
+    torque: float  # N·m, motor side
+    following: bool = True  # has a reference that the motor must stay near
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What the loop tells a procedure about the rig it runs on."""
+
+    period: float  # s, one tick
+    ratio: float  # gear ratio N
+    control: Any = None  # rig.control.pid.Gains, where a procedure closes a loop
+    note: Callable[[str], None] = field(default=lambda text: None)  # a line in events.jsonl
+
+
+class Procedure(ABC):
+    """One experiment: parameters in the fields (all with units and defaults), told step by step in `steps`."""
+
+    name: ClassVar[str]  # as in the manifest, with underscores
+    needs: ClassVar[tuple[str, ...]]  # channels without which it is refused: a test against NaN is silently false
+    output_locked: ClassVar[bool] = False  # what the output must be like
+
+    @abstractmethod
+    def envelope(self, setting: Setting) -> Envelope:
+        """What it will ask for at most."""
+
+    @abstractmethod
+    def steps(self, setting: Setting) -> Steps:
+        """The experiment. Primed with `next`, then given one sample a tick."""
+
+    def conditions(self) -> dict[str, Any]:
+        """What goes into the manifest's `conditions`."""
+        return {"output_locked": self.output_locked}

@@ -1,0 +1,1 @@
+"""The gear: the paper's equations, numpy only, no input or output."""

@@ -1,0 +1,62 @@
+"""Equation 8: the pure kinematic error as a Fourier series of the motor angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FourierSeries:
+    """θ̃_p(θ_m) = Σ_{n=1..k} [a_n cos nθ_m + b_n sin nθ_m]      [ghorbel2001, Eq. 8]
+
+    `a`, `b`: shape (k,), rad at the output, orders 1..k. The constant a_0/2 is left out: with
+    encoders of arbitrary zero it cannot be observed.
+    """
+
+    a: tuple[float, ...]
+    b: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.a) != len(self.b):
+            raise ValueError(f"{len(self.a)} cosine and {len(self.b)} sine coefficients, expected as many of each")
+
+    @classmethod
+    def from_polar(cls, amplitude: Array, phase: Array) -> FourierSeries:
+        """C_n cos(nθ_m − ψ_n): `amplitude` C_n rad and `phase` ψ_n rad, shape (k,), orders 1..k."""
+        return cls(tuple(map(float, amplitude * np.cos(phase))), tuple(map(float, amplitude * np.sin(phase))))
+
+    @property
+    def orders(self) -> Array:
+        """1..k, cycles per motor turn, shape (k,)."""
+        return np.arange(1, len(self.a) + 1, dtype=np.float64)
+
+    @property
+    def amplitude(self) -> Array:
+        """C_n = √(a_n² + b_n²), rad, shape (k,)."""
+        return np.hypot(self.a, self.b)
+
+    @property
+    def phase(self) -> Array:
+        """ψ_n = atan2(b_n, a_n), rad, shape (k,)."""
+        return np.arctan2(self.b, self.a)
+
+    def value(self, theta_m: Array) -> Array:
+        """θ̃_p at `theta_m` rad (any shape), rad."""
+        angle = np.multiply.outer(theta_m, self.orders)
+        return np.asarray(np.cos(angle) @ np.asarray(self.a) + np.sin(angle) @ np.asarray(self.b))
+
+    def slope(self, theta_m: Array) -> Array:
+        """dθ̃_p/dθ_m at `theta_m` rad (any shape), rad/rad."""
+        angle, n = np.multiply.outer(theta_m, self.orders), self.orders
+        return np.asarray(np.cos(angle) @ (n * np.asarray(self.b)) - np.sin(angle) @ (n * np.asarray(self.a)))
+
+    def peak_to_peak(self) -> float:
+        """max − min over one motor turn, rad, on a grid of 64 points per highest order."""
+        grid = np.linspace(0.0, 2 * np.pi, 64 * max(len(self.a), 1), endpoint=False)
+        curve = self.value(grid)
+        return float(np.ptp(curve))

@@ -1,0 +1,30 @@
+"""The parameters of equations 5-7, as one value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rig.model.fourier import FourierSeries
+
+
+@dataclass(frozen=True)
+class Gear:
+    """The two-inertia rig of the paper: motor and wave generator, flexible gear, load      [ghorbel2001, Eqs. 3-8]
+
+    SI; `_m` motor side, `_l` load side. The paper leaves friction out of Eqs. 6-7; it stands here because the rig has it.
+    """
+
+    ratio: float  # N, motor turns per load turn
+    J_m: float  # kg·m², motor rotor, wave generator, coupling half
+    J_l: float  # kg·m², load disc and shaft
+    K: float  # N·m/rad, torsional stiffness seen at the load
+    B_m: float  # N·m·s/rad
+    B_l: float  # N·m·s/rad
+    B_ml: float  # N·m·s/rad, wave generator against flexspline
+    B_sp: float  # N·m·s/rad, damping of the torsional spring
+    kinematic_error: FourierSeries
+    sigma: int = 1  # +1: flexspline is the output, it turns against the wave generator; 0: circular spline is the output
+    tau_c: float = 0.0  # N·m, Coulomb friction, motor side
+    tau_s: float = 0.0  # N·m, breakaway torque, motor side
+    omega_s: float = 1.0  # rad/s, Stribeck speed, motor side
+    F_cl: float = 0.0  # N·m, Coulomb friction, load side
