@@ -1,0 +1,59 @@
+"""What an analysis says: figures with uncertainty, checks in words, curves to draw. `result.json` is this, written down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+class Verdict(StrEnum):
+    """PASS and FAIL are against a limit, outside its guard band; INCONCLUSIVE is inside it; MEASURED had no limit."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"
+    INCONCLUSIVE = "INCONCLUSIVE"
+    MEASURED = "MEASURED"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A figure shown to a person: value, unit, uncertainty and how both were found      [gum]"""
+
+    name: str  # machine name, e.g. "kinematic_error_peak_to_peak"
+    label: str  # for people, e.g. "Kinematic error, peak to peak"
+    value: float
+    unit: str  # as shown: arcsec, rpm, N·m …
+    ci95: tuple[float, float]  # 95 % interval, same unit
+    how: str  # one sentence: from what, over how many, by which estimator
+
+
+@dataclass(frozen=True)
+class Check:
+    """A condition the run had to meet for its figures to mean what they say."""
+
+    name: str
+    passed: bool
+    sentence: str  # with the number, its unit and the limit
+
+
+@dataclass(frozen=True)
+class Result:
+    """All that one analysis of one run found.
+
+    `curves` holds the arrays the figures are drawn from, by dotted name ("ke.theta_deg", "mse.k" …); the unit is in
+    the name or in the drawing function. `cannot` says what this run cannot tell, and why, one sentence each.
+    """
+
+    procedure: str
+    verdict: Verdict
+    sentence: str
+    estimates: tuple[Estimate, ...]
+    checks: tuple[Check, ...] = ()
+    cannot: tuple[str, ...] = ()
+    tables: dict[str, list[dict[str, float | str]]] = field(default_factory=dict)
+    curves: dict[str, Array] = field(default_factory=dict)
