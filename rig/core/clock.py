@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 
 
 class Clock(ABC):
@@ -19,3 +21,26 @@ class Clock(ABC):
     @abstractmethod
     def relax(self) -> bool:
         """Let other processes run without rig time passing. False where time cannot be held: then nothing was waited for."""
+
+
+class WallClock(Clock):
+    """The machine's monotonic clock, with absolute deadlines. `on_wake` lets a simulated world catch up with it."""
+
+    def __init__(self, on_wake: Callable[[float], None] | None = None) -> None:
+        self._origin = time.monotonic()
+        self._on_wake = on_wake
+
+    def now(self) -> float:
+        return time.monotonic() - self._origin
+
+    def wait_until(self, t: float) -> float:
+        remaining = self._origin + t - time.monotonic()
+        if remaining > 0:
+            time.sleep(remaining)
+        now = time.monotonic() - self._origin
+        if self._on_wake is not None:
+            self._on_wake(now)
+        return now
+
+    def relax(self) -> bool:
+        return False

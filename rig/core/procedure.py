@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 from rig.core.sample import Sample, Setpoint
 
-Steps = Generator[Setpoint, Sample, None]
-"""Receives the newest sample, yields what to ask of the drive, once a tick."""
+Steps = Generator[Setpoint, Sample, Any]
+"""Receives the newest sample, yields what to ask of the drive, once a tick; what it returns is the run's finding."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Envelope:
     travel: float  # rad of motor angle, either way from where the run starts
     speed: float  # rad/s of the motor, nominal
     torque: float  # N·m, motor side
-    following: bool = True  # has a reference that the motor must stay near
+    coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Setting:
 
     period: float  # s, one tick
     ratio: float  # gear ratio N
-    control: Any = None  # rig.control.pid.Gains, where a procedure closes a loop
+    control: Any  # rig.control.pid.Gains
     note: Callable[[str], None] = field(default=lambda text: None)  # a line in events.jsonl
 
 

@@ -24,10 +24,11 @@ class Sample(NamedTuple):
 
 
 class Torque(NamedTuple):
-    """Ask the drive for a motor torque. `theta_ref` is the reference it serves, where there is one."""
+    """Ask the drive for a motor torque. `theta_ref` and its speed are the reference it serves, where there is one."""
 
     tau: float  # N·m, motor side
     theta_ref: float = NAN  # rad
+    omega_ref: float = 0.0  # rad/s
 
 
 # Velocity and position setpoints join this union when a drive can take them; the loop hands them on unread.

@@ -1,0 +1,1 @@
+"""Control laws and references as pure values and functions of time; no device, no clock."""

@@ -1,0 +1,53 @@
+"""The position loop of the slow measurement, closed on the host as in the paper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Motor-side gains: torque over motor angle."""
+
+    Kp: float  # N·m/rad
+    Ki: float  # N·m/(rad·s)
+    Kd: float  # N·m·s/rad
+    integrator_limit: float  # N·m, of the integral part alone
+    torque_limit: float  # N·m, of the whole
+    feedforward: float = 0.0  # N·m·s/rad, viscous drag expected at the reference's speed
+
+
+class Pid:
+    """τ = clip(K_p·e + I + K_d·(ω_ref − ω) + B_ff·ω_ref),  İ = K_i·e,  e = θ_ref − θ      [astrom2006]
+
+    The derivative acts on the filtered measurement ω, never on e: a step of the reference gives no kick beyond
+    the feed-forward (K_d + B_ff)·ω_ref. The integral is clamped, and held while the torque limit is reached and
+    the error would push further into it.
+    """
+
+    __slots__ = ("gains", "integral", "period")
+
+    def __init__(self, gains: Gains, period: float) -> None:
+        self.gains = gains
+        self.period = period  # s
+        self.integral = 0.0  # N·m
+
+    def step(self, theta_ref: float, omega_ref: float, theta: float, omega: float) -> float:
+        """Torque [N·m] for this tick from reference and measurement (rad, rad/s)."""
+        g = self.gains
+        error = theta_ref - theta
+        rest = g.Kp * error + g.Kd * (omega_ref - omega) + g.feedforward * omega_ref
+        integral = self.integral + g.Ki * error * self.period
+        if integral > g.integrator_limit:
+            integral = g.integrator_limit
+        elif integral < -g.integrator_limit:
+            integral = -g.integrator_limit
+        tau = rest + integral
+        if tau > g.torque_limit:
+            self.integral = min(integral, self.integral)
+            return g.torque_limit
+        if tau < -g.torque_limit:
+            self.integral = max(integral, self.integral)
+            return -g.torque_limit
+        self.integral = integral
+        return tau

@@ -1,0 +1,151 @@
+"""Limits as pure functions of a sample: None, or a Trip with the reason in words.
+
+Every comparison is written so that NaN trips: a test against a missing number must not pass in silence.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rig.core.channels import Flag
+from rig.core.procedure import Envelope
+from rig.core.sample import Sample, Torque
+
+DEG = math.pi / 180
+RPM = math.pi / 30
+
+
+class Trip(NamedTuple):
+    """Why the run must end now."""
+
+    name: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The bench's limits, SI, motor side unless said otherwise."""
+
+    speed: float  # rad/s
+    torque: float  # N·m, asked or reported
+    shaft_torque: float | None  # N·m at the torque sensor; None: the bench has no sensor
+    travel: float  # rad, either way from where the run starts
+    following: float  # rad, at rest
+    following_time: float  # s: allowed lag grows by this long at the reference's speed
+    twist: float | None  # rad at the output: |θ_m/N − θ_l| since the start; None: no load encoder
+    stale: float  # s
+
+
+class Guard:
+    """The limits for one run, from the bench's limits and what the procedure said it would need."""
+
+    def __init__(self, limits: Limits, envelope: Envelope, ratio: float) -> None:
+        self.limits = limits
+        self.ratio = ratio
+        self.travel = min(limits.travel, 1.02 * envelope.travel + limits.following)
+        self.twist = limits.twist if envelope.coupled else None
+        self.start: Sample | None = None
+
+    def check(self, sample: Sample, asked: Torque) -> Trip | None:
+        """The first limit this sample breaks, in order of how soon it can do harm."""
+        start = self.start
+        if start is None:
+            start = self.start = sample
+        lim = self.limits
+        if (
+            not sample.fault
+            and sample.age <= lim.stale
+            and -lim.speed <= sample.omega_m <= lim.speed
+            and -lim.torque * TORQUE_MARGIN <= sample.tau_m <= lim.torque * TORQUE_MARGIN
+            and -self.travel <= sample.theta_m - start.theta_m <= self.travel
+            and (lim.shaft_torque is None or -lim.shaft_torque <= sample.tau_l <= lim.shaft_torque)
+            and (self.twist is None or abs(self.twist_of(sample)) <= self.twist)
+            and not abs(asked.theta_ref - sample.theta_m)
+            > lim.following + lim.following_time * abs(asked.omega_ref)  # NaN: no reference, nothing to follow
+        ):
+            return None
+        return next(trip for rule in RULES if (trip := rule(self, sample, asked)) is not None)
+
+    def twist_of(self, sample: Sample) -> float:
+        """θ_m/N − θ_l since the start [rad at the output]: what the gear has twisted, slipped, or an encoder lost."""
+        start = self.start or sample
+        return (sample.theta_m - start.theta_m) / self.ratio - (sample.theta_l - start.theta_l)
+
+
+TORQUE_MARGIN = 1.1  # the drive's torque reading overshoots and is noisy; the command itself is clipped at the limit
+
+
+def drive_fault(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """The drive's own protection."""
+    return Trip("drive", f"the drive reports a fault: {sample.fault}") if sample.fault else None
+
+
+def stale(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """Data too old to act on, by the time stamps of the devices."""
+    if sample.age <= guard.limits.stale:
+        return None
+    names = {Flag.STALE_M: "motor", Flag.STALE_L: "load-encoder", Flag.STALE_TAU: "torque-sensor"}
+    which = " and ".join(name for flag, name in names.items() if sample.flags & flag) or "any"
+    return Trip(
+        "stale", f"no new {which} sample for {sample.age * 1e3:.1f} ms, at most {guard.limits.stale * 1e3:g} ms allowed"
+    )
+
+
+def speed(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """Motor speed."""
+    if -guard.limits.speed <= sample.omega_m <= guard.limits.speed:
+        return None
+    return Trip("speed", f"motor at {sample.omega_m / RPM:.0f} rpm, limit ±{guard.limits.speed / RPM:.0f} rpm")
+
+
+def torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """Motor torque as the drive reports it."""
+    limit = guard.limits.torque * TORQUE_MARGIN
+    if -limit <= sample.tau_m <= limit:
+        return None
+    return Trip("torque", f"motor torque {sample.tau_m:.2f} N·m, limit ±{limit:.2f} N·m")
+
+
+def shaft_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """The torque sensor must not be overloaded."""
+    limit = guard.limits.shaft_torque
+    if limit is None or -limit <= sample.tau_l <= limit:
+        return None
+    full = " (sensor at the end of its range)" if sample.flags & Flag.SATURATED_TAU else ""
+    return Trip("shaft_torque", f"shaft torque {sample.tau_l:.2f} N·m{full}, limit ±{limit:.2f} N·m")
+
+
+def travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """How far the motor may go from where the run started."""
+    moved = sample.theta_m - guard.start.theta_m if guard.start else 0.0
+    if -guard.travel <= moved <= guard.travel:
+        return None
+    return Trip("travel", f"motor {moved / DEG:.1f}° from the start, limit ±{guard.travel / DEG:.1f}°")
+
+
+def twist(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """Motor and load must agree to within what the gear can twist."""
+    value = guard.twist_of(sample)
+    if guard.twist is None or abs(value) <= guard.twist:
+        return None
+    return Trip(
+        "twist",
+        f"motor and load disagree by {value / DEG:.3f}° at the output since the start, limit ±{guard.twist / DEG:g}°: "
+        "an encoder stopped, jumped or lost its coupling, or the gear slipped",
+    )
+
+
+def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """The motor must stay near its reference; the allowance grows with the reference's speed."""
+    error = asked.theta_ref - sample.theta_m
+    limit = guard.limits.following + guard.limits.following_time * abs(asked.omega_ref)
+    if not abs(error) > limit:
+        return None
+    return Trip("following", f"motor {error / DEG:.1f}° behind its reference, limit ±{limit / DEG:.1f}° at this speed")
+
+
+Rule = Callable[[Guard, Sample, Torque], Trip | None]
+RULES: tuple[Rule, ...] = (drive_fault, stale, speed, torque, shaft_torque, travel, twist, following)

@@ -1,0 +1,104 @@
+"""The devices of one bench as one instrument: a sample in, a setpoint out, and safe at any moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rig.control.filter import SpeedFilter
+from rig.core.channels import Flag
+from rig.core.clock import Clock
+from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
+from rig.core.errors import HdrigError
+from rig.core.sample import NAN, Sample, Setpoint
+
+NEVER = -1e9  # s, a latch time older than any
+
+
+@dataclass
+class Instruments:
+    """A drive, and where the bench has them a load encoder and a torque sensor. Absent channels read NaN."""
+
+    drive: Drive
+    load_encoder: Encoder | None
+    torque_sensor: TorqueSensor | None
+    clock: Clock
+    speed_filter: SpeedFilter
+
+    def __post_init__(self) -> None:
+        self._start = 0.0  # s on the clock: t = 0 of the run
+        self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
+
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """Those the bench has."""
+        return tuple(d for d in (self.drive, self.load_encoder, self.torque_sensor) if d is not None)
+
+    @property
+    def channels(self) -> frozenset[str]:
+        """What a sample will hold."""
+        own = {"t", "theta_m", "omega_m", "tau_m"}
+        return frozenset(
+            own | ({"theta_l"} if self.load_encoder else set()) | ({"tau_l"} if self.torque_sensor else set())
+        )
+
+    def connect(self) -> dict[str, Identity]:
+        """Open every device; if one refuses, close those already open. Raises NotReady."""
+        found: dict[str, Identity] = {}
+        try:
+            for device in self.devices:
+                found[device.name] = device.connect()
+        except HdrigError:
+            self.close()
+            raise
+        return found
+
+    def start(self) -> None:
+        """From here time counts from zero, and nothing read before is news."""
+        self._start = self.clock.now()
+        self._last = [NEVER, NEVER, NEVER]
+        self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
+
+    def read(self) -> Sample:
+        """The newest of every channel; never waits. Age and staleness come from the devices' own latch times."""
+        last = self._last
+        motor = self.drive.read()
+        oldest = t_m = motor[0]
+        flags = motor[4]
+        if t_m == last[0]:
+            flags |= Flag.STALE_M
+        last[0] = t_m
+        theta_l, counts_l, tau_l = NAN, 0, NAN
+        if self.load_encoder is not None:
+            t_l, theta_l, counts_l, more = self.load_encoder.read()
+            flags |= more
+            if t_l == last[1]:
+                flags |= Flag.STALE_L
+            last[1] = t_l
+            if t_l < oldest:
+                oldest = t_l
+        if self.torque_sensor is not None:
+            t_tau, tau_l, more = self.torque_sensor.read()
+            flags |= more
+            if t_tau == last[2]:
+                flags |= Flag.STALE_TAU
+            last[2] = t_tau
+            if t_tau < oldest:
+                oldest = t_tau
+        t = t_m - self._start
+        age = self.clock.now() - oldest
+        omega = self.speed_filter.step(t, motor[1])
+        return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), motor[5])
+
+    def write(self, setpoint: Setpoint) -> float:
+        """Command the drive; returns what it could be given [N·m]."""
+        return self.drive.write(setpoint)
+
+    def safe(self) -> bool:
+        """Torque off, in any state, any number of times, never raises. True when the drive confirmed it."""
+        return self.drive.halt()
+
+    def close(self) -> None:
+        """Torque off first, then let go of every device."""
+        self.safe()
+        for device in self.devices:
+            device.close()

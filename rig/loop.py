@@ -1,0 +1,138 @@
+"""One tick repeated: read, guard, decide, command, record. Every way out leaves the drive without torque first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from rig.control.brake import brake
+from rig.core.channels import Flag
+from rig.core.clock import Clock
+from rig.core.errors import Exit, HdrigError
+from rig.core.procedure import Procedure, Setting, Steps
+from rig.core.sample import Sample, Torque
+from rig.guard import Guard
+from rig.instruments import Instruments
+from rig.interrupts import Interrupts
+from rig.supervisor import Act, Supervisor
+from rig.timing import LoopTiming
+
+WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
+
+
+class Sink(Protocol):
+    """Where rows go: the recorder, or a test's list."""
+
+    def put(self, sample: Sample, tau_ask: float, tau_applied: float, theta_ref: float) -> None:
+        """Keep one row; raises RecorderError when it cannot."""
+
+    def check(self) -> None:
+        """Raises RecorderError when rows are no longer safe."""
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a run ended, in the words of the manifest, and what the procedure found."""
+
+    status: str  # completed | stopped | tripped
+    reason: str
+    exit: Exit
+    finding: Any = None
+
+
+class Loop:
+    """Runs one procedure on one set of instruments, to whatever end."""
+
+    def __init__(
+        self,
+        instruments: Instruments,
+        supervisor: Supervisor,
+        guard: Guard,
+        sink: Sink,
+        interrupts: Interrupts,
+        timing: LoopTiming,
+        watch: Callable[[Sample], None] = lambda sample: None,
+    ) -> None:
+        self.instruments = instruments
+        self.supervisor = supervisor
+        self.guard = guard
+        self.sink = sink
+        self.interrupts = interrupts
+        self.timing = timing
+        self.watch = watch
+
+    def run(self, procedure: Procedure, setting: Setting) -> Ending:
+        """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure, a recorder that failed)
+        only after the drive was made safe.
+        """
+        try:
+            self.supervisor.act(Act.ENABLE)
+            self.instruments.drive.enable()
+            self.instruments.start()
+            self.supervisor.act(Act.RUN, procedure.name)
+            ending = self._tick(procedure.steps(setting), setting)
+        except HdrigError as error:
+            self.instruments.safe()
+            self.supervisor.act(Act.TRIP, str(error))
+            raise
+        finally:
+            confirmed = self.instruments.safe()
+        return self._leave(ending, confirmed)
+
+    def _tick(self, steps: Steps, setting: Setting) -> Ending:
+        clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
+        check, put, late = self.guard.check, self.sink.put, self.timing.add
+        period, start, k, stopping = setting.period, clock.now(), 0, False
+        asked: Torque = next(steps)
+        while True:
+            k += 1
+            deadline = start + k * period
+            lateness = clock.wait_until(deadline) - deadline
+            late(lateness if lateness > 0.0 else 0.0)
+            skipped = 0
+            if lateness > period:
+                skipped = int(lateness / period)
+                k += skipped
+                self.timing.skip(skipped)
+            sample = read()
+            if skipped:
+                sample = sample._replace(flags=sample.flags | Flag.MISSED)
+            trip = check(sample, asked)
+            if trip is not None:
+                self.instruments.safe()
+                put(sample._replace(flags=sample.flags | Flag.TRIPPED), 0.0, 0.0, asked.theta_ref)
+                return Ending("tripped", trip.sentence, Exit.TRIPPED)
+            if self.interrupts.count and not stopping:
+                stopping, steps = True, brake(setting)
+                self.supervisor.act(Act.STOP, "asked by the operator")
+                next(steps)
+            if self.interrupts.count > 1:
+                self.instruments.safe()
+                put(sample, 0.0, 0.0, asked.theta_ref)
+                return Ending("stopped", "halted by the operator: torque off at once", Exit.HALTED)
+            try:
+                asked = steps.send(sample)
+            except StopIteration as end:
+                self.instruments.safe()
+                put(sample, 0.0, 0.0, asked.theta_ref)
+                if stopping:
+                    return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
+                return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
+            put(sample, asked.tau, write(asked), asked.theta_ref)
+            if k % WATCH_TICKS == 0:
+                self.sink.check()
+                self.watch(sample)
+
+    def _leave(self, ending: Ending, confirmed: bool) -> Ending:
+        if not confirmed:
+            why = f"{ending.reason}; the drive did not confirm that its torque is off"
+            self.supervisor.act(Act.TRIP, why)
+            return Ending("tripped", why, Exit.TRIPPED, ending.finding)
+        if ending.status == "tripped":
+            self.supervisor.act(Act.TRIP, ending.reason)
+        elif ending.exit is Exit.HALTED:
+            self.supervisor.act(Act.HALT, ending.reason)
+        else:
+            self.supervisor.act(Act.FINISH, ending.reason)
+        return ending
