@@ -1,2 +1,63 @@
-def main() -> int:
-    return 0
+"""The command line: finds the verb, runs it, turns errors into one sentence and an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+from rig import __version__
+from rig.commands import CATALOGUE
+from rig.core.errors import Exit, HdrigError
+
+DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
+EPILOG = (
+    "exit codes: 0 pass, 1 out of limits, 2 usage, 3 not ready, 4 stopped, 5 tripped, 6 incomplete or inconclusive, "
+    "70 internal error, 130 halted"
+)
+
+
+class Parser(argparse.ArgumentParser):
+    """A wrong command line is one sentence on stderr and exit code 2."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        print(f"hdrig: {message}; see {self.prog} --help", file=sys.stderr)
+        raise SystemExit(Exit.USAGE)
+
+
+def overview() -> str:
+    """The list of verbs for --help, from the catalogue alone."""
+    return "\n".join(f"  {name:10s} {summary}" for name, (_, summary) in CATALOGUE.items())
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one verb; the exit code."""
+    args = list(sys.argv[1:] if argv is None else argv)
+    top = Parser(
+        prog="hdrig",
+        usage="hdrig VERB …",
+        description=f"{DESCRIPTION}\n\nverbs:\n{overview()}\n\n`hdrig VERB --help` tells more.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    top.add_argument("--version", action="version", version=f"hdrig {__version__}")
+    top.add_argument("verb", metavar="VERB", choices=list(CATALOGUE), help=argparse.SUPPRESS)
+    verb = top.parse_args(args[:1] or ["--help"]).verb
+    module = importlib.import_module(CATALOGUE[verb][0])
+    parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1])
+    module.arguments(parser)
+    try:
+        return int(module.run(parser.parse_args(args[1:])))
+    except HdrigError as error:
+        print(f"hdrig: {error}", file=sys.stderr)
+        return int(error.exit)
+    except KeyboardInterrupt:
+        print("hdrig: interrupted", file=sys.stderr)
+        return int(Exit.HALTED)
+    except BrokenPipeError:
+        return int(Exit.PASS)  # the reader of our output left: `hdrig list | head`
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,18 @@
+"""The verbs of the command line: one per file, each with `arguments(parser)` and `run(args) -> int`.
+
+The catalogue keeps name and summary here, so that `hdrig --help` imports none of them.
+"""
+
+from __future__ import annotations
+
+CATALOGUE: dict[str, tuple[str, str]] = {
+    "demo": ("rig.commands.demo", "the main job on the twin: proof, slow run, analysis, report"),
+    "run": ("rig.commands.run", "run one procedure on a bench, analyse it, write its report"),
+    "tune": ("rig.commands.tune", "find gains that turn the motor smoothly at the slow speed"),
+    "analyse": ("rig.commands.analyse", "figures and report of recorded runs, again and again, no hardware"),
+    "import": ("rig.commands.import_", "turn a file of another logger into a run folder"),
+    "list": ("rig.commands.list_", "the runs in a folder"),
+    "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),
+    "verify": ("rig.commands.verify", "check hashes, row counts, time order and gaps of runs"),
+    "export": ("rig.commands.export", "write a run as CSV, MDF4, MCAP or HDF5"),
+}

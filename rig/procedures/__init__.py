@@ -1,0 +1,20 @@
+"""The catalogue of experiments: name on the command line → "module:class". One experiment per file."""
+
+from __future__ import annotations
+
+import importlib
+from typing import cast
+
+from rig.core.procedure import Procedure
+
+CATALOGUE: dict[str, str] = {
+    "kinematic-error": "rig.procedures.kinematic_error:KinematicError",
+    "sign-and-scale": "rig.procedures.sign_and_scale:SignAndScale",
+    "step-test": "rig.procedures.step_test:StepTest",
+}
+
+
+def procedure_class(name: str) -> type[Procedure]:
+    """The experiment called `name` on the command line. KeyError when there is none."""
+    module, _, member = CATALOGUE[name].partition(":")
+    return cast(type[Procedure], getattr(importlib.import_module(module), member))

@@ -1,0 +1,151 @@
+"""Proof, before any loop is closed, that both encoders and the torque sensor mean what the bench file says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from rig.control.pid import Pid
+from rig.control.profile import Trapezoid
+from rig.core.errors import NotReady
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.core.sample import Sample, Setpoint, Torque
+
+DEG = math.pi / 180
+TURN = 2 * math.pi
+RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
+SIGMAS = 5.0  # a torque difference counts as seen beyond this many standard errors
+
+
+class Proof(NamedTuple):
+    """What was measured."""
+
+    ratio: float  # motor turns per load turn over one wave-generator turn, both ways
+    breakaway: float  # N·m that set the motor moving
+    shaft_torque_difference: float  # N·m, forward minus reverse; NaN without a sensor
+    shaft_torque_error: float  # N·m, standard error of it
+    sentence: str
+
+
+class Leg(NamedTuple):
+    """One turn in one direction."""
+
+    motor: float  # rad
+    load: float  # rad
+    shaft_torque: float  # N·m, mean while turning
+    variance: float  # N²·m², of that mean
+
+
+@dataclass(frozen=True)
+class SignAndScale(Procedure):
+    """A nudge of open-loop torque, then one slow wave-generator turn forth and back (7.2° of output).
+
+    One whole turn, because over less the kinematic error itself bends the ratio by more than the 1 % looked for.
+    """
+
+    name: ClassVar[str] = "other"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
+
+    nudge_share: float = 0.4  # of the drive's torque limit, most the open-loop nudge may reach
+    nudge_rate: float = 1.0  # N·m/s
+    nudge_deg: float = 5.0  # deg of the motor that count as moved
+    speed_rpm: float = 15.0  # of the motor, for the turn
+
+    @property
+    def turn(self) -> Trapezoid:
+        """One motor turn."""
+        speed = self.speed_rpm * math.pi / 30
+        return Trapezoid(TURN, speed, speed / 0.3)
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """The load need not follow: whether it does is the question."""
+        nudge = self.nudge_share * setting.control.torque_limit / self.nudge_rate
+        torque = setting.control.torque_limit
+        return Envelope(nudge + 2 * self.turn.duration + 3.0, 1.5 * TURN, self.turn.speed, torque, coupled=False)
+
+    def conditions(self) -> dict[str, object]:
+        """For the manifest."""
+        return {"output_locked": False, "note": "sign-and-scale proof"}
+
+    def steps(self, setting: Setting) -> Steps:
+        """Returns a Proof. Raises NotReady, with what was measured, when the rig is not what the bench file says."""
+        breakaway = yield from self._nudge(setting)
+        forward = yield from self._leg(setting, +1)
+        reverse = yield from self._leg(setting, -1)
+        return judge(forward, reverse, breakaway, setting)
+
+    def _nudge(self, setting: Setting) -> Generator[Setpoint, Sample, float]:
+        """Ramp the torque until the motor moves; the right way, or not at all."""
+        sample = yield Torque(0.0)
+        home, limit, tau = sample.theta_m, self.nudge_share * setting.control.torque_limit, 0.0
+        while abs(moved := sample.theta_m - home) < self.nudge_deg * DEG:
+            tau += self.nudge_rate * setting.period
+            if tau > limit:
+                raise NotReady(
+                    f"the motor did not turn {self.nudge_deg:g}° with up to {limit:.2f} N·m ({moved / DEG:+.2f}° seen): "
+                    "is it blocked, is the drive's torque scale right, is its encoder read?"
+                )
+            sample = yield Torque(tau)
+        if moved < 0:
+            raise NotReady(
+                f"{tau:.2f} N·m of positive torque turned the motor by {moved / DEG:+.1f}°, expected a positive angle: "
+                "motor encoder or torque command has the wrong sign"
+            )
+        begin = sample.t
+        while sample.t - begin < 0.3:  # friction brings it to rest
+            sample = yield Torque(0.0)
+        return tau
+
+    def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
+        """One turn under the position loop; the shaft torque is averaged in the middle half, at constant speed."""
+        pid, move = Pid(setting.control, setting.period), self.turn
+        sample = yield Torque(0.0)
+        first, n, total, squares = sample, 0, 0.0, 0.0
+        begin = sample.t
+        while (t := sample.t - begin) < move.duration + 0.5:
+            offset, omega = move.at(t)
+            if 0.25 * move.duration < t < 0.75 * move.duration:
+                n, total, squares = n + 1, total + sample.tau_l, squares + sample.tau_l**2
+            theta_ref, omega_ref = first.theta_m + direction * offset, direction * omega
+            tau = pid.step(theta_ref, omega_ref, sample.theta_m, sample.omega_m)
+            sample = yield Torque(tau, theta_ref, omega_ref)
+        mean = total / n
+        return Leg(sample.theta_m - first.theta_m, sample.theta_l - first.theta_l, mean, (squares / n - mean**2) / n)
+
+
+def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Proof:
+    """Ratio, directions and torque-sensor sign against the bench file. Raises NotReady with the measured numbers."""
+    motor, load = forward.motor - reverse.motor, forward.load - reverse.load
+    if not abs(load) > 0.1 * abs(motor) / setting.ratio:
+        raise NotReady(
+            f"the load encoder moved {load / DEG:.3f}° while the motor turned {motor / DEG:.1f}°, "
+            f"expected {motor / setting.ratio / DEG:.2f}°: is the output locked, the encoder unplugged, the coupling loose?"
+        )
+    ratio = motor / load
+    if ratio < 0:
+        raise NotReady(
+            f"the load encoder turned {load / DEG:+.2f}° while the motor turned {motor / DEG:+.1f}° (ratio {ratio:.2f}), "
+            f"expected {motor / setting.ratio / DEG:+.2f}°: flip the sign of one encoder in the bench file"
+        )
+    if abs(ratio / setting.ratio - 1) > RATIO_TOLERANCE:
+        raise NotReady(
+            f"measured ratio {ratio:.3f}, the bench file says {setting.ratio:g} (1 % allowed): "
+            "check N and both counts_per_turn"
+        )
+    difference = forward.shaft_torque - reverse.shaft_torque
+    error = math.sqrt(forward.variance + reverse.variance)
+    if difference < -SIGMAS * error:
+        raise NotReady(
+            f"shaft torque is {difference:+.2f} ± {2 * error:.2f} N·m forward against reverse, expected positive: "
+            "the torque sensor has the wrong sign"
+        )
+    seen = "" if difference > SIGMAS * error else " (too small to prove the torque sensor's sign)"
+    if math.isnan(difference):
+        seen = " (no torque sensor)"
+    sentence = (
+        f"ratio {ratio:.3f} (declared {setting.ratio:g}), both encoders positive, breakaway {breakaway:.2f} N·m, "
+        f"shaft torque forward minus reverse {difference:+.2f} ± {2 * error:.2f} N·m{seen}"
+    )
+    return Proof(ratio, breakaway, difference, error, sentence)

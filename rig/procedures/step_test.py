@@ -1,0 +1,43 @@
+"""Short torque steps both ways from rest: what inertia and friction the position loop has to deal with."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.core.sample import Torque
+
+
+@dataclass(frozen=True)
+class StepTest(Procedure):
+    """Torque on for a moment, then off until the motor rests; forward and reverse, `repeats` times.
+
+    While on: J·ω̇ = τ − τ_f; while off: J·ω̇ = −τ_f. Two slopes, two unknowns, no closed loop.
+    """
+
+    name: ClassVar[str] = "other"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m",)
+
+    torque: float = 1.25  # N·m, well above breakaway
+    on: float = 0.06  # s
+    off: float = 0.6  # s
+    repeats: int = 3
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """Bounds with friction and load inertia left out."""
+        duration = 2 * self.repeats * (self.on + self.off)
+        return Envelope(duration, 4 * 2 * math.pi, 0.6 * 600 * math.pi / 30, self.torque, coupled=False)
+
+    def conditions(self) -> dict[str, object]:
+        """For the manifest."""
+        return {"output_locked": False, "note": f"torque steps of ±{self.torque:g} N·m"}
+
+    def steps(self, setting: Setting) -> Steps:
+        """Forward, reverse, forward …"""
+        sample = yield Torque(0.0)
+        for k in range(2 * self.repeats):
+            begin, tau = sample.t, self.torque if k % 2 == 0 else -self.torque
+            while (t := sample.t - begin) < self.on + self.off:
+                sample = yield Torque(tau if t < self.on else 0.0)

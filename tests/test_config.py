@@ -1,0 +1,75 @@
+"""Configuration is read strictly: the sentence names file, key, value with unit, and what was expected."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rig
+from rig.config import BenchFile, load_text, read_bench
+from rig.core.errors import UsageError
+
+TEXT = (Path(rig.__file__).parent / "benches" / "twin.toml").read_text(encoding="utf-8")
+
+
+def refusal(text: str) -> str:
+    with pytest.raises(UsageError) as caught:
+        read_bench(text, "bench.toml")
+    message = str(caught.value)
+    assert message.startswith("bench.toml")
+    assert "\n" not in message
+    return message
+
+
+def test_the_shipped_bench_is_valid() -> None:
+    bench = read_bench(TEXT, "twin.toml")
+    assert bench.gear.K == 7160.0
+    assert bench.gear.N == 50.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('value = 7160.0, unit = "N·m/rad"', 'value = 7160.0, unit = "N·m/deg"', ["K", "7160", "N·m/deg", "N·m/rad"]),
+        ("Kp =", "Kpp =", ["control.Kpp", "did you mean 'Kp'"]),
+        ("[gear]", "[gaer]", ["gaer", "did you mean 'gear'"]),
+        ("rate = { value = 1000.0", "rate = { value = -3.0", ["loop.rate", "-3", "Hz", "10"]),
+        ("seed = 1\n", "", ["twin.seed", "missing"]),
+        ("tau_c = { value = 0.30", 'tau_c = { value = "much"', ["tau_c", "much", "N·m", "number"]),
+        ('output = "flexspline"', 'output = "flexpline"', ["output", "flexpline", "'flexspline'"]),
+        ('from = "paper" }', 'from = "hearsay" }', ["hearsay", "catalogue"]),
+        ("{ value = 50.0,", "{ vale = 50.0,", ["vale", "did you mean 'value'"]),
+        ("stale_s = { value = 0.005", "stale_s = { value = nan", ["stale_s", "nan", "finite"]),
+        ("value = 10000, unit", "value = 0, unit", ["counts_per_turn", "0", "greater than 0"]),
+        ("[35, -62,", "[35,", ["15 amplitudes", "14 phases"]),
+        ('"hdrig.bench/1"', '"hdrig.bench/9"', ["schema", "hdrig.bench/9", "hdrig.bench/1"]),
+        ("[twin]", "[twin", ["not valid TOML"]),
+    ],
+)
+def test_a_mistake_is_one_sentence_with_everything_needed_to_mend_it(old: str, new: str, words: list[str]) -> None:
+    assert old in TEXT
+    message = refusal(TEXT.replace(old, new, 1))
+    for word in words:
+        assert word in message
+
+
+def test_a_bare_number_is_allowed_and_an_integer_will_do_for_a_float() -> None:
+    bare = TEXT.replace('K = { value = 7160.0, unit = "N·m/rad", from = "paper"', "K = 7000 #")
+    assert read_bench(bare, "bench.toml").gear.K == 7000.0
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_read_or_refused_with_a_sentence(text: str) -> None:
+    try:
+        assert isinstance(read_bench(text, "bench.toml"), BenchFile)
+    except UsageError as error:
+        assert str(error).startswith("bench.toml")
+
+
+def test_a_file_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="No such file"):
+        load_text(tmp_path / "absent.toml")
+    (tmp_path / "latin.toml").write_bytes(b"name = '\xe9'")
+    with pytest.raises(UsageError, match="not UTF-8"):
+        load_text(tmp_path / "latin.toml")

@@ -1,0 +1,170 @@
+"""Every way out of the loop leaves the drive without torque, first; ticks missed are counted and never replayed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import pytest
+
+from rig.core.channels import Flag
+from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.core.sample import Torque
+from rig.guard import Guard
+from rig.interrupts import Interrupts
+from rig.loop import Ending, Loop
+from rig.supervisor import Act, State, Supervisor
+from rig.timing import LoopTiming
+from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
+
+
+@dataclass(frozen=True)
+class Constant(Procedure):
+    """Half a newton metre for two seconds; calls `at` on the world at tick 500."""
+
+    name: ClassVar[str] = "other"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m",)
+    at: Callable[[], None] = lambda: None
+    tau: float = 0.31
+
+    def envelope(self, setting: Setting) -> Envelope:
+        return Envelope(2.0, 300.0, 60.0, 5.0)
+
+    def steps(self, setting: Setting) -> Steps:
+        for k in range(2000):
+            if k == 500:
+                self.at()
+            yield Torque(self.tau)
+        return "found"
+
+
+class Bench:
+    def __init__(self) -> None:
+        self.world, self.sink, self.interrupts = FakeWorld(), ListSink(), Interrupts()
+        self.supervisor, self.timing = Supervisor(), LoopTiming(0.001, virtual=True)
+        self.supervisor.act(Act.CONNECT)
+        self.supervisor.act(Act.CHECK)
+        self.instruments = instruments(self.world)
+
+    def run(self, at: Callable[[], None] = lambda: None, tau: float = 0.31) -> Ending:
+        procedure = Constant(at, tau)
+        guard = Guard(LIMITS, procedure.envelope(SETTING), 50.0)
+        loop = Loop(self.instruments, self.supervisor, guard, self.sink, self.interrupts, self.timing)
+        return loop.run(procedure, SETTING)
+
+    def torque_free(self) -> bool:
+        return self.world.tau == 0.0 and not self.instruments.drive.enabled  # type: ignore[attr-defined]
+
+
+def test_a_procedure_that_ends_is_completed_and_brings_its_finding() -> None:
+    bench = Bench()
+    assert bench.run() == Ending("completed", "the procedure came to its end", Exit.PASS, "found")
+    assert bench.torque_free()
+    assert bench.supervisor.state is State.READY
+    assert len(bench.sink.rows) == 2000  # 1999 commands after the first sample, and the last row with torque off
+    assert bench.sink.rows[-1][1:3] == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("harm", "word"),
+    [
+        (lambda w: setattr(w, "fault", "over-current"), "over-current"),
+        (lambda w: setattr(w, "silent_load", True), "no new load-encoder sample"),
+        (lambda w: setattr(w, "omega", 100.0), "rpm"),
+        (lambda w: setattr(w, "load_offset", 0.1), "disagree"),
+        (lambda w: setattr(w, "tau_l", -49.0), "shaft torque"),
+        (lambda w: setattr(w, "tau_l", float("nan")), "shaft torque"),
+    ],
+)
+def test_a_trip_takes_the_torque_off_latches_and_marks_the_row(harm: Callable[[FakeWorld], None], word: str) -> None:
+    bench = Bench()
+    ending = bench.run(lambda: harm(bench.world))
+    assert (ending.status, ending.exit) == ("tripped", Exit.TRIPPED)
+    assert word in ending.reason
+    assert bench.torque_free()
+    assert bench.supervisor.state is State.FAULT
+    assert bench.sink.rows[-1][0].flags & Flag.TRIPPED
+    assert not any(row[0].flags & Flag.TRIPPED for row in bench.sink.rows[:-1])
+
+
+def test_one_interrupt_brings_the_motor_to_rest_before_the_torque_goes() -> None:
+    bench = Bench()
+    ending = bench.run(bench.interrupts.request, tau=0.35)
+    assert (ending.status, ending.exit) == ("stopped", Exit.STOPPED)
+    assert abs(bench.sink.rows[-1][0].omega_m) < 0.1
+    assert len(bench.sink.rows) < 1500
+    assert bench.torque_free()
+
+
+def test_two_interrupts_take_the_torque_off_at_once() -> None:
+    bench = Bench()
+
+    def twice() -> None:
+        bench.interrupts.request()
+        bench.interrupts.request()
+
+    ending = bench.run(twice)
+    assert (ending.status, ending.exit) == ("stopped", Exit.HALTED)
+    assert len(bench.sink.rows) <= 502
+    assert bench.torque_free()
+
+
+@pytest.mark.parametrize("error", [NotReady("the load is locked"), RecorderError("disk full"), ValueError("a bug")])
+def test_an_error_inside_a_procedure_leaves_no_torque(error: Exception) -> None:
+    bench = Bench()
+
+    def fail() -> None:
+        raise error
+
+    with pytest.raises(type(error)):
+        bench.run(fail)
+    assert bench.torque_free()
+    assert bench.world.history[-1] == "halt"
+
+
+def test_a_recorder_that_fails_ends_the_run_without_torque() -> None:
+    bench = Bench()
+    with pytest.raises(RecorderError, match="no space"):
+        bench.run(lambda: setattr(bench.sink, "error", RecorderError("no space left")))
+    assert bench.torque_free()
+    assert bench.supervisor.state is State.FAULT
+
+
+def test_a_drive_that_does_not_confirm_torque_off_is_a_fault_whatever_the_ending() -> None:
+    bench = Bench()
+    ending = bench.run(lambda: setattr(bench.world, "confirms", False))
+    assert ending.exit is Exit.TRIPPED
+    assert "did not confirm" in ending.reason
+    assert bench.supervisor.state is State.FAULT
+
+
+def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
+    bench = Bench()
+    bench.world.fault = "under-voltage"
+    with pytest.raises(HdrigError, match="under-voltage"):
+        bench.run()
+    assert bench.sink.rows == []
+    assert bench.torque_free()
+
+
+def test_missed_cycles_are_counted_flagged_and_not_replayed() -> None:
+    bench = Bench()
+    bench.world.clock.late[100] = 0.0035
+    bench.run()
+    assert bench.timing.missed == 3
+    assert bench.timing.late_events == 1
+    flagged = [row[0] for row in bench.sink.rows if row[0].flags & Flag.MISSED]
+    assert len(flagged) == 1
+    gaps = [b[0].t - a[0].t for a, b in zip(bench.sink.rows, bench.sink.rows[1:], strict=False)]
+    assert sum(g > 0.0015 for g in gaps) == 1
+
+
+def test_lateness_quantiles_come_from_every_tick() -> None:
+    timing = LoopTiming(0.001, virtual=False)
+    for k in range(1000):
+        timing.add(k * 1e-6)
+    assert abs(timing.quantile(0.5) - 500e-6) < 2e-6
+    assert abs(timing.quantile(0.99) - 990e-6) < 3e-6
+    assert timing.summary()["lateness_max"] == pytest.approx(999e-6)
