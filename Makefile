@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner lint install clean
+.PHONY: demo test inner lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
@@ -28,14 +28,18 @@ install: .venv/ready
 	$(PYTHON) -c 'import sys; sys.exit(None if (3, 11) <= sys.version_info[:2] < (3, 14) else f"hdrig needs Python 3.11 to 3.13, this is {sys.version.split()[0]}; try: make PYTHON=python3.12")'
 	$(PYTHON) -m venv .venv
 
-.venv/ready: requirements.lock pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+.venv/ready: .lock/run.txt pyproject.toml | .venv/bin/python
+	$(BIN)/python -m pip install --quiet --require-hashes -r .lock/run.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	touch $@
 
-.venv/ready-dev: requirements-dev.lock .venv/ready
-	$(BIN)/python -m pip install --quiet --require-hashes -r requirements-dev.lock
+.venv/ready-dev: .lock/test.txt .venv/ready
+	$(BIN)/python -m pip install --quiet --require-hashes -r .lock/test.txt
 	touch $@
+
+lock:  ## renew the pinned versions (needs uv)
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q pyproject.toml .lock/build.in -o .lock/run.txt
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q --extra dev pyproject.toml .lock/build.in -c .lock/run.txt -o .lock/test.txt
 
 clean:
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

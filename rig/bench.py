@@ -1,0 +1,203 @@
+"""From a bench file to a rig: devices, limits, gains, clock. The only place that knows drivers/ and sim/."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import math
+import tomllib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from rig.config import BenchFile, load_text, nearest, read_bench
+from rig.control.filter import SpeedFilter
+from rig.control.pid import Gains
+from rig.core.clock import Clock, WallClock
+from rig.core.devices import Device
+from rig.core.errors import UsageError
+from rig.core.procedure import Setting
+from rig.guard import DEG, RPM, Limits
+from rig.instruments import Instruments
+
+BENCHES = Path(__file__).parent / "benches"  # benches that ship with hdrig
+ClockName = Literal["virtual", "wall"]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """One bench file, read and resolved."""
+
+    file: BenchFile
+    text: str  # what goes into the run folder as bench.toml
+    source: str
+
+    @property
+    def simulated(self) -> bool:
+        """True when every device is the twin's. A mixture is refused when the bench is read."""
+        return self.file.devices.drive.type.startswith("twin.")
+
+    @property
+    def gains(self) -> Gains:
+        """Of the position loop."""
+        c = self.file.control
+        limit = min(self.file.limits.torque, self.file.motor.torque_limit)
+        return Gains(c.Kp, c.Ki, c.Kd, c.integrator_limit, limit, c.feedforward)
+
+    @property
+    def limits(self) -> Limits:
+        """What the guard holds every run to, SI."""
+        lim, devices = self.file.limits, self.file.devices
+        return Limits(
+            speed=lim.speed_rpm * RPM,
+            torque=lim.torque,
+            shaft_torque=lim.shaft_torque if devices.torque_sensor else None,
+            travel=lim.travel_turns * 2 * math.pi,
+            following=lim.following_deg * DEG,
+            following_time=lim.following_s,
+            twist=lim.twist_deg * DEG if devices.load_encoder else None,
+            stale=lim.stale_s,
+        )
+
+    def setting(self, note: Callable[[str], None]) -> Setting:
+        """What a procedure is told about the rig; `note` receives its remarks."""
+        return Setting(1.0 / self.file.loop.rate, self.file.gear.N, self.gains, note)
+
+    def manifest(self) -> dict[str, Any]:
+        """The bench's part of a run's manifest."""
+        f = self.file
+        encoders = {"motor_counts_per_rev": f.motor.counts_per_turn}
+        if f.load_encoder:
+            encoders["load_counts_per_rev"] = f.load_encoder.counts_per_turn
+        gear = {"ratio": f.gear.N, "output": f.gear.output, "serial": f.gear.serial}
+        keys = ("J_m", "J_l", "K", "B_m", "B_ml", "B_l", "B_sp", "fourier_terms")
+        declared = {key: getattr(f.gear, key) for key in keys}
+        backend = "sim" if self.simulated else f.devices.drive.type.partition(".")[0]
+        return {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
+
+    def open(self, clock: ClockName) -> Instruments:
+        """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
+        if not self.simulated and clock == "virtual":
+            raise UsageError(f"{self.source}: the virtual clock exists only on the twin; use --clock wall")
+        timer, world = self._clock(clock)
+        made = {role: self._device(role, world) for role in ("drive", "load_encoder", "torque_sensor")}
+        speed = SpeedFilter(self.file.loop.speed_filter)
+        return Instruments(made["drive"], made["load_encoder"], made["torque_sensor"], timer, speed)
+
+    def _clock(self, clock: ClockName) -> tuple[Clock, Any]:
+        if not self.simulated:
+            return WallClock(), None
+        world = importlib.import_module("sim.world").World(twin_parameters(self.file), self._twin_seed())
+        return (world if clock == "virtual" else WallClock(world.advance_to)), world
+
+    def _twin_seed(self) -> int:
+        return self.file.twin.seed if self.file.twin else 0
+
+    def _device(self, role: str, world: Any) -> Any:
+        section = getattr(self.file.devices, role)
+        if section is None:
+            return None
+        make = device_class(section.type, f"{self.source}: devices.{role}.type")
+        return make(world) if world is not None else make(self.file)
+
+
+def read(source: str, overrides: Iterable[str] = ()) -> Bench:
+    """The bench called `source` (a file, or the name of one that ships), with `key=value` overrides.
+
+    Raises UsageError: no such bench, an override that fits nothing, a key or value that is wrong.
+    """
+    path = Path(source) if source.endswith(".toml") or "/" in source else BENCHES / f"{source}.toml"
+    if not path.is_file() and path.parent == BENCHES:
+        known = [p.stem for p in BENCHES.glob("*.toml")]
+        raise UsageError(f"no bench called '{source}'; {nearest(source, known)}; or give the path of a .toml file")
+    text = override(load_text(path), list(overrides), str(path))
+    bench = Bench(read_bench(text, str(path)), text, str(path))
+    _check_together(bench)
+    return bench
+
+
+def override(text: str, assignments: list[str], source: str) -> str:
+    """The TOML `text` with `a.b=value` assignments made; comments and provenance of the rest stay."""
+    if not assignments:
+        return text
+    import tomlkit
+
+    document = tomlkit.parse(text)
+    for assignment in assignments:
+        key, equals, value = assignment.partition("=")
+        if not equals:
+            raise UsageError(f"--set {assignment}: expected key=value, for example control.Kp=5")
+        at: Any = document
+        *path, last = key.strip().split(".")
+        for part in path:
+            if not isinstance(at, dict) or part not in at:
+                raise UsageError(f"--set {assignment}: no section '{part}' in {source}; {nearest(part, at)}")
+            at = at[part]
+        if not isinstance(at, dict) or last not in at:
+            raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {nearest(last, at)}")
+        parsed = toml_value(value)
+        if isinstance(at[last], dict) and "value" in at[last]:
+            at[last]["value"], at[last]["from"] = parsed, "declared"
+        else:
+            at[last] = parsed
+    return tomlkit.dumps(document)
+
+
+def toml_value(text: str) -> Any:
+    """A value as TOML writes it; what is no TOML value is taken as a string."""
+    try:
+        return tomllib.loads(f"x = {text}")["x"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def device_class(kind: str, where: str) -> type[Device]:
+    """The class behind a device type. Raises UsageError naming the nearest that exists."""
+    import drivers
+    import sim
+
+    catalogue: dict[str, str] = {**sim.CATALOGUE, **drivers.CATALOGUE}
+    if kind not in catalogue:
+        raise UsageError(f"{where} = '{kind}': no such device; {nearest(kind, catalogue)}")
+    module, _, name = catalogue[kind].partition(":")
+    found: type[Device] = getattr(importlib.import_module(module), name)
+    return found
+
+
+def _check_together(bench: Bench) -> None:
+    """What no single key shows."""
+    f = bench.file
+    devices = [d for d in (f.devices.drive, f.devices.load_encoder, f.devices.torque_sensor) if d is not None]
+    if len({d.type.startswith("twin.") for d in devices}) > 1:
+        mixed = ", ".join(d.type for d in devices)
+        raise UsageError(f"{bench.source}: real and simulated devices on one bench ({mixed}): never silently simulated")
+    if bench.simulated and f.twin is None:
+        raise UsageError(f"{bench.source}: devices of the twin need a [twin] section")
+    for role in ("load_encoder", "torque_sensor"):
+        if getattr(f.devices, role) and getattr(f, role) is None:
+            raise UsageError(f"{bench.source}: devices.{role} needs a [{role}] section")
+    if f.torque_sensor and f.limits.shaft_torque > f.torque_sensor.range:
+        raise UsageError(
+            f"{bench.source}: limits.shaft_torque = {f.limits.shaft_torque:g} N·m is beyond the torque sensor's "
+            f"range of {f.torque_sensor.range:g} N·m"
+        )
+
+
+def twin_parameters(f: BenchFile) -> Any:
+    """The numbers of the bench file as the twin wants them."""
+    import numpy as np
+
+    from rig.model.fourier import FourierSeries
+    from rig.model.gear import Gear
+    from sim.parameters import TwinParameters
+
+    twin, gear = f.twin, f.gear
+    assert twin is not None
+    error = FourierSeries.from_polar(np.radians(twin.kinematic_error.C_deg), np.radians(twin.kinematic_error.psi_deg))
+    model = Gear(
+        ratio=gear.N, J_m=gear.J_m, J_l=gear.J_l, K=gear.K, B_m=gear.B_m, B_l=gear.B_l, B_ml=gear.B_ml, B_sp=gear.B_sp,
+        kinematic_error=error, sigma=1 if gear.output == "flexspline" else 0,
+        tau_c=twin.tau_c, tau_s=twin.tau_s, omega_s=twin.omega_s, F_cl=twin.F_cl,
+    )  # fmt: skip
+    return TwinParameters(gear=model)
