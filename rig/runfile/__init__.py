@@ -1,0 +1,19 @@
+"""The run folder: made, closed, mended, checked, listed and read here, and nowhere else. Its format is `hdrig.run/1`.
+
+| module | one idea |
+|---|---|
+| folder | `create`: a new run folder, status "running" |
+| manifest | `manifest.json`, changed only by atomic rename |
+| events | `events.jsonl`, one line an event |
+| columns | samples as Arrow columns with unit and meaning |
+| journal | `journal-0001.arrows`, appended while running |
+| archive | journal → `samples.parquet` |
+| finalise | close a run in named, repeatable steps |
+| recover | what a killed program left → a readable run |
+| verify | does the folder keep its promises |
+| listing | the runs under a root, from their manifests alone |
+| run | `Run`: columns when asked for, whoever made the folder |
+| export | CSV, MDF4, MCAP, HDF5 |
+
+Import from the modules: this package loads nothing by itself, so that the recorder and `--help` start quickly.
+"""

@@ -1,0 +1,67 @@
+"""Samples as Arrow columns: the schema with units and meanings, rows of the ring as batches, a batch's checksum."""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from rig.core.channels import CHANNEL, CHANNELS
+from rig.core.ring import NO_COUNTS
+from rig.runfile.manifest import SCHEMA
+
+Array = np.ndarray[Any, Any]
+
+ANGLE_OF = {"counts_m": "theta_m", "counts_l": "theta_l"}  # a raw count without its angle was not measured
+_TYPES = {"float64": pa.float64(), "int64": pa.int64(), "uint32": pa.uint32()}
+
+
+def schema(backend: str, columns: dict[str, tuple[str, str]] | None = None) -> pa.Schema:
+    """The Arrow schema of a run's samples; nothing in it tells two runs of one kind apart, so files compare.
+
+    `columns` names those to have, each with (unit, meaning) for channels the table lacks; without it, the whole table.
+    """
+    names = columns if columns is not None else dict.fromkeys(CHANNEL, ("", ""))
+    fields = []
+    for name, (unit, meaning) in names.items():
+        known = CHANNEL.get(name)
+        kind, unit, meaning = (known.dtype, known.unit, known.meaning) if known else ("float64", unit, meaning)
+        fields.append(pa.field(name, _TYPES[kind], metadata={"unit": unit, "meaning": meaning}))
+    simulated = "true" if backend == "sim" else "false"
+    return pa.schema(fields, metadata={"schema": SCHEMA, "backend": backend, "simulated": simulated})
+
+
+def batch_of_rows(rows: Array, layout: pa.Schema) -> pa.RecordBatch:
+    """Rows of the ring, shape (n,), as one batch. NaN, and counts that were not measured, become null."""
+    return pa.record_batch([_column(rows, c.name, c.dtype) for c in CHANNELS], schema=layout)
+
+
+def _column(rows: Array, name: str, dtype: str) -> pa.Array:
+    values = np.ascontiguousarray(rows[name])
+    match dtype:
+        case "float64":
+            return pa.array(values, from_pandas=True)  # from_pandas: NaN is null
+        case "uint32":
+            return pa.array(values.astype(np.uint32))
+        case _:
+            absent = (values == NO_COUNTS) | np.isnan(rows[ANGLE_OF[name]])
+            return pa.array(values, mask=absent if absent.any() else None)
+
+
+def checksum(batch: pa.RecordBatch) -> int:
+    """CRC-32 over validity and values of every column, as they are before and after the way through a file."""
+    crc = 0
+    for column in batch.columns:
+        validity, values = column.buffers()
+        if column.null_count:
+            crc = zlib.crc32(memoryview(validity)[: (len(column) + 7) // 8], crc)
+        if len(column):
+            crc = zlib.crc32(memoryview(values)[: len(column) * column.type.byte_width], crc)
+    return crc
+
+
+def as_float(column: pa.ChunkedArray) -> Array:
+    """A column as float64, shape (n,), null as NaN; integers exact to 2**53. Raises pa.ArrowException for text."""
+    return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=np.float64)

@@ -1,0 +1,64 @@
+"""`events.jsonl`: what happened in a run and when; one line an event, safe from a kill when `write` returns."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from rig.core.errors import RecorderError
+from rig.runfile.manifest import told, utc_now
+
+NAME = "events.jsonl"
+
+
+class EventLog:
+    """Appends to the events of one run. A context manager; `utc` gives the time written beside each event."""
+
+    def __init__(self, folder: Path, utc: Callable[[], str] = utc_now) -> None:
+        """Raises RecorderError when the file cannot be opened."""
+        self.path = folder / NAME
+        self._utc = utc
+        with told(RecorderError, f"events of the run cannot be written to {self.path}"):
+            self._file = open(self.path, "ab", buffering=0)  # noqa: SIM115 - closed by `close`
+
+    def write(self, kind: str, text: str, t: float | None = None, **more: Any) -> None:
+        """One event. `kind` is state, trip, operator, note …; `t` is run time [s] if known. Raises RecorderError."""
+        line = json.dumps({"t": t, "utc": self._utc(), "kind": kind, "text": text, **more}, ensure_ascii=False)
+        with told(RecorderError, f"events of the run cannot be written to {self.path}"):
+            self._file.write(line.encode() + b"\n")
+
+    def close(self) -> None:
+        """Idempotent."""
+        self._file.close()
+
+    def __enter__(self) -> EventLog:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+
+def read_events(folder: Path) -> list[dict[str, Any]]:
+    """The events of a run in order; none where there is no file. A line torn by a kill is left out."""
+    try:
+        lines = (folder / NAME).read_bytes().split(b"\n")
+    except FileNotFoundError:
+        return []
+    found = []
+    for line in lines:
+        try:
+            found.append(json.loads(line))
+        except ValueError:
+            continue
+    return found
+
+
+def mend_events(folder: Path) -> None:
+    """Give a line torn by a kill its end, so that the next event begins a line of its own. Raises OSError."""
+    path = folder / NAME
+    if path.exists() and not path.read_bytes().endswith(b"\n") and path.stat().st_size:
+        with open(path, "ab") as file:
+            file.write(b"\n")

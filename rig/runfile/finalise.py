@@ -1,0 +1,159 @@
+"""Close a run, in steps that can be interrupted between any two and done again. The status comes last, so a run that
+was not closed to the end says so."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rig.core.errors import DataError, UsageError
+from rig.core.ring import Ring
+from rig.runfile import archive, manifest
+from rig.runfile.columns import batch_of_rows, schema
+from rig.runfile.journal import JournalReader, JournalWriter, journal_files, rows_in_journal
+from rig.runfile.process import sole_writer, this_process
+
+STEPS = ("claim", "drain", "archive", "timing", "hash", "protect", "status")
+READ_ONLY = 0o444
+
+StepHook = Callable[[str], None]
+"""Called with the name of each step before it is done."""
+
+
+class Closed(NamedTuple):
+    """What a closed run holds, and how it came together."""
+
+    rows: int
+    seconds: float
+    from_ring: int  # rows that were still in shared memory
+    torn_bytes: int  # of the journal, half written when it was killed
+    missing: int  # rows that should lie between two batches and do not
+
+
+def finalise(
+    folder: Path,
+    status: str,
+    reason: str,
+    *,
+    timing: Mapping[str, Any] | None = None,
+    facts: Mapping[str, Any] | None = None,
+    step: StepHook = lambda name: None,
+) -> Closed:
+    """Make a run that has ended readable, checked and read-only.
+
+    `status` is completed, stopped, tripped or interrupted, `reason` a sentence; `timing` goes to timing.json, `facts`
+    into the manifest. Raises UsageError when the run is closed already, DataError when a file cannot be written; it can
+    then be called again, or `recover` later.
+    """
+    about = manifest.read(folder)
+    if is_closed(about):
+        raise UsageError(f"{folder} is closed already, as {about['status']}: {about.get('exit_reason', '')}")
+    if status not in manifest.ENDINGS:
+        raise UsageError(f"a run cannot end as {status!r}, expected one of {', '.join(manifest.ENDINGS)}")
+    with manifest.told(DataError, f"{folder} cannot be closed"), sole_writer(folder):
+        return _close(folder, status, reason, timing, facts or {}, step)
+
+
+def is_closed(about: Mapping[str, Any]) -> bool:
+    """True when every step was done."""
+    return about.get("status") != "running" and archive.NAME in about.get("files", {})
+
+
+def _close(
+    folder: Path,
+    status: str,
+    reason: str,
+    timing: Mapping[str, Any] | None,
+    facts: Mapping[str, Any],
+    step: StepHook,
+) -> Closed:
+    step("claim")
+    ended = manifest.utc_now()
+    _remove_parts(folder)
+    about = manifest.update(folder, process=this_process(), closing={"status": status, "reason": reason})
+    step("drain")
+    from_ring = drain(folder, about)
+    step("archive")
+    reader = JournalReader(folder)
+    held = _archive(folder, about, reader)
+    step("timing")
+    if timing is not None:
+        manifest.write_atomic(folder / "timing.json", json.dumps(timing, indent=1).encode() + b"\n")
+    step("hash")
+    files = {p.name: describe(p) for p in raw_files(folder)}
+    files[archive.NAME]["rows"] = held.rows
+    manifest.update(folder, **facts, files=about.get("files", {}) | files, rows=held.rows, duration=held.seconds)
+    step("protect")
+    for path in raw_files(folder):
+        path.chmod(READ_ONLY)
+    step("status")
+    done = {"ring": None, "process": None, "closing": None}
+    manifest.update(folder, status=status, exit_reason=reason, ended_utc=about.get("ended_utc", ended), **done)
+    return Closed(held.rows, held.seconds, from_ring, reader.torn_bytes, reader.missing)
+
+
+def drain(folder: Path, about: Mapping[str, Any]) -> int:
+    """Rows a dead recorder left in shared memory, appended to a new journal; returns how many. Raises OSError.
+
+    The ring goes only when they are on disk, so this can be done again.
+    """
+    path = Path(about.get("ring") or "/nonexistent")
+    if not path.exists():
+        return 0
+    ring = Ring.attach(path)
+    have = rows_in_journal(folder)
+    left = ring.head - max(have, ring.oldest)
+    if left > 0:
+        layout = schema(about.get("backend", ""))
+        journal = JournalWriter(folder, layout, first=max(have, ring.oldest))
+        journal.append(batch_of_rows(ring.read(journal.rows, ring.head), layout))
+        journal.close()
+    ring.unlink()
+    ring.close()
+    return max(left, 0)
+
+
+def _archive(folder: Path, about: Mapping[str, Any], reader: JournalReader) -> archive.Extent:
+    """Make the archive, unless one that holds every row is there from an earlier try."""
+    if (folder / archive.NAME).exists():
+        held = archive.extent(folder)
+        if held.rows == sum(batch.num_rows for batch in reader):
+            return held
+    layout = schema(about.get("backend", ""))
+    return archive.write_archive(folder, archive.row_groups(reader), layout)
+
+
+def raw_files(folder: Path) -> list[Path]:
+    """What was measured and how: never written again once the run is closed."""
+    named = [folder / name for name in ("bench.toml", "events.jsonl", archive.NAME, "timing.json")]
+    return [p for p in (*named, *journal_files(folder)) if p.exists()]
+
+
+def describe(path: Path) -> dict[str, Any]:
+    """An entry of the manifest's `files`: SHA-256 and size [bytes]. Raises OSError."""
+    with open(path, "rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return {"sha256": digest, "bytes": path.stat().st_size}
+
+
+def add_derived(folder: Path, *names: str, **facts: Any) -> None:
+    """Enter files made from the samples (result.json, report.html) into the manifest, as often as they are made anew.
+
+    `facts` are keys of the manifest that go with them (`verdict="pass"`). Raises UsageError for a raw file, DataError.
+    """
+    about = manifest.read(folder)
+    for name in names:
+        if folder / name in raw_files(folder):
+            raise UsageError(f"{name} of {folder} is raw data: it is entered once, when the run is closed")
+    with manifest.told(DataError, f"the manifest of {folder} cannot be written"):
+        entries = {name: {**describe(folder / name), "derived": True} for name in names}
+        manifest.update(folder, files=about.get("files", {}) | entries, **facts)
+
+
+def _remove_parts(folder: Path) -> None:
+    """What a kill left half written under a name of its own."""
+    for part in folder.glob(".*.part"):
+        part.unlink()

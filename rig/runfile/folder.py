@@ -1,0 +1,63 @@
+"""A new run folder: `runs/2026-11-20/0147-kinematic-error-SN0042-3f9c`."""
+
+from __future__ import annotations
+
+import re
+import time
+import uuid
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from rig.core.errors import NotReady
+from rig.runfile.manifest import SCHEMA, Manifest, sync_folder, told, utc_now, write, write_atomic
+from rig.runfile.process import this_process
+
+
+def create(root: Path | str, procedure: str, manifest: Mapping[str, Any], bench_toml: str = "") -> Path:
+    """Make the folder of one run under `root` and write its manifest, status "running". Returns the folder.
+
+    `procedure` as in the manifest, with underscores. `manifest` holds what the caller knows (backend, gear, declared,
+    conditions, encoders, software, clock …) and wins over what is filled in here (uid, started_utc, clock, process).
+    `bench_toml` is the resolved configuration. Raises NotReady when nothing can be written there; nothing moved.
+    """
+    first = _first_manifest(procedure, manifest)
+    with told(NotReady, f"no run folder can be made in {root}"):
+        folder = _new_folder(Path(root), procedure, first)
+        write(folder, first)
+        if bench_toml:
+            write_atomic(folder / "bench.toml", bench_toml.encode())
+    return folder
+
+
+def _first_manifest(procedure: str, given: Mapping[str, Any]) -> Manifest:
+    now = str(given.get("started_utc", utc_now()))
+    return {
+        "schema": SCHEMA,
+        "uid": uuid.uuid4().hex,
+        "procedure": procedure,
+        "status": "running",
+        "started_utc": now,
+        "clock": {"utc_at_start": now, "monotonic_at_start_ns": time.monotonic_ns()},
+        "process": this_process(),
+        **given,
+    }
+
+
+def _new_folder(root: Path, procedure: str, manifest: Manifest) -> Path:
+    """The folder, empty and surely ours: two runs in one minute differ in their uid."""
+    began = datetime.fromisoformat(manifest["started_utc"]).astimezone(UTC)
+    serial = re.sub(r"[^A-Za-z0-9._-]+", "-", str(manifest.get("gear", {}).get("serial") or "no-serial"))
+    name = f"{began:%H%M}-{procedure.replace('_', '-')}-{serial}-{manifest['uid'][:4]}"
+    day = root / f"{began:%Y-%m-%d}"
+    day.mkdir(parents=True, exist_ok=True)
+    folder = day / name
+    while True:
+        try:
+            folder.mkdir()
+            break
+        except FileExistsError:  # one chance in 65 536 for two runs in the same minute
+            folder = day / f"{name[:-4]}{uuid.uuid4().hex[:4]}"
+    sync_folder(day)
+    return folder

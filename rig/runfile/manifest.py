@@ -1,0 +1,86 @@
+"""`manifest.json`: who, what, when, with what. Written first, as "running"; every change replaces the whole file."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from rig.core.errors import HdrigError, UsageError
+
+SCHEMA = "hdrig.run/1"
+NAME = "manifest.json"
+ENDINGS = ("completed", "stopped", "tripped", "interrupted")
+
+Manifest = dict[str, Any]
+
+
+def read(folder: Path) -> Manifest:
+    """The manifest of `folder`. Raises UsageError when there is none, or it is not JSON of this schema."""
+    path = folder / NAME
+    try:
+        found = json.loads(path.read_bytes())
+    except FileNotFoundError:
+        raise UsageError(f"{folder} is not a run folder: it has no {NAME}") from None
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise UsageError(f"{path} is not JSON: {error}") from error
+    if not isinstance(found, dict) or found.get("schema") != SCHEMA:
+        got = found.get("schema") if isinstance(found, dict) else type(found).__name__
+        raise UsageError(f'{path} has schema {json.dumps(got)}, expected "{SCHEMA}"')
+    return found
+
+
+def write(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Put `manifest` in place of the one there: a reader sees the old or the new, never a part. Raises OSError."""
+    write_atomic(folder / NAME, json.dumps(manifest, indent=1, ensure_ascii=False).encode() + b"\n")
+
+
+def update(folder: Path, **changes: Any) -> Manifest:
+    """Change some keys; None removes a key. Returns the manifest as it is now. Raises OSError, UsageError."""
+    manifest = {k: v for k, v in (read(folder) | changes).items() if v is not None}
+    write(folder, manifest)
+    return manifest
+
+
+def write_atomic(path: Path, data: bytes) -> None:
+    """Write `data` beside `path`, make it safe on disk, then rename. Raises OSError; then `path` is as it was."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with open(part, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+    sync_folder(path.parent)
+
+
+def sync_folder(folder: Path) -> None:
+    """Make a rename or a new file in `folder` survive a power cut. Raises OSError."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextlib.contextmanager
+def told(kind: type[HdrigError], what: str) -> Iterator[None]:
+    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"."""
+    try:
+        yield
+    except OSError as error:
+        raise kind(f"{what}: {error.strerror or error}") from error
+
+
+def utc_now() -> str:
+    """Now, as manifests and events write it: ISO 8601, UTC, microseconds."""
+    return datetime.now(UTC).isoformat(timespec="microseconds")

@@ -1,0 +1,69 @@
+"""Who is writing a run, and whether they still live. A pid alone says little: pids come round again."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import platform
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TypedDict
+
+from rig.core.errors import NotReady
+
+
+class Process(TypedDict):
+    """A process, told apart from a later one of the same number."""
+
+    pid: int
+    started: int  # clock ticks since boot; 0 where the system does not say
+    host: str
+
+
+def started(pid: int) -> int:
+    """When process `pid` started [clock ticks since boot]; 0 when there is none, or it is a zombie, or unknown."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0
+    return 0 if fields[0] in "ZX" else int(fields[19])  # state is field 3 of proc(5), starttime field 22
+
+
+def this_process() -> Process:
+    """The caller."""
+    return Process(pid=os.getpid(), started=started(os.getpid()), host=platform.node())
+
+
+def lives(process: Process) -> bool:
+    """True when `process` runs on this machine now. One of another host cannot be seen and counts as dead."""
+    pid, since = process.get("pid", 0), process.get("started", 0)
+    if pid <= 0 or process.get("host") != platform.node():
+        return False
+    if since or Path("/proc/self/stat").exists():
+        return since != 0 and started(pid) == since
+    return _answers(pid)
+
+
+def _answers(pid: int) -> bool:
+    """Where there is no /proc: any process of that number."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+@contextlib.contextmanager
+def sole_writer(folder: Path) -> Iterator[None]:
+    """Hold `folder` for one writer; let go when the process dies, however. Raises NotReady when another holds it."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise NotReady(f"{folder} is being written by another process; wait for it to end") from None
+    finally:
+        os.close(handle)

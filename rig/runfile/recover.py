@@ -1,0 +1,88 @@
+"""What a killed program left → a readable run. Never "completed": a run found dead is interrupted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rig.core.errors import DataError, NotReady
+from rig.core.ring import Ring
+from rig.runfile import manifest
+from rig.runfile.events import EventLog, mend_events
+from rig.runfile.finalise import Closed, StepHook, finalise, is_closed
+from rig.runfile.process import Process, lives
+
+
+class Recovery(NamedTuple):
+    """What was found and made of it."""
+
+    rows: int
+    seconds: float
+    changed: bool  # False: the run was closed already and was left alone
+    sentence: str
+
+
+def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
+    """Close the run in `folder` with all that is there: whole batches of the journal, then rows still in shared memory.
+
+    Can be interrupted and called again. Raises NotReady while the program that makes the run, or its recorder, lives;
+    UsageError when it is no run folder; DataError when it cannot be written.
+    """
+    about = manifest.read(folder)
+    if is_closed(about):
+        rows, seconds = about.get("rows", 0), about.get("duration", 0.0)
+        done = f"{folder.name} is closed already, as {about['status']}, with {rows} rows: nothing to recover"
+        return Recovery(rows, seconds, False, done)
+    _refuse_living(folder, about)
+    reason = _reason(about)
+    with manifest.told(DataError, f"{folder} cannot be recovered"):
+        mend_events(folder)
+        if "events.jsonl" not in about.get("files", {}):  # entered already: its hash is taken
+            with EventLog(folder) as events:
+                events.write("recover", reason)
+    closed = finalise(folder, "interrupted", reason, step=step)
+    return Recovery(closed.rows, closed.seconds, True, _told(folder, closed))
+
+
+def _refuse_living(folder: Path, about: Mapping[str, Any]) -> None:
+    loop = about.get("process")
+    if loop and lives(loop):
+        raise NotReady(f"{folder.name} is still being made by process {loop['pid']}; stop that first")
+    ring = Path(about.get("ring") or "/nonexistent")
+    if ring.exists():
+        recorder = _recorder_of(ring, loop)
+        if lives(recorder):
+            raise NotReady(
+                f"the recorder of {folder.name}, process {recorder['pid']}, is still writing; try again soon"
+            )
+
+
+def _recorder_of(path: Path, loop: Process | None) -> Process:
+    ring = Ring.attach(path)
+    pid, started = ring.reader
+    ring.close()
+    return Process(pid=pid, started=started, host=loop["host"] if loop else "")
+
+
+def _reason(about: Mapping[str, Any]) -> str:
+    """What is known of the end."""
+    closing, said = about.get("closing"), about.get("exit_reason")
+    if about.get("status") != "running" and said:
+        return str(said)  # the recorder outlived the loop and said so
+    if closing and closing["status"] != "interrupted":
+        return f"killed while its files were being closed; the run itself was {closing['status']}: {closing['reason']}"
+    if closing:
+        return str(closing["reason"])
+    return f"the program was killed or the power failed; found dead and recovered {manifest.utc_now()}"
+
+
+def _told(folder: Path, closed: Closed) -> str:
+    parts = [f"{folder.name}: {closed.rows} rows, {closed.seconds:.3f} s recovered"]
+    if closed.from_ring:
+        parts.append(f"{closed.from_ring} of them from shared memory")
+    if closed.torn_bytes:
+        parts.append(f"the last {closed.torn_bytes} bytes of the journal were half a batch and are left out")
+    if closed.missing:
+        parts.append(f"{closed.missing} rows are missing in between")
+    return "; ".join(parts)
