@@ -87,11 +87,3 @@ def open_parquet(file: object, layout: pa.Schema) -> pq.ParquetWriter:
 
 def _encoding(kind: pa.DataType) -> str:
     return "BYTE_STREAM_SPLIT" if pa.types.is_floating(kind) else "DELTA_BINARY_PACKED"
-
-
-def extent(folder: Path) -> Extent:
-    """What the archive of a run holds. Raises OSError, pa.ArrowInvalid when it cannot be read."""
-    file = pq.ParquetFile(folder / NAME)
-    t = as_float(file.read(columns=["t"]).column("t"))
-    t = t[np.isfinite(t)]
-    return Extent(file.metadata.num_rows, float(t[-1] - t[0]) if len(t) else 0.0)

@@ -59,7 +59,7 @@ def finalise(
 
 def is_closed(about: Mapping[str, Any]) -> bool:
     """True when every step was done."""
-    return about.get("status") != "running" and archive.NAME in about.get("files", {})
+    return about.get("status") != "running" and archive.NAME in about.get("files", {}) and "closing" not in about
 
 
 def _close(
@@ -78,7 +78,7 @@ def _close(
     from_ring = drain(folder, about)
     step("archive")
     reader = JournalReader(folder)
-    held = _archive(folder, about, reader)
+    held = archive.write_archive(folder, archive.row_groups(reader), schema(about.get("backend", "")))
     step("timing")
     if timing is not None:
         manifest.write_atomic(folder / "timing.json", json.dumps(timing, indent=1).encode() + b"\n")
@@ -109,21 +109,13 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
     if left > 0:
         layout = schema(about.get("backend", ""))
         journal = JournalWriter(folder, layout, first=max(have, ring.oldest))
-        journal.append(batch_of_rows(ring.read(journal.rows, ring.head), layout))
-        journal.close()
+        try:
+            journal.append(batch_of_rows(ring.read(journal.rows, ring.head), layout))
+        finally:
+            journal.close()
     ring.unlink()
     ring.close()
     return max(left, 0)
-
-
-def _archive(folder: Path, about: Mapping[str, Any], reader: JournalReader) -> archive.Extent:
-    """Make the archive, unless one that holds every row is there from an earlier try."""
-    if (folder / archive.NAME).exists():
-        held = archive.extent(folder)
-        if held.rows == sum(batch.num_rows for batch in reader):
-            return held
-    layout = schema(about.get("backend", ""))
-    return archive.write_archive(folder, archive.row_groups(reader), layout)
 
 
 def raw_files(folder: Path) -> list[Path]:

@@ -38,9 +38,14 @@ class JournalWriter:
         self._end = 0  # bytes that are whole
         self._buffer = io.BytesIO()
         self._stream = pa.ipc.new_stream(self._buffer, layout)
-        self.append(pa.RecordBatch.from_pylist([], schema=layout))  # the schema, and a full disk, come to light now
-        self.sync()
-        sync_folder(folder)
+        try:
+            self.append(pa.RecordBatch.from_pylist([], schema=layout))  # the schema, and a full disk, come to light now
+            self.sync()
+            sync_folder(folder)
+        except OSError:
+            os.close(self._file)
+            self.path.unlink()
+            raise
 
     def append(self, batch: pa.RecordBatch) -> None:
         """Hand one batch to the operating system. Raises OSError; then the file ends where it did before."""

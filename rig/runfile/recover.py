@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -47,7 +48,7 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
 
 def _refuse_living(folder: Path, about: Mapping[str, Any]) -> None:
     loop = about.get("process")
-    if loop and lives(loop):
+    if loop and loop["pid"] != os.getpid() and lives(loop):  # our own try to close it may have failed
         raise NotReady(f"{folder.name} is still being made by process {loop['pid']}; stop that first")
     ring = Path(about.get("ring") or "/nonexistent")
     if ring.exists():
