@@ -200,4 +200,23 @@ def twin_parameters(f: BenchFile) -> Any:
         kinematic_error=error, sigma=1 if gear.output == "flexspline" else 0,
         tau_c=twin.tau_c, tau_s=twin.tau_s, omega_s=twin.omega_s, F_cl=twin.F_cl,
     )  # fmt: skip
-    return TwinParameters(gear=model)
+    return TwinParameters(
+        gear=model,
+        friction_noise=twin.friction_noise,
+        friction_noise_s=twin.friction_noise_s,
+        tau_drive=twin.tau_drive,
+        torque_limit=f.motor.torque_limit,
+        torque_resolution=twin.torque_resolution,
+        torque_noise=twin.torque_noise,
+        watchdog=twin.watchdog,
+        motor_counts_per_turn=f.motor.counts_per_turn,
+        load_counts_per_turn=f.load_encoder.counts_per_turn if f.load_encoder else 1,
+        sensor_range=f.torque_sensor.range if f.torque_sensor else 1.0,
+        sensor_noise=twin.sensor_noise,
+        sensor_zero=twin.sensor_zero,
+        sensor_lowpass_hz=twin.sensor_lowpass_hz,
+        sensor_resolution=twin.sensor_resolution,
+        latch_m=twin.latch_m,
+        latch_l=twin.latch_l,
+        latch_tau=twin.latch_tau,
+    )

@@ -1,4 +1,4 @@
-"""The bench file, read strictly: an error names file, key, value, what was expected and the nearest valid key.
+"""The bench file, read strictly: an error names file, key, value, what was expected, the nearest valid key.
 
 Numbers may be bare (`K = 7160`) or carry unit and provenance (`K = { value = 7160, unit = "N·m/rad", from = "paper" }`).
 Units are compared with the expected one, never converted.
@@ -49,7 +49,7 @@ class Strict(BaseModel):
             for other in raw.keys() - QUANTITY_KEYS:
                 raise ValueError(f"unknown key '{other}' in {key}; {nearest(other, QUANTITY_KEYS)}")
             if "value" not in raw:
-                raise ValueError(f"{key} has no value; expected {{ value = …, unit = \"{wanted}\", from = … }}")
+                raise ValueError(f'{key} has no value; expected {{ value = …, unit = "{wanted}", from = … }}')
             unit = raw.get("unit", wanted)
             if PLAIN_UNITS.get(unit, unit) != wanted:
                 raise ValueError(f"{key} = {raw['value']} {unit}: expected the unit {wanted}")
@@ -158,7 +158,9 @@ class TwinKinematicError(Strict):
     @model_validator(mode="after")
     def _same_length(self) -> TwinKinematicError:
         if len(self.C_deg) != len(self.psi_deg):
-            raise ValueError(f"{len(self.C_deg)} amplitudes C_deg and {len(self.psi_deg)} phases psi_deg: expected as many")
+            raise ValueError(
+                f"{len(self.C_deg)} amplitudes C_deg and {len(self.psi_deg)} phases psi_deg: expected as many"
+            )
         return self
 
 
@@ -225,7 +227,7 @@ def load_text(path: Path) -> str:
 
 
 def nearest(wrong: str, valid: Any) -> str:
-    """"did you mean 'x'?", or the list of what exists."""
+    """ "did you mean 'x'?", or the list of what exists."""
     names = sorted(valid)
     close = difflib.get_close_matches(wrong, names, n=1, cutoff=0.5)
     return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"

@@ -25,7 +25,7 @@ class Instruments:
     speed_filter: SpeedFilter
 
     def __post_init__(self) -> None:
-        self._start = 0.0  # s on the clock: t = 0 of the run
+        self.started = 0.0  # s on the clock: t = 0 of the run
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
 
     @property
@@ -54,7 +54,7 @@ class Instruments:
 
     def start(self) -> None:
         """From here time counts from zero, and nothing read before is news."""
-        self._start = self.clock.now()
+        self.started = self.clock.now()
         self._last = [NEVER, NEVER, NEVER]
         self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
 
@@ -84,7 +84,7 @@ class Instruments:
             last[2] = t_tau
             if t_tau < oldest:
                 oldest = t_tau
-        t = t_m - self._start
+        t = t_m - self.started
         age = self.clock.now() - oldest
         omega = self.speed_filter.step(t, motor[1])
         return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), motor[5])

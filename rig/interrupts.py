@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Interrupts:
-    """While active, SIGINT, SIGTERM and SIGHUP are counted instead of raised: 1 = stop (category 1), 2 or more = halt."""
+    """While active, SIGINT, SIGTERM and SIGHUP are counted, not raised: 1 = stop (category 1), 2 or more = halt."""
 
     SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -25,6 +25,8 @@ class Interrupts:
             self._before[sig] = signal.signal(sig, self.request)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         for sig, handler in self._before.items():
             signal.signal(sig, handler)

@@ -8,7 +8,6 @@ from typing import Any, Protocol
 
 from rig.control.brake import brake
 from rig.core.channels import Flag
-from rig.core.clock import Clock
 from rig.core.errors import Exit, HdrigError
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque

@@ -1,4 +1,4 @@
-"""A rig made of a few lines: a rigid motor and load that can be told to misbehave. For tests of loop, guard and stops."""
+"""A rig of a few lines: a rigid motor and load that can be told to misbehave. For tests of loop, guard and stops."""
 
 from __future__ import annotations
 
@@ -18,7 +18,14 @@ from rig.instruments import Instruments
 GAINS = Gains(Kp=3.0, Ki=30.0, Kd=0.12, integrator_limit=1.5, torque_limit=5.0, feedforward=0.0033)
 SETTING = Setting(period=0.001, ratio=50.0, control=GAINS)
 LIMITS = Limits(
-    speed=62.8, torque=5.0, shaft_torque=45.0, travel=377.0, following=0.17, following_time=0.1, twist=0.0087, stale=0.005
+    speed=62.8,
+    torque=5.0,
+    shaft_torque=45.0,
+    travel=377.0,
+    following=0.17,
+    following_time=0.1,
+    twist=0.0087,
+    stale=0.005,
 )
 
 

@@ -69,7 +69,12 @@ def test_the_procedures_own_envelope_bounds_the_travel_more_tightly_than_the_ben
 
 
 @given(
-    st.floats(-62, 62), st.floats(-5, 5), st.floats(-45, 45), st.floats(-25, 25), st.floats(0, 0.005), st.floats(-0.008, 0.008)
+    st.floats(-62, 62),
+    st.floats(-5, 5),
+    st.floats(-45, 45),
+    st.floats(-25, 25),
+    st.floats(0, 0.005),
+    st.floats(-0.008, 0.008),
 )
 def test_inside_all_limits_nothing_trips(
     omega: float, tau_m: float, tau_l: float, moved: float, age: float, twist: float

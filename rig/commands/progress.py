@@ -1,4 +1,4 @@
-"""What the operator sees while a run goes on: rig time, time left, peak-to-peak so far. On stderr; stdout is for results."""
+"""What the operator sees while a run goes on: rig time, time left, peak-to-peak so far. On stderr: stdout has results."""
 
 from __future__ import annotations
 
@@ -58,7 +58,9 @@ class Progress:
             print(f"{self.title}: {self.duration:.0f} s of rig time", file=sys.stderr)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if self._bar is not None:
             self._show()
             self._bar.stop()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class SpeedFilter:
-    """ω ← ω + (Δθ/Δt − ω)·Δt/(T + Δt), with the measured Δt: late or skipped ticks give the right speed, not a spike."""
+    """ω ← ω + (Δθ/Δt − ω)·Δt/(T + Δt) with the measured Δt: late or skipped ticks give no spike."""
 
     __slots__ = ("omega", "t", "theta", "time_constant")
 
@@ -15,7 +15,7 @@ class SpeedFilter:
         self.theta = 0.0
 
     def step(self, t: float, theta: float) -> float:
-        """Filtered speed [rad/s] after angle `theta` rad at time `t` s. The first call, and a call with no new time, keep it."""
+        """Filtered speed [rad/s] after angle `theta` rad at `t` s. The first call, and one with no new time, keep it."""
         dt = t - self.t
         if dt > 0.0:
             self.omega += ((theta - self.theta) / dt - self.omega) * dt / (self.time_constant + dt)

@@ -1,4 +1,4 @@
-"""The columns of a run: name, type, unit, meaning. One table; the sample, the ring, the journal and the archive follow it."""
+"""The columns of a run: name, type, unit, meaning. One table that sample, ring, journal and archive follow."""
 
 from __future__ import annotations
 
@@ -36,9 +36,13 @@ CHANNELS: tuple[Channel, ...] = (
     Channel("t", "float64", "s", "monotonic time since the run's start, when the motor angle was latched"),
     Channel("theta_m", "float64", "rad", "motor (wave generator) angle, unwrapped, positive as commanded"),
     Channel("theta_l", "float64", "rad", "load angle, unwrapped, positive when it follows the motor"),
-    Channel("omega_m", "float64", "rad/s", "motor speed, the host's filtered derivative of theta_m (filter in bench.toml)"),
+    Channel(
+        "omega_m", "float64", "rad/s", "motor speed, the host's filtered derivative of theta_m (filter in bench.toml)"
+    ),
     Channel("tau_m", "float64", "N·m", "motor torque as the drive reports it, motor side, positive drives forward"),
-    Channel("tau_l", "float64", "N·m", "torque sensor between gear and load, positive when the gear drives the load forward"),
+    Channel(
+        "tau_l", "float64", "N·m", "torque sensor between gear and load, positive when the gear drives the load forward"
+    ),
     Channel("tau_ask", "float64", "N·m", "motor torque the procedure asked for"),
     Channel("tau_applied", "float64", "N·m", "motor torque the drive was really given"),
     Channel("theta_ref", "float64", "rad", "reference of the motor angle, where the procedure has one"),

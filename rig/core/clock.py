@@ -20,7 +20,7 @@ class Clock(ABC):
 
     @abstractmethod
     def relax(self) -> bool:
-        """Let other processes run without rig time passing. False where time cannot be held: then nothing was waited for."""
+        """Let other processes run without rig time passing. False where time cannot be held: nothing was waited for."""
 
 
 class WallClock(Clock):

@@ -95,7 +95,7 @@ class Drive(Device):
 
     @abstractmethod
     def halt(self) -> bool:
-        """Torque off now (stop category 0). Any state, any number of times, never raises; True when the drive confirmed."""
+        """Torque off now (stop category 0). Any state, any number of times, never raises; True when confirmed."""
 
     @abstractmethod
     def reset_fault(self) -> None:

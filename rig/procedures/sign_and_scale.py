@@ -84,7 +84,7 @@ class SignAndScale(Procedure):
             tau += self.nudge_rate * setting.period
             if tau > limit:
                 raise NotReady(
-                    f"the motor did not turn {self.nudge_deg:g}° with up to {limit:.2f} N·m ({moved / DEG:+.2f}° seen): "
+                    f"the motor did not turn {self.nudge_deg:g}° with up to {limit:.2f} N·m ({moved / DEG:+.2f}°): "
                     "is it blocked, is the drive's torque scale right, is its encoder read?"
                 )
             sample = yield Torque(tau)
@@ -121,13 +121,13 @@ def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Pro
     if not abs(load) > 0.1 * abs(motor) / setting.ratio:
         raise NotReady(
             f"the load encoder moved {load / DEG:.3f}° while the motor turned {motor / DEG:.1f}°, "
-            f"expected {motor / setting.ratio / DEG:.2f}°: is the output locked, the encoder unplugged, the coupling loose?"
+            f"expected {motor / setting.ratio / DEG:.2f}°: is the output locked or the encoder unplugged?"
         )
     ratio = motor / load
     if ratio < 0:
         raise NotReady(
-            f"the load encoder turned {load / DEG:+.2f}° while the motor turned {motor / DEG:+.1f}° (ratio {ratio:.2f}), "
-            f"expected {motor / setting.ratio / DEG:+.2f}°: flip the sign of one encoder in the bench file"
+            f"the load encoder turned {load / DEG:+.2f}° while the motor turned {motor / DEG:+.1f}° "
+            f"(ratio {ratio:.2f}), expected {motor / setting.ratio / DEG:+.2f}°: flip the sign of one encoder in the bench file"
         )
     if abs(ratio / setting.ratio - 1) > RATIO_TOLERANCE:
         raise NotReady(

@@ -58,7 +58,9 @@ def test_a_trapezoid_keeps_its_speed_and_arrives(distance: float, speed: float, 
 
 
 @given(st.floats(0.5, 50.0), st.floats(0.1, 60.0), st.floats(0.1, 100.0), st.floats(0.01, 0.98))
-def test_the_speed_of_a_trapezoid_is_the_slope_of_its_offset(d: float, speed: float, accel: float, share: float) -> None:
+def test_the_speed_of_a_trapezoid_is_the_slope_of_its_offset(
+    d: float, speed: float, accel: float, share: float
+) -> None:
     move = Trapezoid(d, speed, accel)
     t, h = share * move.duration, 1e-4 * move.duration
     slope = (move.at(t + h)[0] - move.at(t - h)[0]) / (2 * h)

@@ -1,0 +1,89 @@
+"""hdrig analyse RUN…: figures and report from what is recorded; never touches a device."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.core.errors import Exit, HdrigError
+
+if TYPE_CHECKING:
+    from rig.analysis.result import Result
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig analyse`."""
+    parser.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="write results there (for runs that cannot be written to)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Every run is tried; the exit code is the worst."""
+    worst = Exit.PASS
+    for folder in expand(args.runs):
+        try:
+            result = analyse_folder(folder, args.out)
+        except HdrigError as error:
+            print(f"hdrig: {folder}: {error}", file=sys.stderr)
+            worst = worst or Exit(error.exit)
+            continue
+        print_result(result, folder if args.out is None else args.out / folder.name)
+        worst = worst or exit_of(result)
+    return int(worst)
+
+
+def expand(paths: list[Path]) -> list[Path]:
+    """Run folders as given; a folder that is no run gives the runs below it."""
+    from rig.core.errors import UsageError
+
+    found: list[Path] = []
+    for path in paths:
+        inside = [path] if (path / "manifest.json").exists() else sorted(p.parent for p in path.rglob("manifest.json"))
+        if not inside:
+            raise UsageError(f"{path} is neither a run folder nor holds any (no manifest.json in it)")
+        found += inside
+    return found
+
+
+def analyse_folder(folder: Path, out: Path | None = None) -> Result:
+    """Analyse one run; write result.json and report.html beside it, or into `out`/NAME."""
+    from rig.analysis import analyse
+    from rig.report.page import write
+    from rig.report.record import write_result
+    from rig.runfile.events import read_events
+    from rig.runfile.run import Run
+
+    run = Run.open(folder)
+    result = analyse(run)
+    target = folder if out is None else out / run.name
+    target.mkdir(parents=True, exist_ok=True)
+    write_result(target, result)
+    write(target, run.manifest, run.timing, read_events(folder), result)
+    return result
+
+
+def exit_of(result: Result) -> Exit:
+    """PASS and MEASURED 0, FAIL 1, INCONCLUSIVE 6."""
+    return {"FAIL": Exit.OUT_OF_LIMITS, "INCONCLUSIVE": Exit.INCOMPLETE}.get(result.verdict, Exit.PASS)
+
+
+def print_result(result: Result, folder: Path) -> None:
+    """Verdict, figures with unit and interval, and where the report is, on stdout."""
+    from rig.report.numbers import estimate
+
+    print(f"{result.verdict}: {result.sentence}")
+    width = max((len(e.label) for e in result.estimates), default=0)
+    for e in result.estimates:
+        print(f"  {e.label:{width}s}  {estimate(e.value, e.ci95, e.unit)}")
+    for check in result.checks:
+        if not check.passed:
+            print(f"  not met: {check.sentence}")
+    for sentence in result.cannot:
+        print(f"  cannot tell: {sentence}")
+    print(f"report {folder / 'report.html'}")

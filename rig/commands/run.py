@@ -1,0 +1,31 @@
+"""hdrig run PROCEDURE: on the twin or on a real bench, the same code."""
+
+from __future__ import annotations
+
+import argparse
+
+from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments
+from rig.commands.perform import perform
+from rig.config import nearest
+from rig.core.errors import UsageError
+from rig.procedures import CATALOGUE, procedure_class
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig run`."""
+    parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join(CATALOGUE))
+    bench_arguments(parser)
+    procedure_arguments(parser)
+    parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Dry run, or proof, run, analysis, report."""
+    if args.procedure not in CATALOGUE:
+        raise UsageError(f"no procedure called '{args.procedure}'; {nearest(args.procedure, CATALOGUE)}")
+    bench, clock = open_bench(args)
+    procedure = make_procedure(procedure_class(args.procedure), args.parameters)
+    if args.dry_run:
+        print("\n".join(plan_lines(bench, procedure)))
+        return 0
+    return perform(bench, clock, procedure, args.out, args.note)

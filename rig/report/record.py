@@ -1,0 +1,50 @@
+"""`result.json`: the figures of one analysis for programs."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from rig.analysis.result import Result
+from rig.runfile.manifest import write_atomic
+
+NAME = "result.json"
+
+
+def as_json(result: Result) -> dict[str, Any]:
+    """Everything but the curves; a number that is not finite becomes null."""
+    return {
+        "schema": "hdrig.result/1",
+        "procedure": result.procedure,
+        "verdict": str(result.verdict),
+        "sentence": result.sentence,
+        "estimates": {
+            e.name: {
+                "label": e.label,
+                "value": finite(e.value),
+                "unit": e.unit,
+                "ci95": [finite(e.ci95[0]), finite(e.ci95[1])],
+                "how": e.how,
+            }
+            for e in result.estimates
+        },
+        "checks": [{"name": c.name, "passed": c.passed, "sentence": c.sentence} for c in result.checks],
+        "cannot": list(result.cannot),
+        "tables": {
+            name: [{k: finite(v) for k, v in row.items()} for row in rows] for name, rows in result.tables.items()
+        },
+    }
+
+
+def finite(value: Any) -> Any:
+    """JSON has no NaN: what was not measured is null."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def write_result(folder: Path, result: Result) -> Path:
+    """Put `result.json` into `folder`, in place of an older one; its path."""
+    path = folder / NAME
+    write_atomic(path, json.dumps(as_json(result), indent=1, ensure_ascii=False, allow_nan=False).encode() + b"\n")
+    return path

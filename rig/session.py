@@ -1,0 +1,203 @@
+"""From connect to a finished run folder: one bench opened, proven, run. On every way out torque first, files second."""
+
+from __future__ import annotations
+
+import contextlib
+import getpass
+import platform
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from rig import __version__
+from rig.bench import Bench, ClockName
+from rig.control.filter import SpeedFilter
+from rig.core.errors import Exit, HdrigError, NotReady
+from rig.core.procedure import Procedure
+from rig.core.sample import Sample
+from rig.guard import Guard
+from rig.interrupts import Interrupts
+from rig.loop import Ending, Loop
+from rig.procedures.sign_and_scale import Proof, SignAndScale
+from rig.recorder import Recorder
+from rig.runfile.events import EventLog
+from rig.runfile.finalise import finalise
+from rig.runfile.folder import create
+from rig.supervisor import Act, State, Supervisor
+from rig.timing import LoopTiming
+
+Watch = Callable[[Sample], None]
+
+
+@dataclass(frozen=True)
+class Done:
+    """A run that came to an end, its folder closed."""
+
+    folder: Path
+    ending: Ending
+
+
+@dataclass
+class Session:
+    """One bench, connected. Use as a context manager; leaving it takes the torque off and lets go of the devices."""
+
+    bench: Bench
+    clock: ClockName
+    root: Path
+    interrupts: Interrupts
+    note: str = ""
+    _proof: Proof | None = None
+    _early: list[tuple[str, str]] = field(default_factory=list)  # events before there is a folder for them
+    _log: EventLog | None = None
+
+    def __enter__(self) -> Session:
+        self.supervisor = Supervisor(self._announce)
+        self.instruments = self.bench.open(self.clock)
+        self.identities = self.instruments.connect()
+        self.supervisor.act(Act.CONNECT)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.instruments.close()
+        self.supervisor.act(Act.DISCONNECT)
+
+    def check(self, procedure: Procedure) -> None:
+        """The bench can do what the procedure needs. Raises NotReady with what is missing or too much; nothing moves."""
+        envelope = procedure.envelope(self.bench.setting(lambda text: None))
+        missing = [c for c in procedure.needs if c not in self.instruments.channels]
+        if missing:
+            raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.name} needs")
+        for what, asked, limit, unit, scale in margins(self.bench, procedure):
+            if asked > limit:
+                wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
+                raise NotReady(f"{procedure.name} asks for {what} {wanted}, the bench allows {allowed}")
+        if not envelope.duration > 0:
+            raise NotReady(f"{procedure.name} would last {envelope.duration:g} s, expected more than 0 s")
+
+    def rewire(self, bench: Bench) -> None:
+        """Go on with other gains and another speed filter; the devices stay as they are."""
+        self.bench = bench
+        self.instruments.speed_filter = SpeedFilter(bench.file.loop.speed_filter)
+
+    def prove(self) -> Proof:
+        """Sign-and-scale proof, recorded as a run of its own. Raises NotReady with what was measured."""
+        done = self.run(SignAndScale())
+        if not isinstance(done.ending.finding, Proof):
+            raise Unproven(f"the sign-and-scale proof did not finish: {done.ending.reason}", done.ending.exit)
+        self._proof = done.ending.finding
+        return self._proof
+
+    def run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
+        """Run one procedure into a folder of its own. The folder is closed, with its status, on every way out."""
+        self.check(procedure)
+        if self.supervisor.state is State.CONNECTED:
+            self.supervisor.act(Act.CHECK)
+        folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
+        timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
+        with EventLog(folder) as self._log:
+            for kind, text in self._early:
+                self._log.write(kind, text)
+            self._early.clear()
+            try:
+                return self._record(folder, procedure, timing, watch)
+            finally:
+                self._log = None
+
+    def _record(self, folder: Path, procedure: Procedure, timing: LoopTiming, watch: Watch) -> Done:
+        recorder = Recorder(folder, self.instruments.clock)
+        recorder.start()
+        setting = self.bench.setting(lambda text: self._event("note", text))
+        guard = Guard(self.bench.limits, procedure.envelope(setting), setting.ratio)
+        loop = Loop(self.instruments, self.supervisor, guard, recorder, self.interrupts, timing, watch)
+        ending = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL)
+        try:
+            ending = loop.run(procedure, setting)
+        except HdrigError as error:
+            ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
+            raise
+        finally:
+            # the loop has made the drive safe, whatever happened; only now files
+            self._close(recorder, folder, ending, timing)
+        return Done(folder, ending)
+
+    def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming) -> None:
+        recorder.close()
+        if ending.finding is not None:
+            self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
+        finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
+
+    def _announce(self, state: State, act: Act, why: str) -> None:
+        kind = {Act.TRIP: "trip", Act.STOP: "operator", Act.HALT: "operator"}.get(act, "state")
+        self._event(kind, f"{state}: {why}" if why else str(state))
+
+    def _event(self, kind: str, text: str) -> None:
+        if self._log is None:
+            self._early.append((kind, text))
+            return
+        with contextlib.suppress(HdrigError):  # a full disk shows in the rows; it must not stand in the way of a stop
+            self._log.write(kind, text, self._run_time())
+
+    def _run_time(self) -> float:
+        return self.instruments.clock.now() - self.instruments.started
+
+    def _manifest(self, procedure: Procedure) -> dict[str, Any]:
+        manifest = self.bench.manifest()
+        conditions = procedure.conditions()
+        if self.note:
+            conditions["note"] = self.note
+        return {
+            **manifest,
+            "conditions": conditions,
+            "devices": {name: identity._asdict() for name, identity in self.identities.items()},
+            "proof": self._proof._asdict() if self._proof else None,
+            "loop": {"rate": self.bench.file.loop.rate, "clock": self.clock},
+            "software": software(),
+            "host": platform.node(),
+            "operator": operator(),
+        }
+
+
+class Unproven(HdrigError):
+    """The proof was ended by the guard or the operator: its exit code is the command's."""
+
+    def __init__(self, sentence: str, exit: Exit) -> None:
+        super().__init__(sentence)
+        self.exit = exit
+
+
+def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:
+    """(what, asked, limit, unit shown, SI → shown) of everything the procedure will ask for at most."""
+    envelope, limits = procedure.envelope(bench.setting(lambda text: None)), bench.limits
+    return [
+        ("travel", envelope.travel, limits.travel, "deg", 57.29577951308232),
+        ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
+        ("torque", envelope.torque, limits.torque, "N·m", 1.0),
+    ]
+
+
+def software() -> dict[str, Any]:
+    """Version, commit and whether the tree had changes, of the code that made the run."""
+    here = Path(__file__).parent
+
+    def git(*args: str) -> str | None:
+        with contextlib.suppress(OSError, subprocess.SubprocessError):
+            done = subprocess.run(["git", *args], cwd=here, capture_output=True, text=True, timeout=5, check=True)
+            return done.stdout.strip()
+        return None
+
+    inside = git("ls-files", "session.py") == "session.py"  # else hdrig lies in somebody else's repository
+    commit = git("rev-parse", "HEAD") if inside else None
+    dirty = bool(git("status", "--porcelain", "--untracked-files=no")) if commit else None
+    return {"version": __version__, "commit": commit, "dirty": dirty, "python": platform.python_version()}
+
+
+def operator() -> str | None:
+    """Who is logged in."""
+    with contextlib.suppress(OSError, KeyError):
+        return getpass.getuser()
+    return None
