@@ -1,4 +1,4 @@
-"""The bench file, read strictly: an error names file, key, value, what was expected, the nearest valid key.
+"""The bench file, read strictly: an error names file, key, value, what was expected, nearest valid key.
 
 Numbers may be bare (`K = 7160`) or carry unit and provenance (`K = { value = 7160, unit = "N·m/rad", from = "paper" }`).
 Units are compared with the expected one, never converted.

@@ -67,7 +67,7 @@ class Session:
         self.supervisor.act(Act.DISCONNECT)
 
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs. Raises NotReady with what is missing or too much; nothing moves."""
+        """The bench can do what the procedure needs. Raises NotReady with what is missing or too much."""
         envelope = procedure.envelope(self.bench.setting(lambda text: None))
         missing = [c for c in procedure.needs if c not in self.instruments.channels]
         if missing:
@@ -99,14 +99,14 @@ class Session:
             self.supervisor.act(Act.CHECK)
         folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
-        with EventLog(folder) as self._log:
-            for kind, text in self._early:
-                self._log.write(kind, text)
-            self._early.clear()
-            try:
-                return self._record(folder, procedure, timing, watch)
-            finally:
-                self._log = None
+        self._log = EventLog(folder)
+        for kind, text in self._early:
+            self._log.write(kind, text)
+        self._early.clear()
+        try:
+            return self._record(folder, procedure, timing, watch)
+        finally:
+            self._end_log()
 
     def _record(self, folder: Path, procedure: Procedure, timing: LoopTiming, watch: Watch) -> Done:
         recorder = Recorder(folder, self.instruments.clock)
@@ -129,7 +129,13 @@ class Session:
         recorder.close()
         if ending.finding is not None:
             self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
-        finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
+        self._end_log()  # its hash is taken next: nothing may be added after
+        finalise(folder, ending.status, ending.reason, timing=timing.summary(), facts={"exit": int(ending.exit)})
+
+    def _end_log(self) -> None:
+        if self._log is not None:
+            self._log.close()
+            self._log = None
 
     def _announce(self, state: State, act: Act, why: str) -> None:
         kind = {Act.TRIP: "trip", Act.STOP: "operator", Act.HALT: "operator"}.get(act, "state")

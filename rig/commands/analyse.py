@@ -25,6 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Every run is tried; the exit code is the worst."""
+    from rig.commands.folders import expand
+
     worst = Exit.PASS
     for folder in expand(args.runs):
         try:
@@ -36,19 +38,6 @@ def run(args: argparse.Namespace) -> int:
         print_result(result, folder if args.out is None else args.out / folder.name)
         worst = worst or exit_of(result)
     return int(worst)
-
-
-def expand(paths: list[Path]) -> list[Path]:
-    """Run folders as given; a folder that is no run gives the runs below it."""
-    from rig.core.errors import UsageError
-
-    found: list[Path] = []
-    for path in paths:
-        inside = [path] if (path / "manifest.json").exists() else sorted(p.parent for p in path.rglob("manifest.json"))
-        if not inside:
-            raise UsageError(f"{path} is neither a run folder nor holds any (no manifest.json in it)")
-        found += inside
-    return found
 
 
 def analyse_folder(folder: Path, out: Path | None = None) -> Result:

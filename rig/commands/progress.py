@@ -1,4 +1,4 @@
-"""What the operator sees while a run goes on: rig time, time left, peak-to-peak so far. On stderr: stdout has results."""
+"""What the operator sees while a run goes on: rig time, time left, peak-to-peak so far. On stderr."""
 
 from __future__ import annotations
 

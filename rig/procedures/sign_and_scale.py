@@ -127,7 +127,7 @@ def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Pro
     if ratio < 0:
         raise NotReady(
             f"the load encoder turned {load / DEG:+.2f}° while the motor turned {motor / DEG:+.1f}° "
-            f"(ratio {ratio:.2f}), expected {motor / setting.ratio / DEG:+.2f}°: flip the sign of one encoder in the bench file"
+            f"(ratio {ratio:.2f}), expected {motor / setting.ratio / DEG:+.2f}°: flip one encoder in the bench file"
         )
     if abs(ratio / setting.ratio - 1) > RATIO_TOLERANCE:
         raise NotReady(
