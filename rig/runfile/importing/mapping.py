@@ -1,0 +1,172 @@
+"""The mapping file (schema hdrig.import/1): which column of a foreign file is which channel, read strictly."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping as Dict
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from rig.core.errors import UsageError
+from rig.runfile.importing.channel import ChannelMap, read_channel
+from rig.runfile.importing.strict import Section, nearest
+
+SCHEMA = "hdrig.import/1"
+SHIPPED = Path(__file__).parent / "mappings"
+PROCEDURES = (
+    "kinematic_error", "speed_convergence", "full_turn", "constant_torque", "constant_speed", "load_sweep",
+    "assembly_sweep", "stiffness_lock", "friction", "coast_down", "standstill", "sentinel", "other",
+)  # fmt: skip
+CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit")  # plausibility an [accept] may waive
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """[csv]: how the text is to be read."""
+
+    delimiter: str = ","
+    decimal: str = "."
+    encoding: str = "utf-8"
+    skip_rows: int = 0  # lines before the header
+    units_row: bool = False  # the line after the header holds units
+    names: tuple[str, ...] = ()  # for a file without a header
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """A whole mapping file."""
+
+    source: str  # what errors call it
+    text: str
+    procedure: str
+    gear: dict[str, Any]
+    channels: dict[str, ChannelMap]
+    declared: dict[str, Any] = field(default_factory=dict)
+    conditions: dict[str, Any] = field(default_factory=dict)
+    encoders: dict[str, int] = field(default_factory=dict)
+    description: str = ""
+    csv: Dialect = Dialect()
+    accept: Dict[str, str] = field(default_factory=dict)
+
+    @property
+    def columns(self) -> list[str]:
+        """Every column asked for, each once."""
+        return list(dict.fromkeys(t.column for c in self.channels.values() for t in c.terms))
+
+
+def shipped() -> list[str]:
+    """Names of the mappings that come with the program."""
+    return sorted(p.stem for p in SHIPPED.glob("*.toml"))
+
+
+def load_mapping(mapping: Path | str) -> Mapping:
+    """The mapping in a file, or the shipped one of that name. Raises UsageError, one sentence."""
+    path = Path(mapping)
+    if isinstance(mapping, str) and path.suffix != ".toml" and len(path.parts) == 1:
+        if mapping not in shipped():
+            raise UsageError(f"no mapping is called '{mapping}'; {nearest(mapping, shipped())} (or give a .toml file)")
+        path = SHIPPED / f"{mapping}.toml"
+    try:
+        return read_mapping(path.read_text(encoding="utf-8"), path.name)
+    except UnicodeDecodeError:
+        raise UsageError(f"{path} is not UTF-8 text; expected a mapping file in TOML") from None
+    except OSError as error:
+        raise UsageError(f"cannot read the mapping {path}: {error.strerror}") from None
+
+
+def read_mapping(text: str, source: str) -> Mapping:
+    """The mapping in `text`; `source` is what errors call it. Raises UsageError: file, key and what was expected."""
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UsageError(f"{source} is not valid TOML: {error}") from None
+    top = Section(source, "", raw)
+    top.text("schema", choices=(SCHEMA,))
+    tables = top.table("channels")
+    result = Mapping(
+        source=source,
+        text=text,
+        description=top.text("description", ""),
+        procedure=top.text("procedure", choices=PROCEDURES),
+        gear=_gear(top.table("gear")),
+        declared=_numbers(top.table("declared", {}), ("J_m", "J_l", "K"), whole=("fourier_terms",)),
+        conditions=_conditions(top.table("conditions", {})),
+        encoders=_numbers(top.table("encoders", {}), (), whole=("motor_counts_per_rev", "load_counts_per_rev")),
+        csv=_dialect(top.table("csv", {})),
+        accept=_accept(top.table("accept", {})),
+        channels={name: read_channel(name, tables.table(name)) for name in tables.names()},
+    )
+    top.done()
+    _angles(result)
+    return replace(result, encoders=_encoders(result))
+
+
+def _gear(raw: Section) -> dict[str, Any]:
+    gear: dict[str, Any] = {"ratio": raw.number("ratio", above=1.0)}
+    if raw.has("output"):
+        gear["output"] = raw.text("output", choices=("flexspline", "circular_spline"))
+    if raw.has("serial"):
+        gear["serial"] = raw.text("serial")
+    raw.done()
+    return gear
+
+
+def _numbers(raw: Section, numbers: tuple[str, ...], whole: tuple[str, ...]) -> dict[str, Any]:
+    found: dict[str, Any] = {key: raw.number(key, None, above=0) for key in numbers}
+    found |= {key: raw.whole(key, None, least=1) for key in whole}
+    raw.done()
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _conditions(raw: Section) -> dict[str, Any]:
+    found: dict[str, Any] = {key: raw.number(key, None) for key in ("tau_ext", "depth_mm", "speed_rpm")}
+    found |= {"output_locked": raw.flag("output_locked", None), "note": raw.text("note", None)}
+    raw.done()
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _dialect(raw: Section) -> Dialect:
+    dialect = Dialect(
+        delimiter=raw.text("delimiter", ",", blank=True),
+        decimal=raw.text("decimal", ".", choices=(".", ",")),
+        encoding=raw.text("encoding", "utf-8"),
+        skip_rows=raw.whole("skip_rows", 0, most=100_000),
+        units_row=raw.flag("units_row", False),
+        names=raw.texts("names"),
+    )
+    if len(dialect.delimiter) != 1 or dialect.delimiter in '\r\n"':
+        raw.refuse("delimiter", dialect.delimiter, "one character, such as ',', ';' or '\\t'")
+    if dialect.delimiter == dialect.decimal:
+        raw.refuse("delimiter", dialect.delimiter, f"another character than decimal = '{dialect.decimal}'")
+    raw.done()
+    return dialect
+
+
+def _accept(raw: Section) -> dict[str, str]:
+    found = {key: raw.text(key, "") for key in CHECKS}
+    raw.done()
+    return {key: why for key, why in found.items() if why}
+
+
+def _angles(mapping: Mapping) -> None:
+    """A run needs an angle, and two angles need two columns. Raises UsageError."""
+    motor, load = (mapping.channels.get(name) for name in ("theta_m", "theta_l"))
+    if not (motor or load):
+        raise UsageError(f"{mapping.source} maps no angle; expected [channels.theta_m] or [channels.theta_l]")
+    if motor and load and motor.terms == load.terms:
+        column = motor.terms[0].column
+        raise UsageError(f"{mapping.source}: theta_m and theta_l are both column '{column}'; expected one column each")
+
+
+def _encoders(mapping: Mapping) -> dict[str, int]:
+    """[encoders], completed from counts_per_turn. Raises UsageError where the two differ."""
+    found = dict(mapping.encoders)
+    for name, key in (("theta_m", "motor_counts_per_rev"), ("theta_l", "load_counts_per_rev")):
+        stated = mapping.channels[name].counts_per_turn if name in mapping.channels else 0
+        if stated and found.setdefault(key, stated) != stated:
+            raise UsageError(
+                f"{mapping.source}: encoders.{key} = {found[key]} but channels.{name}.counts_per_turn = {stated}; "
+                "expected the same number"
+            )
+    return found

@@ -1,0 +1,1 @@
+"""One file format a file; the catalogue is rig.runfile.importing.READERS."""

@@ -1,0 +1,128 @@
+"""Delimited text, through pyarrow, after its encoding and its header have been looked at."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+from collections.abc import Sequence
+from itertools import islice
+from pathlib import Path
+
+from rig.core.errors import UsageError
+from rig.runfile.importing.mapping import Dialect
+from rig.runfile.importing.readers.parquet import to_numpy
+from rig.runfile.importing.table import DAMAGED, Table, damaged, locate
+
+CHUNK = 1 << 20  # bytes
+LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
+
+
+def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
+    """The wanted columns. Raises UsageError."""
+    check_text(path, dialect.encoding)
+    names, units = header(path, dialect)
+    check_names(path, names, wanted, dialect)
+    found = locate(names, wanted, path.name)
+    lines = dialect.skip_rows + (0 if dialect.names else 1) + (1 if dialect.units_row else 0)
+
+    import pyarrow as pa
+    import pyarrow.csv as pacsv
+
+    try:
+        table = pacsv.read_csv(
+            path,
+            # one thread: only then does the library say which row a complaint is about
+            pacsv.ReadOptions(
+                use_threads=False,
+                block_size=4 * LONGEST_LINE,
+                skip_rows=lines,
+                column_names=names,
+                encoding=dialect.encoding,
+            ),
+            pacsv.ParseOptions(delimiter=dialect.delimiter),
+            pacsv.ConvertOptions(
+                include_columns=list(dict.fromkeys(found.values())),
+                decimal_point=dialect.decimal,
+                strings_can_be_null=True,
+            ),
+        )
+    except pa.ArrowInvalid as error:
+        raise damaged(path, f"CSV ({len(names)} columns in the header)", error) from None
+    except DAMAGED as error:
+        raise damaged(path, "CSV", error) from None
+    stated = dict(zip(names, units, strict=False))
+    return Table(
+        {name: to_numpy(table[full]) for name, full in found.items()},
+        {name: stated[full] for name, full in found.items() if stated.get(full)},
+    )
+
+
+def check_text(path: Path, encoding: str) -> None:
+    """Raises UsageError when the file is not text of this encoding, with the byte at which it is not."""
+    try:
+        decoder = codecs.getincrementaldecoder(encoding)()
+    except LookupError:
+        raise UsageError(
+            f"csv.encoding = '{encoding}' is no encoding Python knows; expected e.g. 'utf-8' or 'cp1252'"
+        ) from None
+    wide = encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
+    done = 0
+    with path.open("rb") as file:
+        while True:
+            block = file.read(CHUNK)
+            if not wide and (at := block.find(b"\0")) >= 0:
+                raise UsageError(f"{path.name} is not text: byte {done + at} is 0 (csv.encoding = '{encoding}')")
+            held = len(decoder.getstate()[0])
+            try:
+                decoder.decode(block, final=not block)
+            except UnicodeError as error:
+                at = done - held + getattr(error, "start", 0)
+                raise UsageError(
+                    f"{path.name} is not {encoding} text: byte {at} cannot be read; set [csv] encoding, e.g. 'cp1252'"
+                ) from None
+            if not block:
+                return
+            done += len(block)
+
+
+def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:
+    """(names, units) of the columns; units is empty where the file has no row of them."""
+    with path.open(encoding=dialect.encoding, newline="") as file:
+        if file.read(1) != "\ufeff":  # a byte order mark is no part of the first name
+            file.seek(0)
+        for number in range(dialect.skip_rows):
+            _line(file.readline(LONGEST_LINE), path, number + 1)
+        rows = 2 if dialect.units_row and not dialect.names else 1
+        lines = [_line(file.readline(LONGEST_LINE), path, dialect.skip_rows + i + 1) for i in range(rows)]
+    try:
+        cells = [[c.strip() for c in row] for row in csv.reader(lines, delimiter=dialect.delimiter)]
+    except csv.Error as error:
+        raise damaged(path, "CSV", error) from None
+    names = list(dialect.names) or cells[0]
+    units = cells[-1] if dialect.units_row else []
+    if dialect.names and len(cells[0]) != len(names):
+        raise UsageError(f"{path.name} has {len(cells[0])} columns, but csv.names gives {len(names)} names")
+    return names, units
+
+
+def _line(text: str, path: Path, number: int) -> str:
+    if len(text) >= LONGEST_LINE:
+        raise UsageError(f"{path.name}: line {number} is longer than {LONGEST_LINE} characters; expected a table")
+    if not text.strip():
+        raise UsageError(
+            f"{path.name}: line {number} is empty or past the end; expected the header (see csv.skip_rows)"
+        )
+    return text
+
+
+def check_names(path: Path, names: list[str], wanted: Sequence[str], dialect: Dialect) -> None:
+    """Raises UsageError when the delimiter is not the file's, or a wanted name stands twice."""
+    if len(names) == 1:
+        for other, spelt in ((";", ";"), (",", ","), ("\t", "\\t"), ("|", "|")):
+            if other != dialect.delimiter and (count := names[0].count(other)):
+                raise UsageError(
+                    f"{path.name} has 1 column when split at '{dialect.delimiter}', but its header holds '{spelt}' "
+                    f'{count} times; set [csv] delimiter = "{spelt}"'
+                )
+    for name in islice((n for n in wanted if names.count(n) > 1), 1):
+        raise UsageError(f"{path.name}: column '{name}' stands {names.count(name)} times in the header; expected once")

@@ -1,0 +1,56 @@
+"""ASAM MDF, through asammdf. A column is a channel, the master (time) included; `group/channel` where the name stands
+in several groups. Units and the start time are the file's."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rig.runfile.importing.mapping import Dialect
+from rig.runfile.importing.table import DAMAGED, Array, Table, damaged, locate, not_installed
+
+
+def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
+    """The wanted columns. Raises UsageError."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the library warns of optional parts of its own that are not installed
+        try:
+            from asammdf import MDF
+            from asammdf.blocks.utils import MdfException
+        except ImportError:
+            raise not_installed("asammdf", "MDF") from None
+        try:
+            with MDF(path) as file:
+                offered = _channels(file)
+                found = locate(offered, wanted, path.name)
+                signals = {
+                    name: file.get(group=offered[full][0], index=offered[full][1]) for name, full in found.items()
+                }
+                columns = {name: _values(signal) for name, signal in signals.items()}
+                started = file.header.start_time
+        except (*DAMAGED, MdfException) as error:
+            raise damaged(path, "MDF", error) from None
+    return Table(columns, {name: s.unit for name, s in signals.items() if s.unit}, started)
+
+
+def _channels(file: Any) -> dict[str, tuple[int, int]]:
+    """{group/channel: (group number, channel number)}."""
+    found: dict[str, tuple[int, int]] = {}
+    for g, group in enumerate(file.groups):
+        title = getattr(group.channel_group, "acq_name", "") or f"group {g}"
+        title = title if all(not name.startswith(f"{title}/") for name in found) else f"{title} {g}"
+        for c, channel in enumerate(group.channels):
+            found[f"{title}/{channel.name}"] = (g, c)
+    return found
+
+
+def _values(signal: Any) -> Array:
+    """The samples; those the logger marked invalid are null."""
+    invalid = getattr(signal, "invalidation_bits", None)
+    if invalid is None or not np.any(invalid):
+        return np.asarray(signal.samples)
+    return np.where(np.asarray(invalid, dtype=bool), np.nan, signal.samples)

@@ -1,0 +1,78 @@
+"""What a reader hands over, and how a column is found in a foreign file."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Iterable, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.core.errors import UsageError
+from rig.runfile.importing.mapping import Dialect
+from rig.runfile.importing.strict import nearest
+
+Array = npt.NDArray[Any]
+
+# What the libraries of others raise over damaged bytes. Not Exception: a fault of ours shall show as one.
+DAMAGED = (
+    ArithmeticError, AssertionError, AttributeError, BufferError, EOFError, LookupError, MemoryError, OSError,
+    RuntimeError, TypeError, ValueError, UnboundLocalError, struct.error, zlib.error,
+)  # fmt: skip
+
+
+class Table(NamedTuple):
+    """The columns asked for, each 1-D: whole numbers, floats (null = NaN), dates, or what else the file holds."""
+
+    columns: dict[str, Array]
+    units: dict[str, str]  # as the file states them
+    started: datetime | None = None  # when t = 0 was, where the file states it
+
+
+Reader = Callable[[Path, Sequence[str], Dialect], Table]
+
+
+def locate(names: Iterable[str], wanted: Sequence[str], file: str) -> dict[str, str]:
+    """{column asked for: its full name in the file}. The last part of a path is enough where it is unique.
+
+    Raises UsageError naming the column and the nearest there is, or the paths it could mean.
+    """
+    full = list(names)
+    by_last: dict[str, list[str]] = {}
+    for name in full:
+        by_last.setdefault(name.rpartition("/")[2], []).append(name)
+    exact, found = set(full), {}
+    for column in wanted:
+        paths = [column] if column in exact else by_last.get(column, [])
+        if not paths:
+            raise UsageError(f"{file} has no column '{column}'; {nearest(column, [*full, *by_last])}")
+        if len(paths) > 1:
+            raise UsageError(
+                f"{file}: column '{column}' stands in {len(paths)} places; expected one of {', '.join(paths)}"
+            )
+        found[column] = paths[0]
+    return found
+
+
+def damaged(file: Path, kind: str, error: BaseException) -> UsageError:
+    """The sentence for a file its library could not read to the end."""
+    size = file.stat().st_size
+    reason = " ".join(str(error).split())[:200] or type(error).__name__
+    return UsageError(f"{file.name} ({size} bytes) is damaged or cut short and cannot be read as {kind}: {reason}")
+
+
+def not_installed(package: str, kind: str) -> UsageError:
+    """The sentence for an optional package that is absent."""
+    return UsageError(f"reading {kind} needs the package {package}; install it with: pip install 'hdrig[exchange]'")
+
+
+def flat(values: Any) -> Array | None:
+    """A vector from something that is one (n, n×1 or 1×n), else None."""
+    array = np.asarray(values)
+    if array.ndim == 0 or array.size != max(array.shape):
+        return None
+    return array.reshape(-1)

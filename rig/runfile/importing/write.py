@@ -1,0 +1,106 @@
+"""Channels → a finished run folder, through rig.runfile. It is there whole, or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import stat
+from collections.abc import Mapping as Dict
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+from rig import __version__
+from rig.core.errors import NotReady
+from rig.runfile import manifest as manifests
+from rig.runfile.archive import NAME as SAMPLES
+from rig.runfile.archive import open_parquet
+from rig.runfile.folder import create
+from rig.runfile.importing.convert import Converted
+from rig.runfile.importing.mapping import Mapping
+
+MAPPING_COPY = "import.toml"
+
+
+def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, software: Dict[str, Any] | None) -> Path:
+    """Make the folder under `root`; returns it. Raises NotReady when it cannot be written; then nothing is left."""
+    about = manifest_of(run, mapping, source, software)
+    folder = create(root, mapping.procedure, about)
+    done = False
+    try:
+        with manifests.told(NotReady, f"the imported run cannot be written to {folder}"):
+            manifests.write_atomic(folder / MAPPING_COPY, mapping.text.encode())
+            rows = _write_samples(folder, run)
+            _close(folder, rows, known_start=run.utc is not None)
+        done = True
+    finally:
+        if not done:
+            shutil.rmtree(folder, ignore_errors=True)
+    return folder
+
+
+def manifest_of(run: Converted, mapping: Mapping, source: Path, software: Dict[str, Any] | None) -> dict[str, Any]:
+    """What the manifest says of an imported run, without status and files."""
+    about: dict[str, Any] = {
+        "backend": "imported",
+        "gear": mapping.gear,
+        "declared": mapping.declared,
+        "conditions": mapping.conditions,
+        "encoders": mapping.encoders,
+        "software": dict(software or {"version": __version__}),
+        "import": {
+            "source": source.name,
+            "sha256": sha256(source),
+            "bytes": source.stat().st_size,
+            "mapping": mapping.source,
+            "description": mapping.description,
+            "imported_utc": manifests.utc_now(),
+            "timing": run.time,
+        },
+        "notes": run.notes,
+    }
+    if run.utc is not None:
+        stamp = run.utc.isoformat(timespec="microseconds")
+        about |= {"started_utc": stamp, "clock": {"utc_at_start": stamp}}
+    return about
+
+
+def table_of(run: Converted) -> pa.Table:
+    """The samples as Arrow, `t` first; unit and meaning with every column, null where not measured."""
+    fields, columns = [], []
+    for name in sorted(run.channels, key=lambda n: n != "t"):
+        values, unit, meaning = run.channels[name]
+        fields.append(pa.field(name, pa.from_numpy_dtype(values.dtype), metadata={"unit": unit, "meaning": meaning}))
+        columns.append(pa.array(values, from_pandas=True))  # from_pandas: NaN is null
+    about = {"schema": manifests.SCHEMA, "backend": "imported", "simulated": "false"}
+    return pa.table(columns, schema=pa.schema(fields, metadata=about))
+
+
+def _write_samples(folder: Path, run: Converted) -> int:
+    table = table_of(run)
+    with open(folder / SAMPLES, "wb") as file:
+        with open_parquet(file, table.schema) as writer:
+            writer.write_table(table)
+        file.flush()
+        os.fsync(file.fileno())
+    return int(table.num_rows)
+
+
+def _close(folder: Path, rows: int, known_start: bool) -> None:
+    """Hashes, read-only, completed. A start nobody knows is taken out: the folder's date is when it was imported."""
+    files: dict[str, dict[str, Any]] = {}
+    for name in (SAMPLES, MAPPING_COPY):
+        path = folder / name
+        files[name] = {"sha256": sha256(path), "bytes": path.stat().st_size}
+        path.chmod(stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH)
+    files[SAMPLES]["rows"] = rows
+    unknown = {} if known_start else {"started_utc": None, "clock": None}
+    manifests.update(folder, status="completed", files=files, process=None, **unknown)
+
+
+def sha256(path: Path) -> str:
+    """Of a whole file, hexadecimal."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
