@@ -1,6 +1,7 @@
-"""The bench file, read strictly: an error names file, key, value, what was expected, nearest valid key.
+"""The bench file, read strictly: an error names file, key, value, what was expected and the nearest valid key.
 
-Numbers may be bare (`K = 7160`) or carry unit and provenance (`K = { value = 7160, unit = "N·m/rad", from = "paper" }`).
+Numbers may be bare (`K = 7160`) or carry unit and provenance:
+`K = { value = 7160, unit = "N·m/rad", from = "paper" }`.
 Units are compared with the expected one, never converted.
 """
 

@@ -1,8 +1,8 @@
 """hdrig tune: gains that turn the motor smoothly at the slow speed, found on the rig at hand.
 
 Method, step based: (1) torque steps give inertia and friction at the motor; (2) the three poles of the position loop
-are placed on one spot λ; (3) short slow triangles are tried with λ rising until the motor turns smoothly with margin. The
-lowest λ that does is kept: more would only make the torque noisier.
+are placed on one spot λ; (3) short slow triangles are tried with λ rising until the motor turns smoothly with margin.
+The lowest λ that does is kept: more would only make the torque noisier.
 """
 
 from __future__ import annotations

@@ -1,0 +1,102 @@
+"""The command line: light to start, one sentence for every mistake, the documented exit codes."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rig.cli import main
+from rig.commands import CATALOGUE
+
+HEAVY = {"numpy", "scipy", "numba", "pyarrow", "pydantic", "matplotlib", "jinja2", "rich", "tomlkit", "can", "rerun"}
+
+
+def hdrig(*args: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", "rig.cli", *args], capture_output=True, text=True, timeout=120)
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = "import sys, rig.cli\ntry: rig.cli.main(['--help'])\nexcept SystemExit: pass\n"
+    code += "import json; print(json.dumps(sorted(m for m in sys.modules if '.' not in m)))"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert not HEAVY & set(json.loads(out.splitlines()[-1]))
+
+
+def test_help_names_every_verb_and_no_arguments_means_help() -> None:
+    for args in (["--help"], []):
+        done = hdrig(*args)
+        assert done.returncode == 0
+        for verb in CATALOGUE:
+            assert f"\n  {verb} " in done.stdout
+
+
+@pytest.mark.parametrize("verb", CATALOGUE)
+def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main([verb, "--help"])
+    assert end.value.code == 0
+    assert CATALOGUE[verb][1].split(":")[0][:20] in capsys.readouterr().out.replace("\n", " ")
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (["lst"], ["lst", "list"]),
+        (["run"], ["PROCEDURE"]),
+        (["run", "kinematic"], ["no procedure called 'kinematic'", "did you mean 'kinematic-error'"]),
+        (["run", "kinematic-error", "--bench", "twn"], ["no bench called 'twn'", "did you mean 'twin'"]),
+        (["run", "kinematic-error", "--bench", "absent.toml"], ["absent.toml", "No such file"]),
+        (["run", "kinematic-error", "--set", "control.Kq=3"], ["control.Kq", "did you mean"]),
+        (["run", "kinematic-error", "--set", "control.Kp=high"], ["Kp", "high", "N·m/rad", "number"]),
+        (["run", "kinematic-error", "--set", "control.Kp"], ["expected key=value"]),
+        (["run", "kinematic-error", "--with", "cycle=2"], ["no parameter 'cycle'", "did you mean 'cycles'"]),
+        (["run", "kinematic-error", "--with", "cycles=-2"], ["cycles = -2", "more than 0"]),
+        (["run", "kinematic-error", "--with", "cycles=many"], ["cycles = many", "finite number"]),
+        (["run", "kinematic-error", "--with", "cycles=nan"], ["cycles = nan", "finite number"]),
+        (["analyse", "nowhere"], ["nowhere", "does not exist"]),
+        (["recover", "nowhere"], ["nowhere", "does not exist"]),
+    ],
+)
+def test_a_wrong_command_line_is_one_sentence_and_exit_2_and_writes_nothing(
+    args: list[str], words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(args)
+    except SystemExit as end:
+        code = int(end.code or 0)
+    out, err = capsys.readouterr()
+    assert code == 2
+    assert out == ""
+    assert err.startswith("hdrig: ")
+    assert err.count("\n") == 1
+    for word in words:
+        assert word in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_dry_run_prints_the_margins_and_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "kinematic-error", "--dry-run"]) == 0
+    out = capsys.readouterr().out
+    for word in ("SIMULATED", "201.0 s", "1440 of 21600 deg", "9.6 of 600 rpm", "margin", "MB", " J "):
+        assert word in out
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("assignment", "word"), [("amplitude_deg=100000", "travel 100000 deg"), ("frequency=1.0", "speed 960 rpm")]
+)
+def test_what_the_bench_does_not_allow_is_refused_before_anything_moves(
+    assignment: str, word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "kinematic-error", "--with", assignment]) == 3
+    assert word in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
