@@ -39,14 +39,14 @@ def finalise(
     reason: str,
     *,
     timing: Mapping[str, Any] | None = None,
-    facts: Mapping[str, Any] | None = None,
     step: StepHook = lambda name: None,
+    **facts: Any,
 ) -> Closed:
     """Make a run that has ended readable, checked and read-only.
 
     `status` is completed, stopped, tripped or interrupted, `reason` a sentence; `timing` goes to timing.json, `facts`
-    into the manifest. Raises UsageError when the run is closed already, DataError when a file cannot be written; it can
-    then be called again, or `recover` later.
+    are further keys of the manifest. Raises UsageError when the run is closed already, DataError when a file cannot be
+    written; it can then be called again, or `recover` later.
     """
     about = manifest.read(folder)
     if is_closed(about):
@@ -54,7 +54,7 @@ def finalise(
     if status not in manifest.ENDINGS:
         raise UsageError(f"a run cannot end as {status!r}, expected one of {', '.join(manifest.ENDINGS)}")
     with manifest.told(DataError, f"{folder} cannot be closed"), sole_writer(folder):
-        return _close(folder, status, reason, timing, facts or {}, step)
+        return _close(folder, status, reason, timing, facts, step)
 
 
 def is_closed(about: Mapping[str, Any]) -> bool:

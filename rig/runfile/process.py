@@ -6,9 +6,9 @@ import contextlib
 import fcntl
 import os
 import platform
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 from rig.core.errors import NotReady
 
@@ -43,6 +43,11 @@ def lives(process: Process) -> bool:
     if since or Path("/proc/self/stat").exists():
         return since != 0 and started(pid) == since
     return _answers(pid)
+
+
+def is_being_made(about: Mapping[str, Any]) -> bool:
+    """True when the program that writes the run of this manifest, or closes it, lives."""
+    return bool(about.get("process")) and lives(about["process"])
 
 
 def _answers(pid: int) -> bool:

@@ -1,0 +1,146 @@
+"""A run as everything above reads it: columns when asked for, whoever made the folder."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from rig.core.errors import UsageError
+from rig.runfile import manifest as manifests
+from rig.runfile.columns import Array
+from rig.runfile.samples import Samples, open_samples
+
+ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
+
+
+class Run:
+    """One run folder, ours or another logger's. Holds no file open; can be sent to another process."""
+
+    def __init__(self, path: Path, manifest: manifests.Manifest, samples: Samples) -> None:
+        self.path = path
+        self.manifest = manifest
+        self.samples = samples
+        self.ratio = _ratio(path, manifest)
+        self.procedure = _procedure(path, manifest)
+
+    @classmethod
+    def open(cls, path: Path | str) -> Run:
+        """Open the folder at `path`: samples.parquet, else the journal.
+
+        Raises UsageError when schema, procedure, gear.ratio or samples are absent, or contradict the format: no angle
+        at all, time that runs backwards, a unit other than the table's. Raises DataError when the samples are damaged.
+        """
+        folder = Path(path)
+        about = manifests.read(folder)
+        run = cls(folder, about, open_samples(folder))
+        if not any(run.has(name) for name in ANGLES):
+            raise UsageError(f"{run.samples.path} has no angle: expected at least one of {', '.join(ANGLES)}")
+        _refuse_backward_time(run)
+        return run
+
+    @property
+    def name(self) -> str:
+        """The folder's name, by which runs of a campaign are told apart."""
+        return self.path.name
+
+    @property
+    def rows(self) -> int:
+        """Samples in the run."""
+        return self.samples.rows
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the columns there are, measured or not."""
+        return tuple(self.samples.layout.names)
+
+    @property
+    def conditions(self) -> Mapping[str, Any]:
+        """What was set for this run (`tau_ext` N·m, `output_locked`, `speed_rpm` …); empty when not said."""
+        return self.manifest.get("conditions") or {}
+
+    @property
+    def declared(self) -> Mapping[str, Any]:
+        """What was believed of the gear (`J_m` kg·m², `K` N·m/rad …); empty when not said."""
+        return self.manifest.get("declared") or {}
+
+    @property
+    def simulated(self) -> bool:
+        """True when the samples came from the twin."""
+        return self.manifest.get("backend") == "sim"
+
+    @cached_property
+    def timing(self) -> Mapping[str, Any]:
+        """Loop statistics of timing.json; empty when there are none."""
+        try:
+            return dict(json.loads((self.path / "timing.json").read_bytes()))
+        except (OSError, ValueError):
+            return {}
+
+    def has(self, name: str) -> bool:
+        """True when the channel is there and was measured at least once."""
+        return name in self.samples.layout.names and not self.samples.empty(name)
+
+    def column(self, name: str) -> Array | None:
+        """One channel, float64, shape (rows,), NaN where not measured; None when `has` says no. New each time."""
+        return self.samples.column(name) if self.has(name) else None
+
+    def need(self, name: str) -> Array:
+        """The channel, or UsageError with the name of what is missing."""
+        values = self.column(name)
+        if values is None:
+            raise UsageError(f"{self.name} has no {name}; it has {', '.join(c for c in self.channels if self.has(c))}")
+        return values
+
+    @property
+    def flags(self) -> np.ndarray[Any, np.dtype[np.uint32]]:
+        """Quality bits of every row, shape (rows,), zero where nothing was said; bits are `rig.core.channels.Flag`."""
+        values = self.column("flags")
+        return np.zeros(self.rows, np.uint32) if values is None else np.nan_to_num(values).astype(np.uint32)
+
+    def unit(self, name: str) -> str:
+        """The unit a column carries, "" when none is said."""
+        return self._about(name, b"unit")
+
+    def meaning(self, name: str) -> str:
+        """What a column says it is, "" when nothing."""
+        return self._about(name, b"meaning")
+
+    def _about(self, name: str, key: bytes) -> str:
+        field: pa.Field = self.samples.layout.field(name)
+        return str((field.metadata or {}).get(key, b"").decode(errors="replace"))
+
+
+def _ratio(path: Path, about: Mapping[str, Any]) -> float:
+    gear = about.get("gear")
+    ratio = gear.get("ratio") if isinstance(gear, dict) else None
+    if not isinstance(ratio, int | float) or isinstance(ratio, bool) or not math.isfinite(ratio) or ratio <= 0:
+        raise UsageError(f"{path / manifests.NAME}: gear.ratio is {json.dumps(ratio)}, expected a number above 0")
+    return float(ratio)
+
+
+def _procedure(path: Path, about: Mapping[str, Any]) -> str:
+    procedure = about.get("procedure")
+    if not isinstance(procedure, str) or not procedure:
+        raise UsageError(f"{path / manifests.NAME}: procedure is {json.dumps(procedure)}, expected its name")
+    return procedure.replace("-", "_")
+
+
+def _refuse_backward_time(run: Run) -> None:
+    t = run.column("t")
+    if t is None:
+        return
+    t = t[np.isfinite(t)]
+    back = np.flatnonzero(np.diff(t) < 0)
+    if back.size:
+        i = int(back[0])
+        raise UsageError(
+            f"{run.samples.path}: time runs backwards after row {i} ({t[i]:.6f} s, then {t[i + 1]:.6f} s); "
+            "expected rows in the order they were measured"
+        )

@@ -1,0 +1,152 @@
+"""Does a run folder keep its promises? Hashes, row counts, time order, gaps, flags, journal against archive, read-only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rig.core.channels import Flag
+from rig.core.errors import HdrigError
+from rig.runfile import archive, manifest
+from rig.runfile.finalise import describe, is_closed, raw_files
+from rig.runfile.journal import JournalReader, journal_files
+from rig.runfile.process import is_being_made
+from rig.runfile.run import Run
+from rig.runfile.samples import Archive
+
+GAP = 1.5  # periods between two rows that are still neighbours
+
+
+class Finding(NamedTuple):
+    """One thing found. `level` is "error" (a promise is broken), "warning" (look at it) or "note"."""
+
+    level: str
+    check: str
+    sentence: str
+
+
+def verify(folder: Path) -> list[Finding]:
+    """Everything worth saying about a run; no "error" among it means the promises are kept. Raises UsageError when it
+    is no run folder at all.
+    """
+    about = manifest.read(folder)
+    findings = [*_status(about), *_hashes(folder, about), *_read_only(folder, about)]
+    try:
+        run = Run.open(folder)
+    except HdrigError as error:
+        return [*findings, Finding("error", "samples", str(error))]
+    for check in (_rows, _gaps, _flags, _backend, _journal):
+        findings += check(run)
+    return findings
+
+
+def _status(about: Mapping[str, Any]) -> Iterator[Finding]:
+    if is_closed(about) or about.get("backend") == "imported" or "status" not in about:
+        return
+    if is_being_made(about):
+        yield Finding("warning", "status", f"process {about['process']['pid']} is still making this run")
+    else:
+        yield Finding("error", "status", "the run was never closed; hdrig recover makes it readable")
+
+
+def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
+    files = about.get("files", {})
+    if not files:
+        yield Finding("note", "hashes", "the manifest holds no hashes: whether a file was changed cannot be told")
+    for name, said in files.items():
+        path = folder / name
+        if not path.exists():
+            yield Finding("error", "hashes", f"{name} is in the manifest and not in the folder")
+        elif describe(path)["sha256"] != said.get("sha256"):
+            yield Finding("error", "hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's")
+
+
+def _read_only(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
+    if not is_closed(about):
+        return
+    for path in raw_files(folder):
+        if path.stat().st_mode & 0o222:
+            yield Finding("warning", "read-only", f"{path.name} can be written to; raw files should be read-only")
+
+
+def _rows(run: Run) -> Iterator[Finding]:
+    said = run.manifest.get("files", {}).get(archive.NAME, {}).get("rows")
+    if said is not None and said != run.rows:
+        yield Finding("error", "rows", f"{run.rows} rows, the manifest says {said}")
+
+
+def _gaps(run: Run) -> Iterator[Finding]:
+    """Steps of `t` longer than 1.5 periods; a cycle the loop said it missed, or a stale latch before it, explains one."""
+    t = run.column("t")
+    if t is None or t.size < 3:
+        return
+    dt = np.diff(t)
+    period = float(np.median(dt[np.isfinite(dt)]))
+    gaps = np.flatnonzero(dt > GAP * period)
+    if not gaps.size:
+        return
+    flags = run.flags
+    told = (flags[gaps + 1] & int(Flag.MISSED)) | (flags[gaps] & int(Flag.STALE_M))
+    for level, found, why in (
+        ("warning", gaps[told > 0], "flagged by the loop"),
+        ("error", gaps[told == 0], "unexplained"),
+    ):
+        if found.size:
+            worst = int(found[np.argmax(dt[found])])
+            yield Finding(
+                level,
+                "gaps",
+                f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why}; "
+                f"the longest is {dt[worst] * 1e3:.4g} ms at t = {t[worst]:.3f} s",
+            )
+
+
+def _flags(run: Run) -> Iterator[Finding]:
+    flags = run.flags
+    for flag in Flag:
+        count = int(np.count_nonzero(flags & int(flag)))
+        if count and flag is not Flag.SIMULATED:
+            yield Finding("note", "flags", f"{count} of {run.rows} rows are flagged {flag.name}")
+
+
+def _backend(run: Run) -> Iterator[Finding]:
+    """Simulated and measured rows never mix, and the manifest says which they are."""
+    if not run.has("flags") or not run.rows or run.manifest.get("backend") in (None, "imported"):
+        return
+    simulated = int(np.count_nonzero(run.flags & int(Flag.SIMULATED)))
+    if simulated != (run.rows if run.simulated else 0):
+        backend = run.manifest["backend"]
+        yield Finding("error", "backend", f"{simulated} of {run.rows} rows are simulated, the backend is {backend!r}")
+
+
+def _journal(run: Run) -> Iterator[Finding]:
+    """Row by row the same in the journal and in the archive made from it."""
+    if not journal_files(run.path):
+        return
+    reader = JournalReader(run.path)
+    if not isinstance(run.samples, Archive):
+        return
+    row = 0
+    made = archive.row_groups(reader)
+    for kept in run.samples.row_groups():
+        table = next(made, None)
+        if table is None or not table.equals(kept):
+            yield Finding("error", "journal", f"journal and {archive.NAME} differ from row {row} on")
+            return
+        row += kept.num_rows
+    if next(made, None) is not None:
+        yield Finding("error", "journal", f"the journal has rows after row {row}, where {archive.NAME} ends")
+    yield from _journal_state(reader)
+
+
+def _journal_state(reader: JournalReader) -> Iterator[Finding]:
+    if reader.torn_bytes:
+        yield Finding("note", "journal", f"{reader.torn_bytes} bytes of a half written batch are left out")
+    if reader.missing:
+        yield Finding("error", "journal", f"{reader.missing} rows are missing between two batches of the journal")
+
+
+Check = Callable[[Run], Iterator[Finding]]
