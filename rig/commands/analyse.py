@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit, HdrigError, UsageError
 
 if TYPE_CHECKING:
     from rig.analysis.result import Result
@@ -46,14 +46,19 @@ def analyse_folder(folder: Path, out: Path | None = None) -> Result:
     from rig.report.page import write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
+    from rig.runfile.finalise import add_derived
     from rig.runfile.run import Run
 
     run = Run.open(folder)
     result = analyse(run)
     target = folder if out is None else out / run.name
-    target.mkdir(parents=True, exist_ok=True)
-    write_result(target, result)
-    write(target, run.manifest, run.timing, read_events(folder), result)
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        made = [write_result(target, result), write(target, run.manifest, run.timing, read_events(folder), result)]
+    except OSError as error:
+        raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
+    if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
+        add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
     return result
 
 
