@@ -1,8 +1,8 @@
-"""Does a run folder keep its promises? Hashes, row counts, time order, gaps, flags, journal against archive, read-only."""
+"""Does a run keep its promises? Hashes, row counts, time order, gaps, flags, journal against archive, read-only."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -79,29 +79,19 @@ def _rows(run: Run) -> Iterator[Finding]:
 
 
 def _gaps(run: Run) -> Iterator[Finding]:
-    """Steps of `t` longer than 1.5 periods; a cycle the loop said it missed, or a stale latch before it, explains one."""
+    """Steps of `t` longer than 1.5 periods; explained by a cycle the loop said it missed, or a stale latch before."""
     t = run.column("t")
     if t is None or t.size < 3:
         return
     dt = np.diff(t)
-    period = float(np.median(dt[np.isfinite(dt)]))
-    gaps = np.flatnonzero(dt > GAP * period)
-    if not gaps.size:
-        return
-    flags = run.flags
+    period = float(np.median(dt[dt > 0])) if (dt > 0).any() else np.inf  # equal times are stale rows
+    gaps, flags = np.flatnonzero(dt > GAP * period), run.flags
     told = (flags[gaps + 1] & int(Flag.MISSED)) | (flags[gaps] & int(Flag.STALE_M))
-    for level, found, why in (
-        ("warning", gaps[told > 0], "flagged by the loop"),
-        ("error", gaps[told == 0], "unexplained"),
-    ):
+    for level, found, why in (("warning", gaps[told > 0], "flagged"), ("error", gaps[told == 0], "unexplained")):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
-            yield Finding(
-                level,
-                "gaps",
-                f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why}; "
-                f"the longest is {dt[worst] * 1e3:.4g} ms at t = {t[worst]:.3f} s",
-            )
+            many = f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why} by the loop"
+            yield Finding(level, "gaps", f"{many}; the longest is {dt[worst] * 1e3:.4g} ms at t = {t[worst]:.3f} s")
 
 
 def _flags(run: Run) -> Iterator[Finding]:
@@ -126,9 +116,9 @@ def _journal(run: Run) -> Iterator[Finding]:
     """Row by row the same in the journal and in the archive made from it."""
     if not journal_files(run.path):
         return
-    reader = JournalReader(run.path)
     if not isinstance(run.samples, Archive):
         return
+    reader = JournalReader(run.path)
     row = 0
     made = archive.row_groups(reader)
     for kept in run.samples.row_groups():
@@ -147,6 +137,3 @@ def _journal_state(reader: JournalReader) -> Iterator[Finding]:
         yield Finding("note", "journal", f"{reader.torn_bytes} bytes of a half written batch are left out")
     if reader.missing:
         yield Finding("error", "journal", f"{reader.missing} rows are missing between two batches of the journal")
-
-
-Check = Callable[[Run], Iterator[Finding]]

@@ -1,0 +1,68 @@
+"""MCAP: one JSON message a sample on one topic, which Foxglove and PlotJuggler both plot as they are.
+
+A batch of samples in one message would be a quarter of the size, and neither plots the inside of one.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+from mcap.writer import Writer
+
+from rig.core.errors import UsageError
+from rig.runfile.run import Run
+
+TOPIC = "/rig/sample"
+
+
+def write(run: Run, path: Path) -> None:
+    """Write every measured channel of `run`; a value that was not measured is left out of its message.
+
+    Log time is UTC where the run says when it started, else time since then. Raises UsageError for a run without `t`.
+    """
+    if not run.has("t"):
+        raise UsageError(f"{run.name} has no t: an MCAP message needs its time; csv and hdf5 do not")
+    with open(path, "wb") as file:
+        writer = Writer(file)
+        writer.start(library="hdrig")
+        schema = writer.register_schema("hdrig.Sample", "jsonschema", json.dumps(_schema(run)).encode())
+        said = {"simulated": "true" if run.simulated else "false"}
+        channel = writer.register_channel(TOPIC, "json", schema, said)
+        for number, (at, message) in enumerate(_messages(run)):
+            writer.add_message(channel, at, json.dumps(message).encode(), at, sequence=number & 0xFFFFFFFF)
+        writer.add_metadata("hdrig", {**said, "procedure": run.procedure, "manifest": json.dumps(run.manifest)})
+        writer.finish()
+
+
+def _schema(run: Run) -> dict[str, Any]:
+    """JSON schema of one message; units stand in the descriptions, the only place it has for them."""
+    fields = {}
+    for name in _names(run):
+        kind = "integer" if pa.types.is_integer(run.samples.layout.field(name).type) else "number"
+        fields[name] = {"type": kind, "description": f"[{run.unit(name)}] {run.meaning(name)}", "unit": run.unit(name)}
+    title = "SIMULATED sample" if run.simulated else "sample"
+    return {"type": "object", "title": title, "properties": fields}
+
+
+def _names(run: Run) -> list[str]:
+    return [name for name in run.channels if run.has(name)]
+
+
+def _messages(run: Run) -> Iterator[tuple[int, dict[str, Any]]]:
+    """(log time [ns], values) of each sample that has a time."""
+    names, start = _names(run), _start_ns(run)
+    for batch in run.samples.batches():
+        for values in zip(*(batch.column(name).to_pylist() for name in names), strict=True):
+            message = {name: value for name, value in zip(names, values, strict=True) if value is not None}
+            if "t" in message:
+                yield start + round(message["t"] * 1e9), message
+
+
+def _start_ns(run: Run) -> int:
+    said = run.manifest.get("started_utc")
+    return round(datetime.fromisoformat(said).timestamp() * 1e6) * 1000 if said else 0
