@@ -66,9 +66,9 @@ class Loop:
         only after the drive was made safe.
         """
         try:
+            self.instruments.start()
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable()
-            self.instruments.start()
             self.supervisor.act(Act.RUN, procedure.name)
             ending = self._tick(procedure.steps(setting), setting)
         except HdrigError as error:

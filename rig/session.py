@@ -5,14 +5,12 @@ from __future__ import annotations
 import contextlib
 import getpass
 import platform
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from rig import __version__
 from rig.bench import Bench, ClockName
 from rig.control.filter import SpeedFilter
 from rig.core.errors import Exit, HdrigError, NotReady
@@ -26,6 +24,7 @@ from rig.recorder import Recorder
 from rig.runfile.events import EventLog
 from rig.runfile.finalise import finalise
 from rig.runfile.folder import create
+from rig.software import software
 from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
 
@@ -130,7 +129,7 @@ class Session:
         if ending.finding is not None:
             self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
         self._end_log()  # its hash is taken next: nothing may be added after
-        finalise(folder, ending.status, ending.reason, timing=timing.summary(), facts={"exit": int(ending.exit)})
+        finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
 
     def _end_log(self) -> None:
         if self._log is not None:
@@ -184,22 +183,6 @@ def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float,
         ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
         ("torque", envelope.torque, limits.torque, "N·m", 1.0),
     ]
-
-
-def software() -> dict[str, Any]:
-    """Version, commit and whether the tree had changes, of the code that made the run."""
-    here = Path(__file__).parent
-
-    def git(*args: str) -> str | None:
-        with contextlib.suppress(OSError, subprocess.SubprocessError):
-            done = subprocess.run(["git", *args], cwd=here, capture_output=True, text=True, timeout=5, check=True)
-            return done.stdout.strip()
-        return None
-
-    inside = git("ls-files", "session.py") == "session.py"  # else hdrig lies in somebody else's repository
-    commit = git("rev-parse", "HEAD") if inside else None
-    dirty = bool(git("status", "--porcelain", "--untracked-files=no")) if commit else None
-    return {"version": __version__, "commit": commit, "dirty": dirty, "python": platform.python_version()}
 
 
 def operator() -> str | None:

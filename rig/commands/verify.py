@@ -11,7 +11,9 @@ from rig.core.errors import Exit, HdrigError
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig verify`."""
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it")
+    parser.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

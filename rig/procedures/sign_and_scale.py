@@ -146,6 +146,6 @@ def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Pro
         seen = " (no torque sensor)"
     sentence = (
         f"ratio {ratio:.3f} (declared {setting.ratio:g}), both encoders positive, breakaway {breakaway:.2f} N·m, "
-        f"shaft torque forward minus reverse {difference:+.2f} ± {2 * error:.2f} N·m{seen}"
+        f"shaft torque forward minus reverse {difference:+.3f} ± {2 * error:.3f} N·m{seen}"
     )
     return Proof(ratio, breakaway, difference, error, sentence)
