@@ -4,7 +4,7 @@
 |---|---|
 | mapping, channel, strict, units | the mapping file, read so that no key is overlooked |
 | readers/ | one format a file: the wanted columns, 1-D |
-| table, signatures | what readers share: finding a column, telling a file by its first bytes |
+| table, signatures, reading | what readers share: finding a column, telling a file by its first bytes, damage |
 | convert, unwrap, timing | columns → SI channels |
 | refuse, plausible | what cannot be meant, one sentence each |
 | write | channels → run folder, through rig.runfile |
@@ -45,16 +45,18 @@ def import_file(source: Path, mapping: Path | str, out: Path, software: Mapping[
     the run. Raises UsageError, one sentence, for anything that cannot be meant: then nothing was written. Raises
     NotReady when `out` cannot be written to.
     """
-    from rig.runfile.importing import convert, plausible, signatures, write
+    import numpy as np
+
+    from rig.runfile.importing import convert, plausible, reading, write
     from rig.runfile.importing import mapping as mappings
 
     kind, read = reader(source)
     wanted = mappings.load_mapping(mapping)
-    signatures.check_kind(source, kind)
-    table = read(source, wanted.columns, wanted.csv)
+    table = reading.read_table(source, kind, read, wanted)
     wanted = convert.with_file_units(wanted, table.units, source.name)
-    run = convert.convert(table, wanted, source.name)
-    plausible.check(run, wanted, source.name)
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd numbers are refused by what they amount to
+        run = convert.convert(table, wanted, source.name)
+        plausible.check(run, wanted, source.name)
     return write.write_run(run, wanted, source, out, software)
 
 

@@ -51,7 +51,7 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
     Raises UsageError, with row and number, where a column cannot be meant.
     """
     rows = refuse.same_length(table.columns, file)
-    result = Converted({}, [])
+    result = Converted({}, list(table.notes))
     keep = np.ones(rows, dtype=bool)
     if clock := mapping.channels.get("t"):
         keep = _time(result, table, clock, file)

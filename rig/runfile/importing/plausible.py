@@ -19,6 +19,8 @@ from rig.runfile.importing.timing import EPOCH_END
 Array = npt.NDArray[Any]
 
 PERIOD = (2e-6, 0.5)  # s: 1 kHz stamped in s and read as ms is 1 µs; 1 kHz stamped in ms and read as s is 1 s
+SPAN = 3.2e7  # s: a year; one wrong stamp at the end of a run is not a gap
+ANGLE = 1e9  # rad: beyond it a float64 no longer holds a fiftieth of an arcsec
 SPEED = 20_000.0  # rpm: above the input speed of any strain-wave gear on sale (14 000 rpm, size 5)
 WINDOW = 50  # rows over which a speed is taken: stamps jitter, so two neighbours say little
 TORQUE = {"tau_m": 300.0, "tau_l": 20_000.0, "tau_ask": 300.0, "tau_applied": 300.0}  # N·m: twice a size 100's peak
@@ -35,7 +37,7 @@ HINTS = ((57.2958, "180/π: one angle is in deg, the other in rad"), (6.28319, "
 def check(run: Converted, mapping: Mapping, file: str) -> None:
     """Raises UsageError for the first thing that cannot be; adds to `run.notes` what was measured or waived."""
     checks = {
-        "epoch": _epoch, "period": _period, "still": _still, "speed": _speed, "ratio": _ratio, "torque": _torque,
+        "epoch": _epoch, "period": _period, "still": _angle, "speed": _speed, "ratio": _ratio, "torque": _torque,
         "stiffness": _stiffness,
     }  # fmt: skip
     for name, one in checks.items():
@@ -58,6 +60,8 @@ def _epoch(run: Converted, mapping: Mapping) -> str:
 
 def _period(run: Converted, mapping: Mapping) -> str:
     period = run.time.get("period_median")
+    if run.time.get("span", 0.0) > SPAN:
+        return f"t spans {run.time['span']:.4g} s; expected less than a year ({SPAN:g} s)"
     if period is None or PERIOD[0] < period < PERIOD[1]:
         return ""
     return (
@@ -66,11 +70,13 @@ def _period(run: Converted, mapping: Mapping) -> str:
     )
 
 
-def _still(run: Converted, mapping: Mapping) -> str:
-    """An angle that never changes where the experiment moves it: a dead encoder, or the wrong column."""
+def _angle(run: Converted, mapping: Mapping) -> str:
+    """An angle beyond reason, or one that stands where the experiment moves it: a dead encoder, or the wrong column."""
     locked = mapping.conditions.get("output_locked", False)
     for name in ("theta_m", "theta_l"):
         values = run.values(name)
+        if values is not None and (peak := float(np.abs(values).max())) > ANGLE:
+            return f"{name} reaches {peak:.4g} rad; expected below {ANGLE:g} rad (what wraps or overflows there?)"
         if values is None or np.ptp(values) > 0 or mapping.procedure == "standstill" or (locked and name == "theta_l"):
             continue
         mend = "conditions.output_locked = true" if name == "theta_l" else "procedure = 'standstill'"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
@@ -18,12 +16,6 @@ from rig.runfile.importing.strict import nearest
 
 Array = npt.NDArray[Any]
 
-# What the libraries of others raise over damaged bytes. Not Exception: a fault of ours shall show as one.
-DAMAGED = (
-    ArithmeticError, AssertionError, AttributeError, BufferError, EOFError, LookupError, MemoryError, OSError,
-    RuntimeError, TypeError, ValueError, UnboundLocalError, struct.error, zlib.error,
-)  # fmt: skip
-
 
 class Table(NamedTuple):
     """The columns asked for, each 1-D: whole numbers, floats (null = NaN), dates, or what else the file holds."""
@@ -31,9 +23,11 @@ class Table(NamedTuple):
     columns: dict[str, Array]
     units: dict[str, str]  # as the file states them
     started: datetime | None = None  # when t = 0 was, where the file states it
+    notes: tuple[str, ...] = ()  # what the reader noticed and let pass
 
 
 Reader = Callable[[Path, Sequence[str], Dialect], Table]
+"""(file, columns wanted, [csv]) → those columns. Raises UsageError, and for a damaged file what its library raises."""
 
 
 def locate(names: Iterable[str], wanted: Sequence[str], file: str) -> dict[str, str]:
@@ -56,18 +50,6 @@ def locate(names: Iterable[str], wanted: Sequence[str], file: str) -> dict[str, 
             )
         found[column] = paths[0]
     return found
-
-
-def damaged(file: Path, kind: str, error: BaseException) -> UsageError:
-    """The sentence for a file its library could not read to the end."""
-    size = file.stat().st_size
-    reason = " ".join(str(error).split())[:200] or type(error).__name__
-    return UsageError(f"{file.name} ({size} bytes) is damaged or cut short and cannot be read as {kind}: {reason}")
-
-
-def not_installed(package: str, kind: str) -> UsageError:
-    """The sentence for an optional package that is absent."""
-    return UsageError(f"reading {kind} needs the package {package}; install it with: pip install 'hdrig[exchange]'")
 
 
 def flat(values: Any) -> Array | None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import shutil
-import stat
 from collections.abc import Mapping as Dict
 from pathlib import Path
 from typing import Any
@@ -13,10 +11,11 @@ from typing import Any
 import pyarrow as pa
 
 from rig import __version__
-from rig.core.errors import NotReady
+from rig.core.errors import NotReady, UsageError
 from rig.runfile import manifest as manifests
 from rig.runfile.archive import NAME as SAMPLES
 from rig.runfile.archive import open_parquet
+from rig.runfile.finalise import READ_ONLY, describe
 from rig.runfile.folder import create
 from rig.runfile.importing.convert import Converted
 from rig.runfile.importing.mapping import Mapping
@@ -26,14 +25,15 @@ MAPPING_COPY = "import.toml"
 
 def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, software: Dict[str, Any] | None) -> Path:
     """Make the folder under `root`; returns it. Raises NotReady when it cannot be written; then nothing is left."""
-    about = manifest_of(run, mapping, source, software)
+    with manifests.told(UsageError, f"{source} cannot be read any more"):
+        about = manifest_of(run, mapping, source, software)
     folder = create(root, mapping.procedure, about)
     done = False
     try:
         with manifests.told(NotReady, f"the imported run cannot be written to {folder}"):
             manifests.write_atomic(folder / MAPPING_COPY, mapping.text.encode())
             rows = _write_samples(folder, run)
-            _close(folder, rows, known_start=run.utc is not None)
+            _close(folder, run, rows, source.name)
         done = True
     finally:
         if not done:
@@ -52,8 +52,7 @@ def manifest_of(run: Converted, mapping: Mapping, source: Path, software: Dict[s
         "software": dict(software or {"version": __version__}),
         "import": {
             "source": source.name,
-            "sha256": sha256(source),
-            "bytes": source.stat().st_size,
+            **describe(source),
             "mapping": mapping.source,
             "description": mapping.description,
             "imported_utc": manifests.utc_now(),
@@ -88,19 +87,13 @@ def _write_samples(folder: Path, run: Converted) -> int:
     return int(table.num_rows)
 
 
-def _close(folder: Path, rows: int, known_start: bool) -> None:
+def _close(folder: Path, run: Converted, rows: int, source: str) -> None:
     """Hashes, read-only, completed. A start nobody knows is taken out: the folder's date is when it was imported."""
-    files: dict[str, dict[str, Any]] = {}
-    for name in (SAMPLES, MAPPING_COPY):
-        path = folder / name
-        files[name] = {"sha256": sha256(path), "bytes": path.stat().st_size}
-        path.chmod(stat.S_IRUSR | stat.S_IRGRP | stat.S_IROTH)
+    paths = [folder / SAMPLES, folder / MAPPING_COPY]
+    files = {path.name: describe(path) for path in paths}
     files[SAMPLES]["rows"] = rows
-    unknown = {} if known_start else {"started_utc": None, "clock": None}
-    manifests.update(folder, status="completed", files=files, process=None, **unknown)
-
-
-def sha256(path: Path) -> str:
-    """Of a whole file, hexadecimal."""
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    for path in paths:
+        path.chmod(READ_ONLY)
+    unknown = {} if run.utc is not None else {"started_utc": None, "clock": None}
+    held = {"files": files, "rows": rows, "duration": run.time.get("span")}
+    manifests.update(folder, **held, **unknown, process=None, status="completed", exit_reason=f"imported from {source}")

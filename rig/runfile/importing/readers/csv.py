@@ -11,7 +11,7 @@ from pathlib import Path
 from rig.core.errors import UsageError
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.readers.parquet import to_numpy
-from rig.runfile.importing.table import DAMAGED, Table, damaged, locate
+from rig.runfile.importing.table import Table, locate
 
 CHUNK = 1 << 20  # bytes
 LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
@@ -25,36 +25,38 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     found = locate(names, wanted, path.name)
     lines = dialect.skip_rows + (0 if dialect.names else 1) + (1 if dialect.units_row else 0)
 
-    import pyarrow as pa
     import pyarrow.csv as pacsv
 
-    try:
-        table = pacsv.read_csv(
-            path,
-            # one thread: only then does the library say which row a complaint is about
-            pacsv.ReadOptions(
-                use_threads=False,
-                block_size=4 * LONGEST_LINE,
-                skip_rows=lines,
-                column_names=names,
-                encoding=dialect.encoding,
-            ),
-            pacsv.ParseOptions(delimiter=dialect.delimiter),
-            pacsv.ConvertOptions(
-                include_columns=list(dict.fromkeys(found.values())),
-                decimal_point=dialect.decimal,
-                strings_can_be_null=True,
-            ),
-        )
-    except pa.ArrowInvalid as error:
-        raise damaged(path, f"CSV ({len(names)} columns in the header)", error) from None
-    except DAMAGED as error:
-        raise damaged(path, "CSV", error) from None
+    table = pacsv.read_csv(
+        path,
+        # one thread: only then does the library say which row a complaint is about
+        pacsv.ReadOptions(
+            use_threads=False,
+            block_size=4 * LONGEST_LINE,
+            skip_rows=lines,
+            column_names=names,
+            encoding=dialect.encoding,
+        ),
+        pacsv.ParseOptions(delimiter=dialect.delimiter),
+        pacsv.ConvertOptions(
+            include_columns=list(dict.fromkeys(found.values())),
+            decimal_point=dialect.decimal,
+            strings_can_be_null=True,
+        ),
+    )
     stated = dict(zip(names, units, strict=False))
     return Table(
         {name: to_numpy(table[full]) for name, full in found.items()},
         {name: stated[full] for name, full in found.items() if stated.get(full)},
+        notes=() if ends_a_line(path) else ("the last line has no line end: the file may be cut short in it",),
     )
+
+
+def ends_a_line(path: Path) -> bool:
+    """False when a kill may have cut the last number in two without that showing."""
+    with path.open("rb") as file:
+        file.seek(-4, 2)
+        return b"\n" in file.read()
 
 
 def check_text(path: Path, encoding: str) -> None:
@@ -97,7 +99,7 @@ def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:
     try:
         cells = [[c.strip() for c in row] for row in csv.reader(lines, delimiter=dialect.delimiter)]
     except csv.Error as error:
-        raise damaged(path, "CSV", error) from None
+        raise ValueError(f"header: {error}") from None
     names = list(dialect.names) or cells[0]
     units = cells[-1] if dialect.units_row else []
     if dialect.names and len(cells[0]) != len(names):

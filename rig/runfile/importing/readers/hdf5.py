@@ -10,25 +10,20 @@ from typing import Any
 import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
-from rig.runfile.importing.table import DAMAGED, Array, Table, damaged, locate, not_installed
+from rig.runfile.importing.table import Array, Table, locate
 
 WIDEST = 256  # columns of a matrix offered one by one; what is wider is no table of channels
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
-    try:
-        import h5py
-    except ImportError:
-        raise not_installed("h5py", "HDF5") from None
-    try:
-        with h5py.File(path, "r") as file:
-            offered = dict(columns(file, h5py))
-            found = locate(offered, wanted, path.name)
-            values = {name: offered[full][0]() for name, full in found.items()}
-            units = {name: offered[full][1] for name, full in found.items() if offered[full][1]}
-    except DAMAGED as error:
-        raise damaged(path, "HDF5", error) from None
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        offered = dict(columns(file, h5py))
+        found = locate(offered, wanted, path.name)
+        values = {name: offered[full][0]() for name, full in found.items()}
+        units = {name: offered[full][1] for name, full in found.items() if offered[full][1]}
     return Table(values, units)
 
 

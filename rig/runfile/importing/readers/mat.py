@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.signatures import HDF5
-from rig.runfile.importing.table import DAMAGED, Array, Table, damaged, flat, locate, not_installed
+from rig.runfile.importing.table import Array, Table, flat, locate
 
 WIDEST = 256  # columns of a matrix offered one by one
 
@@ -29,30 +29,21 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
 def _read_old(path: Path, wanted: Sequence[str]) -> Table:
     from scipy.io import loadmat
 
-    try:
-        variables = loadmat(path, verify_compressed_data_integrity=True)
-        offered = dict(c for name, v in variables.items() if not name.startswith("__") for c in _spread(name, v))
-    except DAMAGED as error:
-        raise damaged(path, "MAT", error) from None
+    variables = loadmat(path, verify_compressed_data_integrity=True)
+    offered = dict(c for name, v in variables.items() if not name.startswith("__") for c in _spread(name, v))
     found = locate(offered, wanted, path.name)
     return Table({name: offered[full] for name, full in found.items()}, {})
 
 
 def _read_new(path: Path, wanted: Sequence[str]) -> Table:
-    try:
-        import h5py
-    except ImportError:
-        raise not_installed("h5py", "MAT v7.3") from None
-    try:
-        with h5py.File(path, "r") as file:
-            offered = dict(_datasets(file, h5py))
-            found = locate(offered, wanted, path.name)
-            columns = {}
-            for name, full in found.items():
-                item, j = offered[full]
-                columns[name] = np.asarray(item[()]).reshape(-1) if j is None else np.asarray(item[j])
-    except DAMAGED as error:
-        raise damaged(path, "MAT v7.3", error) from None
+    import h5py
+
+    columns = {}
+    with h5py.File(path, "r") as file:
+        offered = dict(_datasets(file, h5py))
+        for name, full in locate(offered, wanted, path.name).items():
+            item, j = offered[full]
+            columns[name] = np.asarray(item[()]).reshape(-1) if j is None else np.asarray(item[j])
     return Table(columns, {})
 
 

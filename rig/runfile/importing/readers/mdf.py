@@ -3,7 +3,6 @@ in several groups. Units and the start time are the file's."""
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,29 +10,23 @@ from typing import Any
 import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
-from rig.runfile.importing.table import DAMAGED, Array, Table, damaged, locate, not_installed
+from rig.runfile.importing.table import Array, Table, locate
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the library warns of optional parts of its own that are not installed
-        try:
-            from asammdf import MDF
-            from asammdf.blocks.utils import MdfException
-        except ImportError:
-            raise not_installed("asammdf", "MDF") from None
-        try:
-            with MDF(path) as file:
-                offered = _channels(file)
-                found = locate(offered, wanted, path.name)
-                signals = {
-                    name: file.get(group=offered[full][0], index=offered[full][1]) for name, full in found.items()
-                }
-                columns = {name: _values(signal) for name, signal in signals.items()}
-                started = file.header.start_time
-        except (*DAMAGED, MdfException) as error:
-            raise damaged(path, "MDF", error) from None
+    from asammdf import MDF
+    from asammdf.blocks.utils import MdfException
+
+    try:
+        with MDF(path) as file:
+            offered = _channels(file)
+            found = locate(offered, wanted, path.name)
+            signals = {name: file.get(group=offered[full][0], index=offered[full][1]) for name, full in found.items()}
+            columns = {name: _values(signal) for name, signal in signals.items()}
+            started = file.header.start_time
+    except MdfException as error:
+        raise ValueError(str(error)) from None
     return Table(columns, {name: s.unit for name, s in signals.items() if s.unit}, started)
 
 

@@ -10,24 +10,21 @@ import numpy as np
 
 from rig.core.errors import UsageError
 from rig.runfile.importing.mapping import Dialect
-from rig.runfile.importing.table import DAMAGED, Array, Table, damaged, locate
+from rig.runfile.importing.table import Array, Table, locate
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
     import pyarrow.parquet as pq
 
-    try:
-        with pq.ParquetFile(path) as file:
-            schema = file.schema_arrow
-            twice = sorted({n for n in schema.names if schema.names.count(n) > 1 and n in wanted})
-            if twice:
-                raise UsageError(f"{path.name}: column '{twice[0]}' stands {schema.names.count(twice[0])} times")
-            found = locate(schema.names, wanted, path.name)
-            table = file.read(columns=list(found.values()))
-            columns = {name: to_numpy(table[full]) for name, full in found.items()}
-    except DAMAGED as error:
-        raise damaged(path, "Parquet", error) from None
+    with pq.ParquetFile(path, page_checksum_verification=True) as file:
+        schema = file.schema_arrow
+        twice = sorted({n for n in schema.names if schema.names.count(n) > 1 and n in wanted})
+        if twice:
+            raise UsageError(f"{path.name}: column '{twice[0]}' stands {schema.names.count(twice[0])} times")
+        found = locate(schema.names, wanted, path.name)
+        table = file.read(columns=list(found.values()))
+        columns = {name: to_numpy(table[full]) for name, full in found.items()}
     units = {name: (schema.field(full).metadata or {}).get(b"unit", b"") for name, full in found.items()}
     return Table(columns, {name: unit.decode("utf-8", "replace") for name, unit in units.items() if unit})
 
@@ -42,6 +39,6 @@ def to_numpy(column: Any) -> Array:
         return to_numpy(column.cast(kind.value_type))
     if pa.types.is_timestamp(kind):
         return np.asarray(column.cast(pa.timestamp("ns", kind.tz)).to_numpy(), dtype="datetime64[ns]")
-    if pa.types.is_decimal(kind) or pa.types.is_boolean(kind) or (pa.types.is_null(kind)):
+    if pa.types.is_decimal(kind) or pa.types.is_boolean(kind) or pa.types.is_null(kind):
         return np.asarray(pc.cast(column, pa.float64()).to_numpy(), dtype=np.float64)
     return np.asarray(column.to_numpy())

@@ -11,23 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
-from rig.runfile.importing.table import DAMAGED, Table, damaged, locate, not_installed
+from rig.runfile.importing.table import Table, locate
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
-    try:
-        from nptdms import TdmsFile
-    except ImportError:
-        raise not_installed("nptdms", "TDMS") from None
-    try:
-        with TdmsFile.open(path) as file:
-            offered = {
-                f"{group.name}/{channel.name}": channel for group in file.groups() for channel in group.channels()
-            }
-            found = locate(offered, wanted, path.name)
-            columns = {name: np.asarray(offered[full][:]).reshape(-1) for name, full in found.items()}
-            units = {name: str(offered[full].properties.get("unit_string", "")) for name, full in found.items()}
-    except DAMAGED as error:
-        raise damaged(path, "TDMS", error) from None
+    from nptdms import TdmsFile
+
+    with TdmsFile.open(path) as file:
+        if file.file_status.incomplete_final_segment:
+            raise EOFError("its last segment is not all there")
+        offered = {f"{group.name}/{channel.name}": channel for group in file.groups() for channel in group.channels()}
+        found = locate(offered, wanted, path.name)
+        columns = {name: np.asarray(offered[full][:]).reshape(-1) for name, full in found.items()}
+        units = {name: str(offered[full].properties.get("unit_string", "")) for name, full in found.items()}
     return Table(columns, {name: unit for name, unit in units.items() if unit})
