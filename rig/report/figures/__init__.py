@@ -1,0 +1,60 @@
+"""The catalogue of figures: one figure, one file, one line here; each drawn alone to SVG or PNG from a result's curves.
+
+A figure whose curves are absent is None, never an empty frame.
+"""
+
+from __future__ import annotations
+
+import io
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from rig.report.figures import convergence, kinematic_error, orders, spectrum, split, timeline, torsion
+from rig.report.figures.canvas import STYLE, Curves, Drawing, Frame
+from rig.report.figures.svg import dress
+from rig.report.palette import LIGHT
+
+__all__ = ["CATALOGUE", "Drawing", "Frame", "png", "svg"]
+
+
+CATALOGUE: tuple[Drawing, ...] = (
+    kinematic_error.DRAWING,
+    orders.DRAWING,
+    spectrum.DRAWING,
+    convergence.DRAWING,
+    split.DRAWING,
+    torsion.DRAWING,
+    timeline.DRAWING,
+)
+
+
+def svg(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, prefix: str | None = None) -> str | None:
+    """The figure as an <svg> element, or None when its curves are absent.
+
+    Without `prefix` it is a file of its own in light colours; with one it is part of a page: ids begin with it, colours
+    are the page's variables, width is the page's to set.
+    """
+    figure = _draw(drawing, curves, frame or Frame())
+    if figure is None:
+        return None
+    text = io.StringIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return dress(text.getvalue(), prefix or "", drawing.say(curves), themed=prefix is not None)
+
+
+def png(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, scale: float = 2.0) -> bytes | None:
+    """The figure as PNG on white, `scale` dots per CSS pixel; None when its curves are absent."""
+    figure = _draw(drawing, curves, frame or Frame())
+    if figure is None:
+        return None
+    data = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(data, format="png", dpi=72 * scale, facecolor=LIGHT["paper"], metadata={"Software": None})
+    return data.getvalue()
+
+
+def _draw(drawing: Drawing, curves: Curves, frame: Frame) -> Figure | None:
+    with mpl.rc_context(STYLE):
+        return drawing.draw(curves, frame)

@@ -1,0 +1,186 @@
+"""One run and its result as one page: self-contained HTML, read without network or script, on paper as on a phone."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+
+from rig.analysis.result import Array, Estimate, Result
+from rig.report import rows, words
+from rig.report.figures import CATALOGUE, Drawing, Frame, svg
+from rig.report.numbers import companion, duration, estimate
+from rig.report.palette import DARK, LIGHT, variables
+from rig.report.tables import Table, tables
+from rig.runfile.manifest import write_atomic
+
+HERE = Path(__file__).parent
+NAME = "report.html"
+WIDE, NARROW = 760.0, 360.0  # px; each figure is drawn twice, so that its text is legible on a phone too
+
+
+def write(
+    folder: Path,
+    manifest: dict[str, Any],
+    timing: dict[str, Any] | None,
+    events: list[dict[str, Any]],
+    result: Result,
+    *,
+    run: Path | None = None,
+) -> Path:
+    """Write `folder`/report.html and return its path. The file is replaced whole or not at all. Raises OSError.
+
+    `bench.toml` is read from the run folder, where it lies there; `run` is that folder when the report goes elsewhere.
+    """
+    source = folder if run is None else run
+    text = render(manifest, timing, events, result, source.name, bench(source))
+    write_atomic(folder / NAME, text.encode())
+    return folder / NAME
+
+
+def bench(folder: Path) -> dict[str, Any]:
+    """The resolved bench of the run; empty where there is none that can be read."""
+    try:
+        return tomllib.loads((folder / "bench.toml").read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return {}
+
+
+def render(
+    manifest: Mapping[str, Any],
+    timing: Mapping[str, Any] | None,
+    events: list[dict[str, Any]],
+    result: Result,
+    run: str,
+    numbers: Mapping[str, Any],
+) -> str:
+    """The page as text. The same arguments give the same text: no clock and no random number is asked."""
+    origin = words.origin(manifest.get("backend"))
+    gear = rows.table(manifest.get("gear"))
+    timing_rows, timing_said = rows.timing(timing)
+    curves = with_numbers(result)
+    view = {
+        "run": run,
+        "origin": origin,
+        "heading": words.PROCEDURES.get(result.procedure, words.humanise(result.procedure)),
+        "serial": rows.show(gear["serial"]) if gear.get("serial") else "",
+        "facts": _facts(manifest, gear, result.curves, run),
+        "ruling": words.RULINGS[result.verdict],
+        "sentence": result.sentence,
+        "ending": words.ended_early(manifest),
+        "main": [_figure(e) for e in result.estimates],
+        "checks": [{"passed": c.passed, "sentence": c.sentence} for c in result.checks],
+        "checks_said": _checks_said(result),
+        "plots": [p for d in CATALOGUE if (p := _plot(d, curves, origin.mark)) is not None],
+        "tables": tables(result.tables),
+        "timing": timing_rows,
+        "timing_said": timing_said,
+        "conditions": rows.conditions(manifest),
+        "declared": rows.declared(manifest),
+        "cannot": result.cannot,
+        "events": rows.events(events),
+        "provenance": rows.provenance(manifest, run),
+        "files": rows.files(manifest),
+        "bench": list(rows.bench_numbers(numbers)),
+        "css": _css(run, origin.mark),
+    }
+    view["contents"] = _contents(view)
+    loader = jinja2.FileSystemLoader(HERE)
+    environment = jinja2.Environment(
+        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.get_template("page.html").render(view)
+
+
+NUMBERS = {"ke.peak_to_peak": "kinematic_error_peak_to_peak", "mse.chosen": "fourier_terms"}
+
+
+def with_numbers(result: Result) -> dict[str, Array]:
+    """The curves, and the figures that are drawn into them: a figure and its text must not say different numbers."""
+    found = {e.name: e.value for e in result.estimates}
+    numbers = {curve: np.array([found[name]]) for curve, name in NUMBERS.items() if name in found}
+    return numbers | result.curves
+
+
+def _figure(found: Estimate) -> dict[str, str]:
+    text = estimate(found.value, found.ci95, found.unit)
+    mark = next((m for m in (" ± ", " (") if m in text and text[0] != "("), "")
+    value, _, spread = text.partition(mark) if mark else (text, "", "")
+    return {
+        "label": found.label,
+        "value": value,
+        "spread": mark + spread,
+        "also": companion(found.value, found.ci95, found.unit),
+        "how": found.how,
+        "definition": words.definition(found.name),
+    }
+
+
+def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, Any] | None:
+    wide = svg(drawing, curves, Frame(WIDE, mark), prefix=f"{drawing.name}-w-")
+    narrow = svg(drawing, curves, Frame(NARROW, mark), prefix=f"{drawing.name}-n-")
+    if wide is None or narrow is None:
+        return None
+    pictures = {"wide": Markup(wide), "narrow": Markup(narrow)}  # ours, and escaped by the XML writer
+    return {"anchor": drawing.name, "title": drawing.title, "note": drawing.note, **pictures}
+
+
+def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[str, Array], run: str) -> list[str]:
+    found = [f"Gear {rows.show(gear['serial'])}"] if gear.get("serial") else []
+    found += [f"ratio {rows.show(gear['ratio'])}"] if gear.get("ratio") else []
+    found += [rows.utc(manifest["started_utc"])] if manifest.get("started_utc") else []
+    length = manifest.get("duration")
+    t = np.asarray(curves.get("time.t", ()), dtype=np.float64)
+    if isinstance(length, int | float):
+        found.append(duration(length))
+    elif t.size > 1 and np.isfinite(t).any():
+        found.append(duration(float(np.nanmax(t) - np.nanmin(t))))
+    return [*found, run]
+
+
+def _checks_said(result: Result) -> str:
+    failed = sum(not c.passed for c in result.checks)
+    total = len(result.checks)
+    if failed == 0:
+        return f"All {total} conditions were met." if total > 1 else "The condition was met."
+    return f"{failed} of {total} conditions were not met: read the figures with that in mind."
+
+
+def _contents(view: Mapping[str, Any]) -> list[tuple[str, str]]:
+    plots = [(p["anchor"], p["title"]) for p in view["plots"]]
+    found: list[Table] = view["tables"]
+    sections = (
+        ("verdict", "Verdict", True),
+        ("figures", "Main figures", view["main"]),
+        ("checks", "Checks", view["checks"]),
+        *((anchor, name, True) for anchor, name in plots),
+        *((t.anchor, t.title, True) for t in found),
+        ("timing", "Loop timing", view["timing"] or view["timing_said"]),
+        ("conditions", "Conditions", view["conditions"] or view["declared"]),
+        ("cannot", "What this run cannot tell", view["cannot"]),
+        ("events", "Events", view["events"]),
+        ("provenance", "Provenance", True),
+    )
+    return [(anchor, name) for anchor, name, there in sections if there]
+
+
+def _css(run: str, mark: str) -> Markup:
+    text = (HERE / "page.css").read_text(encoding="utf-8")
+    for name, value in (
+        ("{{LIGHT}}", variables(LIGHT)),
+        ("{{DARK}}", variables(DARK)),
+        ("{{RUN}}", css_string(run)),
+        ("{{MARK}}", css_string(mark)),
+    ):
+        text = text.replace(name, value)
+    return Markup(text)
+
+
+def css_string(text: str) -> str:
+    """`text` as a CSS string that cannot end early, nor close the style element: all but letters and digits escaped."""
+    return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text) + '"'

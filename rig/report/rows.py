@@ -1,0 +1,241 @@
+"""From manifest, bench, timing and events to rows of text for tables. Tolerant: a folder made by somebody else may hold
+any of it or nothing; what is absent is left out, what is unknown is shown as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from rig.report.numbers import duration, fixed, join, plain
+from rig.report.words import PROCEDURES, humanise, named, origin, status
+
+BYTES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1, "B"))
+LONGEST = 600  # characters of one value; what is longer is a file of its own, not a line of a report
+
+
+class Row(NamedTuple):
+    """A name and what it is."""
+
+    name: str
+    value: str
+    code: bool = False  # set in the typewriter face: hashes, identifiers
+
+
+class Number(NamedTuple):
+    """One number of the bench and where it comes from."""
+
+    key: str
+    value: str
+    source: str  # paper, catalogue, assumed, measured …; "declared" for a bare number
+    note: str
+
+
+def show(value: Any) -> str:
+    """Any value of a manifest as text."""
+    match value:
+        case None:
+            return "unknown"
+        case bool():
+            return "yes" if value else "no"
+        case int():
+            return fixed(value, 0)
+        case float():
+            return plain(value, 6)
+        case list() | tuple():
+            return ", ".join(show(v) for v in value)
+        case dict():
+            return ", ".join(f"{k} {show(v)}" for k, v in value.items())
+    text = str(value)
+    return text if len(text) <= LONGEST else text[:LONGEST] + " …"
+
+
+def measured(key: str, value: Any) -> Row:
+    """A condition or declared value with its name and unit."""
+    name, unit = named(key)
+    return Row(
+        name, join(show(value), unit) if isinstance(value, int | float) and not isinstance(value, bool) else show(value)
+    )
+
+
+def table(found: Any) -> Mapping[str, Any]:
+    """`found` when it is a table, else an empty one."""
+    return found if isinstance(found, Mapping) else {}
+
+
+def conditions(manifest: Mapping[str, Any]) -> list[Row]:
+    """The conditions of the run, those without a value said to be unknown."""
+    return [measured(str(k), v) for k, v in table(manifest.get("conditions")).items() if v != ""]
+
+
+def utc(text: Any) -> str:
+    """An ISO time as "2026-11-20 01:47:12 UTC"; as it stands when it is none, or says no zone."""
+    try:
+        moment = datetime.fromisoformat(str(text).replace("Z", "+00:00"))
+    except ValueError:
+        return show(text)
+    return f"{moment.astimezone(UTC):%Y-%m-%d %H:%M:%S} UTC" if moment.tzinfo else show(text)
+
+
+def software(manifest: Mapping[str, Any]) -> str:
+    """Version, commit, and whether the tree was clean; "" when the manifest does not say."""
+    found = table(manifest.get("software"))
+    if not found:
+        return ""
+    parts = [f"hdrig {found['version']}"] if found.get("version") else []
+    parts += [f"commit {found['commit']}"] if found.get("commit") else []
+    parts += ["with uncommitted changes"] if found.get("dirty") else ["clean"] if "dirty" in found else []
+    return ", ".join(parts)
+
+
+def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
+    """Who, what, when, with what. Every key of the manifest ends up in a row, known or not."""
+    gear, encoders = table(manifest.get("gear")), table(manifest.get("encoders"))
+    backend = manifest.get("backend")
+    known = [
+        Row("Run", folder, True),
+        Row("Unique id", show(manifest.get("uid")), True),
+        Row(
+            "Procedure",
+            PROCEDURES.get(str(manifest.get("procedure")), humanise(str(manifest.get("procedure", "unknown")))),
+        ),
+        Row("Ending", status(manifest) or "unknown"),
+        Row("Started", utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown"),
+        *([Row("Ended", utc(manifest["ended_utc"]))] if manifest.get("ended_utc") else []),
+        Row("Origin", f"{origin(backend).word.capitalize()}, backend {show(backend)}"),
+        Row("Gear", show(gear.get("serial"))),
+        Row("Gear ratio", show(gear.get("ratio"))),
+        Row("Output of the gear", show(gear.get("output"))),
+        *(measured(str(k), v) for k, v in encoders.items()),
+        Row("Software", software(manifest) or "unknown"),
+        Row("Schema", show(manifest.get("schema"))),
+    ]
+    length = manifest.get("duration")
+    if isinstance(length, int | float):
+        known.insert(-6, Row("Duration", duration(length)))
+    told = {
+        "duration",
+        "uid",
+        "procedure",
+        "status",
+        "exit_reason",
+        "started_utc",
+        "ended_utc",
+        "backend",
+        "encoders",
+        "software",
+        "schema",
+    }
+    apart = {"files", "conditions", "declared", "verdict"}  # shown in tables of their own
+    rest = {k: v for k, v in manifest.items() if k not in told | apart | {"gear"}}
+    known_software = ("version", "commit", "dirty")
+    rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
+    rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
+    return known + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
+
+
+def flat(tree: Mapping[str, Any], stem: str = "") -> Iterator[tuple[str, str]]:
+    """Leaves of nested tables as (dotted key, text)."""
+    for key, value in tree.items():
+        name = f"{stem}{key}"
+        if isinstance(value, Mapping):
+            yield from flat(value, f"{name}.")
+        elif value is not None and value != "":
+            yield name, show(value)
+
+
+def declared(manifest: Mapping[str, Any]) -> list[Row]:
+    """The operator's numbers for the gear."""
+    return [measured(str(k), v) for k, v in table(manifest.get("declared")).items()]
+
+
+def files(manifest: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """(name, rows, size, SHA-256) of every file of the run. Files derived from it are left out: one of them is this
+    page, and the hash of another may be of its last edition.
+    """
+    listed = [(str(name), table(entry)) for name, entry in table(manifest.get("files")).items()]
+    return [
+        (name, show(e["rows"]) if "rows" in e else "", size(e.get("bytes")), show(e.get("sha256", "")))
+        for name, e in listed
+        if not e.get("derived")
+    ]
+
+
+def size(count: Any) -> str:
+    """A number of bytes for people."""
+    if not isinstance(count, int) or isinstance(count, bool):
+        return ""
+    return next(join(plain(count / n, 3), unit) for n, unit in BYTES if count >= n or n == 1)
+
+
+def bench_numbers(bench: Mapping[str, Any], stem: str = "") -> Iterator[Number]:
+    """Every number of a bench file with its provenance, in the file's order."""
+    for key, entry in bench.items():
+        name = f"{stem}{key}"
+        if isinstance(entry, Mapping) and "value" in entry:
+            text = join(show(entry["value"]), show(entry.get("unit", "")))
+            yield Number(name, text, show(entry.get("from", "declared")), show(entry.get("note", "")))
+        elif isinstance(entry, Mapping):
+            yield from bench_numbers(entry, f"{name}.")
+        elif isinstance(entry, int | float | list) and not isinstance(entry, bool):
+            yield Number(name, show(entry), show(bench.get("from", "declared")), "")
+
+
+def events(found: list[dict[str, Any]]) -> list[tuple[str, str, str]]:
+    """(time, kind, text) of every event, the time in s of the run or, where that is unknown, in UTC. Keys that are
+    neither are added to the text.
+    """
+    out = []
+    for event in found:
+        rest = dict(event)
+        clock = rest.pop("utc", None)
+        moment = next((rest.pop(k) for k in ("t", "time", "t_s") if k in rest), None)
+        moment = clock if moment is None else moment
+        kind = next((rest.pop(k) for k in ("kind", "event", "act", "type") if k in rest), "")
+        text = [show(rest.pop(k)) for k in ("text", "sentence", "why", "reason", "message", "note") if rest.get(k)]
+        text += [f"{k} {show(v)}" for k, v in rest.items() if v not in (None, "")]
+        when = join(fixed(float(moment), 3), "s") if isinstance(moment, int | float) else utc(moment) if moment else ""
+        out.append((when, humanise(show(kind)), "; ".join(text)))
+    return out
+
+
+def micro(seconds: Any) -> str:
+    """Lateness for people: µs below a millisecond, ms above."""
+    if not isinstance(seconds, int | float):
+        return show(seconds)
+    return join(plain(seconds * 1e6, 3), "µs") if seconds < 1e-3 else join(plain(seconds * 1e3, 3), "ms")
+
+
+TIMING = (
+    ("lateness_p50", "Lateness p50", micro),
+    ("lateness_p99", "Lateness p99", micro),
+    ("lateness_p999", "Lateness p99.9", micro),
+    ("lateness_max", "Lateness, greatest", micro),
+    ("ticks", "Cycles run", show),
+    ("missed_cycles", "Cycles missed and skipped", show),
+    ("late_events", "Times a cycle was skipped", show),
+)
+
+
+def timing(found: Mapping[str, Any] | None) -> tuple[list[Row], list[str]]:
+    """Rows and sentences on the loop. On a virtual clock lateness is left out, and it is said why."""
+    if not found:
+        return [], []
+    virtual = found.get("clock") == "virtual"
+    rows, period = [], found.get("period")
+    if isinstance(period, int | float) and period > 0:
+        rows.append(Row("Rate", join(plain(1 / period, 5), "Hz")))
+    for key, name, say in TIMING:
+        if key in found and not (virtual and key.startswith("lateness")):
+            rows.append(Row(name, say(found[key])))
+    known = {"period", "clock", "how"} | {k for k, _, _ in TIMING}
+    rows += [Row(humanise(name), value) for name, value in flat({k: v for k, v in found.items() if k not in known})]
+    said = (
+        ["The run had a virtual clock: time passed only when the loop waited for it, so lateness has no meaning here."]
+        if virtual
+        else [f"Measured as {found['how']}."]
+        if found.get("how")
+        else []
+    )
+    return rows, said

@@ -1,0 +1,161 @@
+"""What the page says in words: origin, verdict, names of procedures and conditions, definitions of figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from rig.analysis.result import Verdict
+
+
+class Origin(NamedTuple):
+    """Where the samples came from, said so that nobody can miss it."""
+
+    word: str
+    sentence: str
+    mark: str  # across every figure; "" for none
+    tone: str
+
+
+class Ruling(NamedTuple):
+    """A verdict as shown: never by colour alone."""
+
+    sign: str
+    word: str
+    tone: str
+
+
+def origin(backend: str | None) -> Origin:
+    """The origin by the manifest's `backend`; one that is absent or unheard of is said to be unknown."""
+    match backend:
+        case "sim":
+            return Origin(
+                "SIMULATED",
+                "Computed by the digital twin of the rig. No gear was measured.",
+                "SIMULATED",
+                "mark",
+            )
+        case "can" | "serial":
+            wire = "CAN" if backend == "can" else "serial lines"
+            return Origin("MEASURED", f"Recorded from the devices of the rig over {wire}.", "", "good")
+        case "imported":
+            return Origin(
+                "IMPORTED",
+                "Recorded by other software and read in. What its files do not say is unknown here.",
+                "",
+                "warn",
+            )
+    said = f"The manifest names the backend “{backend}”" if backend else "The manifest names no backend"
+    return Origin("ORIGIN UNKNOWN", f"{said}: it cannot be told whether this was measured or simulated.", "", "warn")
+
+
+RULINGS = {
+    Verdict.PASS: Ruling("✓", "Pass", "good"),
+    Verdict.FAIL: Ruling("✗", "Fail", "bad"),
+    Verdict.INCONCLUSIVE: Ruling("?", "Inconclusive", "warn"),
+    Verdict.MEASURED: Ruling("–", "No limit set", "plain"),  # "measured" would contradict SIMULATED above it
+}
+
+PROCEDURES = {
+    "kinematic_error": "Kinematic error",
+    "speed_convergence": "Kinematic error at decreasing speeds",
+    "full_turn": "Kinematic error over a full output turn",
+    "constant_torque": "Run at constant torque",
+    "constant_speed": "Run at constant speed",
+    "load_sweep": "Kinematic error under load",
+    "assembly_sweep": "Kinematic error and assembly depth",
+    "stiffness_lock": "Torsional stiffness, output locked",
+    "friction": "Friction",
+    "coast_down": "Coast-down",
+    "standstill": "Standstill",
+    "sentinel": "Sentinel run",
+    "other": "Run",
+}
+
+STATUS = {
+    "completed": "Completed",
+    "stopped": "Stopped by the operator",
+    "tripped": "Tripped by the guard",
+    "interrupted": "Interrupted: found without an end",
+    "running": "Still running when this was written",
+    "imported": "Imported",
+}
+
+ENTRIES = {  # conditions and declared values by key: name for people, unit
+    "tau_ext": ("External torque on the load", "N·m"),
+    "output_locked": ("Output locked", ""),
+    "depth_mm": ("Assembly depth", "mm"),
+    "speed_rpm": ("Motor speed", "rpm"),
+    "J_m": ("Inertia, motor side J_m", "kg·m²"),
+    "J_l": ("Inertia, load side J_l", "kg·m²"),
+    "K": ("Torsional stiffness K", "N·m/rad"),
+    "B_m": ("Damping B_m", "N·m·s/rad"),
+    "B_l": ("Damping B_l", "N·m·s/rad"),
+    "B_ml": ("Damping B_ml", "N·m·s/rad"),
+    "B_sp": ("Damping B_sp", "N·m·s/rad"),
+    "fourier_terms": ("Fourier terms", ""),
+    "motor_counts_per_rev": ("Motor encoder", "counts per turn"),
+    "load_counts_per_rev": ("Load encoder", "counts per turn"),
+}
+
+SUFFIXES = {
+    "rpm": "rpm",
+    "deg": "°",
+    "arcsec": "arcsec",
+    "arcmin": "arcmin",
+    "mm": "mm",
+    "nm": "N·m",
+    "s": "s",
+    "ms": "ms",
+    "hz": "Hz",
+    "c": "°C",
+    "turns": "turns",
+}
+
+DEFINITIONS = (  # by a part of the estimate's name, first match
+    (
+        "peak_to_peak",
+        "Per wave-generator turn, as in the paper. The maker’s transmission accuracy is over one output turn "
+        "and is not the same.",
+    ),
+    (
+        "stiffness",
+        "Of the whole path between the two encoders: gear, torque sensor, couplings and fixture together.",
+    ),
+    ("hysteresis", "Torsion between the two branches of the loop at zero torque."),
+    ("lost_motion", "Torsion at ±4 % of rated torque, as makers define it."),
+)
+
+
+def definition(name: str) -> str:
+    """What a figure of this machine name means, "" where the label says it all."""
+    return next((text for part, text in DEFINITIONS if part in name), "")
+
+
+def humanise(key: str) -> str:
+    """`some_key` as "Some key"."""
+    text = key.replace("_", " ").strip()
+    return text[:1].upper() + text[1:]
+
+
+def named(key: str) -> tuple[str, str]:
+    """Name for people and unit of a key of conditions or declared values; an unknown key speaks by its suffix."""
+    if key in ENTRIES:
+        return ENTRIES[key]
+    stem, _, suffix = key.rpartition("_")
+    return (humanise(stem), SUFFIXES[suffix]) if stem and suffix in SUFFIXES else (humanise(key), "")
+
+
+def status(manifest: Mapping[str, Any]) -> str:
+    """How the run ended, with the reason when it did not simply come to its end; "" when the manifest does not say."""
+    word = manifest.get("status")
+    if not word:
+        return ""
+    said = STATUS.get(str(word), humanise(str(word)))
+    reason = str(manifest.get("exit_reason") or "")
+    return said if word == "completed" or not reason else f"{said}: {reason}"
+
+
+def ended_early(manifest: Mapping[str, Any]) -> str:
+    """How the run ended when that was not its own end; "" when it was, or nothing is said."""
+    return "" if manifest.get("status") in (None, "completed", "imported") else status(manifest)
