@@ -26,6 +26,7 @@ from rig.core.sample import Sample
 NO_COUNTS = -(2**63)  # a raw count that was not measured; null in the files. A count whose angle is NaN is null too
 CAPACITY = 65_536  # rows: 65 s at 1 kHz, 6.8 MB
 HEADER = 4096  # bytes before the first row: one page
+SHARED = "/dev/shm"  # memory that outlives its processes; elsewhere a temporary file
 
 _MAGIC, _VERSION = b"hdrigRNG", 1
 _FIXED = struct.Struct("<8sIIQQQ")  # magic, version, bytes in a row, rows, pid of the producer, its start in ticks
@@ -184,7 +185,7 @@ class Ring:
 def _allocate(size: int) -> tuple[Path, mmap.mmap]:
     """A file of `size` zero bytes, every page of it there, mapped for writing."""
     reasons = []
-    for folder in ("/dev/shm", tempfile.gettempdir()):
+    for folder in (SHARED, tempfile.gettempdir()):
         try:
             return _allocate_in(folder, size)
         except OSError as error:
