@@ -152,7 +152,7 @@ def toml_value(text: str) -> Any:
         return text.strip()
 
 
-def device_class(kind: str, where: str) -> type[Device]:
+def device_class(kind: str, where: str) -> Callable[[Any], Device]:
     """The class behind a device type. Raises UsageError naming the nearest that exists."""
     import drivers
     import sim
@@ -161,7 +161,7 @@ def device_class(kind: str, where: str) -> type[Device]:
     if kind not in catalogue:
         raise UsageError(f"{where} = '{kind}': no such device; {nearest(kind, catalogue)}")
     module, _, name = catalogue[kind].partition(":")
-    found: type[Device] = getattr(importlib.import_module(module), name)
+    found: Callable[[Any], Device] = getattr(importlib.import_module(module), name)
     return found
 
 

@@ -54,7 +54,7 @@ class Instruments:
 
     def start(self) -> None:
         """From here time counts from zero, and nothing read before is news."""
-        self.started = self.clock.now()
+        self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock
         self._last = [NEVER, NEVER, NEVER]
         self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
 

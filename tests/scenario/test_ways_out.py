@@ -1,0 +1,133 @@
+"""Ctrl-C, kill, faults: whatever ends a run, the torque is off first and the samples are kept."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from rig.runfile.recover import recover
+from rig.runfile.verify import verify
+
+# a shared machine stalls for tens of ms: the drive of these tests is patient, what is tested is the order of events
+WALL = ["run", "kinematic-error", "--clock", "wall", "--set", "twin.watchdog=1.0"]
+
+
+def start(root: Path, *more: str) -> subprocess.Popen[str]:
+    args = [sys.executable, "-m", "rig.cli", *WALL, "--out", str(root), *more]
+    return subprocess.Popen(args, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for(root: Path, what: str, process: subprocess.Popen[str], rows_bytes: int = 60_000) -> Path:
+    """The folder of the run called `what`, once its journal holds samples."""
+    while process.poll() is None:
+        for folder in root.glob(f"*/*{what}*"):
+            journal = folder / "journal-0001.arrows"
+            if journal.exists() and journal.stat().st_size > rows_bytes:
+                return folder
+        time.sleep(0.02)
+    raise AssertionError(f"ended early: {process.communicate()}")
+
+
+def last_row(folder: Path) -> dict[str, float]:
+    table = pq.read_table(folder / "samples.parquet")
+    row: dict[str, float] = table.slice(table.num_rows - 1).to_pylist()[0]
+    return row
+
+
+def events(folder: Path) -> list[dict[str, str]]:
+    return [json.loads(line) for line in (folder / "events.jsonl").read_text().splitlines()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sig", [signal.SIGINT, signal.SIGTERM])
+def test_one_signal_stops_the_motor_and_finishes_the_run(sig: signal.Signals, tmp_path: Path) -> None:
+    process = start(tmp_path)
+    folder = wait_for(tmp_path, "kinematic-error", process)
+    process.send_signal(sig)
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 4, err
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert (manifest["status"], manifest["exit"]) == ("stopped", 4)
+    assert last_row(folder)["tau_applied"] == 0.0
+    assert abs(last_row(folder)["omega_m"]) < 0.2
+    kinds = [e["kind"] for e in events(folder)]
+    assert "operator" in kinds
+    assert [f for f in verify(folder) if f.level == "error"] == []
+    assert "Traceback" not in err
+    assert (folder / "report.html").exists()
+
+
+@pytest.mark.slow
+def test_two_signals_take_the_torque_off_at_once_and_keep_the_run(tmp_path: Path) -> None:
+    process = start(tmp_path)
+    folder = wait_for(tmp_path, "kinematic-error", process)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGTERM)  # another signal: two of one kind may merge into one
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 130, err
+    assert json.loads((folder / "manifest.json").read_text())["status"] == "stopped"
+    assert last_row(folder)["tau_applied"] == 0.0
+    assert "Traceback" not in err
+
+
+@pytest.mark.slow
+def test_a_signal_during_the_proof_ends_everything_with_the_operators_exit_code(tmp_path: Path) -> None:
+    process = start(tmp_path)
+    folder = wait_for(tmp_path, "other", process, rows_bytes=20_000)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 4, err
+    assert not list(tmp_path.glob("*/*kinematic-error*"))
+    assert json.loads((folder / "manifest.json").read_text())["status"] == "stopped"
+
+
+@pytest.mark.slow
+def test_kill_9_loses_nothing_and_recover_says_interrupted(tmp_path: Path) -> None:
+    process = start(tmp_path)
+    folder = wait_for(tmp_path, "kinematic-error", process, rows_bytes=200_000)
+    process.kill()
+    killed = time.monotonic()
+    process.communicate()
+    while time.monotonic() - killed < 20:  # the recorder outlives the loop and closes the journal
+        if json.loads((folder / "manifest.json").read_text())["status"] == "interrupted":
+            break
+        time.sleep(0.05)
+    found = recover(folder)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["status"] == "interrupted"
+    assert found.rows > 1000
+    t = pq.read_table(folder / "samples.parquet")["t"].to_numpy()
+    assert np.all(np.diff(t) > 0)
+    assert [f for f in verify(folder) if f.level == "error"] == []
+
+
+@pytest.mark.slow
+def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(tmp_path: Path) -> None:
+    process = start(tmp_path)
+    folder = wait_for(tmp_path, "kinematic-error", process)
+    os.kill(recorder_of(process.pid), signal.SIGKILL)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 5, err
+    assert "recorder died" in err
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["status"] == "tripped"
+    assert [f for f in verify(folder) if f.level == "error"] == []
+    assert "Traceback" not in err
+
+
+def recorder_of(pid: int) -> int:
+    """The child process that records."""
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        fields = entry.read_text().rsplit(")", 1)[1].split()
+        if int(fields[1]) == pid and b"rig.recorder" in (entry.parent / "cmdline").read_bytes():
+            return int(entry.parent.name)
+    raise AssertionError(f"process {pid} has no recorder")
