@@ -127,7 +127,7 @@ def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, An
     if wide is None or narrow is None:
         return None
     pictures = {"wide": Markup(wide), "narrow": Markup(narrow)}  # ours, and escaped by the XML writer
-    return {"anchor": drawing.name, "title": drawing.title, "note": drawing.note, **pictures}
+    return {"anchor": drawing.name, "title": drawing.title, "note": drawing.note, "full": drawing.full, **pictures}
 
 
 def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[str, Array], run: str) -> list[str]:

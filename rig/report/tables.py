@@ -13,14 +13,22 @@ Cell = float | str
 K95 = 1.96  # from a standard uncertainty to the half width of a 95 % interval, where a row has no "k95" of its own
 
 
+class Column(NamedTuple):
+    """The head of a column, and whether words stand below it rather than numbers."""
+
+    head: str
+    text: bool = False
+
+
 class Table(NamedTuple):
-    """A table ready to print; the first cell of each row heads it."""
+    """A table ready to print; the first cell of each row heads it. `tight`: fits a phone when set small."""
 
     anchor: str
     title: str
     note: str
-    head: list[str]
+    columns: list[Column]
     rows: list[list[str]]
+    tight: bool = False
 
 
 def tables(found: Mapping[str, Sequence[Mapping[str, Cell]]]) -> list[Table]:
@@ -45,10 +53,10 @@ def _amplitude(row: Mapping[str, Cell]) -> str:
 
 
 COLUMNS: tuple[tuple[str, str, Callable[[Mapping[str, Cell]], str]], ...] = (
-    ("order", "Order n", lambda row: plain(number(row, "order"))),
-    ("a_arcsec", "aₙ, arcsec", lambda row: _with_u(row, "a_arcsec", "u_a")),
-    ("b_arcsec", "bₙ, arcsec", lambda row: _with_u(row, "b_arcsec", "u_b")),
-    ("C_arcsec", "Cₙ, arcsec", _amplitude),
+    ("order", "n", lambda row: plain(number(row, "order"))),
+    ("a_arcsec", "aₙ", lambda row: _with_u(row, "a_arcsec", "u_a")),
+    ("b_arcsec", "bₙ", lambda row: _with_u(row, "b_arcsec", "u_b")),
+    ("C_arcsec", "Cₙ", _amplitude),
     ("phase_deg", "ψₙ, °", lambda row: _with_u(row, "phase_deg", "u_phase")),
 )
 
@@ -59,16 +67,19 @@ def _coefficients(name: str, rows: Sequence[Mapping[str, Cell]]) -> Table:
         name,
         "Fourier coefficients",
         "Kinematic error = Σ aₙ cos nθ + bₙ sin nθ = Σ Cₙ cos(nθ − ψₙ), θ the wave-generator angle, n in cycles per "
-        "turn of it. Intervals are 95 %; a phase is given where the amplitude is told from zero.",
-        [head for head, _ in shown],
+        "turn of it; a, b and C in arcsec at the output. Intervals are 95 %; a phase is given where the amplitude is "
+        "told from zero.",
+        [Column(head) for head, _ in shown],
         [[cell(row) for _, cell in shown] for row in rows],
+        tight=True,
     )
 
 
 def _any(name: str, rows: Sequence[Mapping[str, Cell]]) -> Table:
     keys = list(dict.fromkeys(key for row in rows for key in row))
+    columns = [Column(_head(key), any(isinstance(row.get(key), str) for row in rows)) for key in keys]
     cells = [[_cell(row.get(key)) for key in keys] for row in rows]
-    return Table(f"table-{slug(name)}", humanise(name), "", [_head(key) for key in keys], cells)
+    return Table(f"table-{slug(name)}", humanise(name), "", columns, cells)
 
 
 def _cell(value: Cell | None) -> str:

@@ -13,8 +13,9 @@ class Origin(NamedTuple):
 
     word: str
     sentence: str
-    mark: str  # across every figure; "" for none
+    run: str  # the run, by its origin
     tone: str
+    mark: str = ""  # across every figure
 
 
 class Ruling(NamedTuple):
@@ -25,28 +26,24 @@ class Ruling(NamedTuple):
     tone: str
 
 
+TWIN = "Computed by the digital twin of the rig. No gear was measured."
+ELSEWHERE = "Recorded by other software and read in. What its files do not say is unknown here."
+
+
 def origin(backend: str | None) -> Origin:
     """The origin by the manifest's `backend`; one that is absent or unheard of is said to be unknown."""
     match backend:
         case "sim":
-            return Origin(
-                "SIMULATED",
-                "Computed by the digital twin of the rig. No gear was measured.",
-                "SIMULATED",
-                "mark",
-            )
-        case "can" | "serial":
-            wire = "CAN" if backend == "can" else "serial lines"
-            return Origin("MEASURED", f"Recorded from the devices of the rig over {wire}.", "", "good")
+            return Origin("SIMULATED", TWIN, "Simulated run", "mark", mark="SIMULATED")
+        case "can":
+            return Origin("MEASURED", "Recorded from the devices of the rig over CAN.", "Measured run", "good")
+        case "serial":
+            return Origin("MEASURED", "Recorded from the devices of the rig over serial lines.", "Measured run", "good")
         case "imported":
-            return Origin(
-                "IMPORTED",
-                "Recorded by other software and read in. What its files do not say is unknown here.",
-                "",
-                "warn",
-            )
+            return Origin("IMPORTED", ELSEWHERE, "Imported run", "warn")
     said = f"The manifest names the backend “{backend}”" if backend else "The manifest names no backend"
-    return Origin("ORIGIN UNKNOWN", f"{said}: it cannot be told whether this was measured or simulated.", "", "warn")
+    sentence = f"{said}: it cannot be told whether this was measured or simulated."
+    return Origin("ORIGIN UNKNOWN", sentence, "Run of unknown origin", "warn")
 
 
 RULINGS = {

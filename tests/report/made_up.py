@@ -128,7 +128,7 @@ def result(**changes: Any) -> Result:
     told: dict[str, Any] = {
         "procedure": "kinematic_error",
         "verdict": Verdict.MEASURED,
-        "sentence": "The kinematic error is 93.4 arcsec peak to peak per turn of the wave generator, most of it order 2.",
+        "sentence": "The kinematic error is 93.4 arcsec peak to peak per wave-generator turn, most of it order 2.",
         "estimates": (
             estimate(
                 "kinematic_error_peak_to_peak",
