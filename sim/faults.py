@@ -1,0 +1,80 @@
+"""What can go wrong with a channel of the twin. Set `device.fault` while it runs; None heals it.
+
+A drive has two more: `TwinDrive.trip(reason)`, its own fault, and `TwinDrive.deaf`, commands no longer arrive.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TypeVar
+
+Reading = TypeVar("Reading")
+
+
+class Fault:
+    """Something wrong with one channel: with the value it measures, or with the readings it hands over."""
+
+    def value(self, x: float) -> float:
+        """What is measured in place of `x` (rad since power-up, or N·m), before it is counted or clipped."""
+        return x
+
+    def reading(self, fresh: Reading, last: Reading) -> Reading:
+        """What arrives when `fresh` was sent and `last` was the one before."""
+        return fresh
+
+
+class Silent(Fault):
+    """Nothing new arrives: the last reading again, its time with it."""
+
+    def reading(self, fresh: Reading, last: Reading) -> Reading:
+        return last
+
+
+class Frozen(Fault):
+    """Time advances, the value does not."""
+
+    def __init__(self) -> None:
+        self._held: float | None = None
+
+    def value(self, x: float) -> float:
+        if self._held is None:
+            self._held = x
+        return self._held
+
+
+@dataclass(frozen=True)
+class Jump(Fault):
+    """A slipped coupling, a shifted zero: `by` rad or N·m from now on."""
+
+    by: float
+
+    def value(self, x: float) -> float:
+        return x + self.by
+
+
+@dataclass(frozen=True)
+class Scale(Fault):
+    """A wrong ratio or counts per turn: `factor` times the value. −1 is a reversed channel."""
+
+    factor: float
+
+    def value(self, x: float) -> float:
+        return self.factor * x
+
+
+class Reversed(Scale):
+    """Wired or configured the wrong way round."""
+
+    def __init__(self) -> None:
+        super().__init__(-1.0)
+
+
+@dataclass(frozen=True)
+class Overload(Fault):
+    """A torque sensor driven to the end of its range, `sign` +1 or −1."""
+
+    sign: int = 1
+
+    def value(self, x: float) -> float:
+        return math.copysign(math.inf, self.sign)

@@ -1,0 +1,113 @@
+"""The twin's load encoder and torque sensor. Each is latched at its own time after the tick, and says when."""
+
+from __future__ import annotations
+
+import math
+
+from rig.core.devices import AngleReading, Encoder, Identity, TorqueReading, TorqueSensor
+from rig.core.errors import NotReady
+from sim.channel import FINEST, SENSOR_SATURATED, SIMULATED, UNREAD, Counter, new
+from sim.faults import Fault
+from sim.noise import normal
+from sim.world import World
+
+
+class TwinLoadEncoder(Encoder):
+    """Counts from power-up; `encoder.zero` is the load's true angle there."""
+
+    name = "load_encoder"
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self._plant = world.plant
+        self.encoder = Counter(world.parameters.load_counts_per_turn, world.plant.load[0])
+        self.fault: Fault | None = None
+        self._latch = world.parameters.latch_l
+        self._connected = False
+        self._read_at = UNREAD
+        self._last: AngleReading | None = None
+
+    def connect(self) -> Identity:
+        """Always there."""
+        self._connected = True
+        return Identity("twin load encoder", f"seed {self.world.seed}")
+
+    def close(self) -> None:
+        """Gone."""
+        self._connected = False
+
+    def read(self) -> AngleReading:
+        """The newest angle; the same reading again until time has passed. Raises NotReady when not connected."""
+        world = self.world
+        if world.t == self._read_at and self._last is not None:
+            return self._last
+        if not self._connected:
+            raise NotReady("the twin's load encoder is not connected")
+        theta, omega, acceleration = self._plant.load
+        dt = self._latch
+        theta += dt * (omega + 0.5 * dt * acceleration)
+        encoder = self.encoder
+        if self.fault is not None:
+            theta = encoder.distorted(theta, self.fault.value)
+        counts = encoder.count(theta)
+        reading = new(AngleReading, (world.t + dt, counts * encoder.step, counts, SIMULATED))
+        if self.fault is not None:
+            reading = self.fault.reading(reading, self._last or reading)
+        self._last, self._read_at = reading, world.t
+        return reading
+
+
+class TwinTorqueSensor(TorqueSensor):
+    """All the gear gives to the load, behind a first-order low-pass, with zero offset, noise, resolution and range.
+
+    The low-pass runs in the plant; between tick and latch its input is taken as a straight line.
+    """
+
+    name = "torque_sensor"
+
+    def __init__(self, world: World) -> None:
+        p = world.parameters
+        self.world = world
+        self._plant = world.plant
+        self.fault: Fault | None = None
+        self._latch = p.latch_tau
+        self._time_constant = 1.0 / (2.0 * math.pi * p.sensor_lowpass_hz)  # s
+        self._keep = math.exp(-p.latch_tau / self._time_constant)
+        self._zero = p.sensor_zero
+        self._range = p.sensor_range
+        self._resolution = max(p.sensor_resolution, FINEST)
+        self._noise = normal(world.seed, "torque sensor", p.sensor_noise)
+        self._connected = False
+        self._read_at = UNREAD
+        self._last: TorqueReading | None = None
+
+    def connect(self) -> Identity:
+        """Always there."""
+        self._connected = True
+        return Identity("twin torque sensor", f"seed {self.world.seed}")
+
+    def close(self) -> None:
+        """Gone."""
+        self._connected = False
+
+    def read(self) -> TorqueReading:
+        """The newest torque; the same reading again until time has passed. Raises NotReady when not connected."""
+        world = self.world
+        if world.t == self._read_at and self._last is not None:
+            return self._last
+        if not self._connected:
+            raise NotReady("the twin's torque sensor is not connected")
+        _, tau_l, rate, filtered = self._plant.shaft
+        lag = rate * self._time_constant
+        tau = tau_l + rate * self._latch - lag + (filtered - tau_l + lag) * self._keep + self._zero + self._noise()
+        if self.fault is not None:
+            tau = self.fault.value(tau)
+        flags, limit = SIMULATED, self._range
+        if not -limit < tau < limit:
+            tau, flags = math.copysign(limit, tau), SENSOR_SATURATED
+        tau = self._resolution * round(tau / self._resolution)
+        reading = new(TorqueReading, (world.t + self._latch, tau, flags))
+        if self.fault is not None:
+            reading = self.fault.reading(reading, self._last or reading)
+        self._last, self._read_at = reading, world.t
+        return reading

@@ -1,0 +1,113 @@
+"""The twin's world: plant and virtual clock in one. Time passes only when someone waits."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import math
+import time
+from collections.abc import Callable
+
+from rig.core.clock import Clock
+from rig.core.errors import UsageError
+from sim.energy import Ledger
+from sim.noise import generator, normal
+from sim.parameters import TwinParameters
+from sim.plant import Plant, Truth
+
+NEVER = math.inf
+RELAX = 0.001  # s of wall time, for other processes to catch up
+WANDER_SHARE = 0.05  # of its correlation time: friction is held constant for this long at most
+
+
+class World(Clock):
+    """The rig that is not there: at rest at first, at angles drawn from `seed`, its spring relaxed.
+
+    Held by one thread. `wait_until` is the virtual clock; behind a wall clock, `advance_to` lets the world catch up.
+    Raises PlantFailure when the plant cannot be followed; time then stands still.
+    """
+
+    def __init__(self, parameters: TwinParameters, seed: int) -> None:
+        self.parameters = parameters
+        self.seed = seed
+        self.t = 0.0  # s, now
+        turns = float(generator(seed, "start").uniform(0.0, parameters.gear.ratio))  # of the motor: one of the output
+        self.plant = Plant(parameters, theta_m=2.0 * math.pi * turns)
+        self._wander = normal(seed, "friction")
+        self._longest = WANDER_SHARE * parameters.friction_noise_s
+        self._tau = 0.0  # N·m, commanded
+        self._lapse = NEVER  # when the command lapses
+        self._on_lapse: Callable[[], None] = lambda: None
+        self._plans: list[tuple[float, int, Callable[[], None]]] = []
+        self._order = itertools.count()
+        self._next = NEVER  # the earliest of all that will happen by itself
+
+    def now(self) -> float:
+        """s since the world began."""
+        return self.t
+
+    def wait_until(self, t: float) -> float:
+        """Let time pass until `t` s."""
+        while self.t < t:
+            until = t
+            if until - self.t > self._longest:
+                until = self.t + self._longest
+            if until > self._next:
+                until = self._next
+            self.plant.advance(until - self.t, self._tau, self._wander(), self._wander())
+            self.t = until
+            if until >= self._next:
+                self._happen()
+        return self.t
+
+    def advance_to(self, t: float) -> None:
+        """Catch up with a wall clock that shows `t` s; nothing when the world is already there."""
+        self.wait_until(t)
+
+    def relax(self) -> bool:
+        """Time is held here; other processes get a moment."""
+        time.sleep(RELAX)
+        return True
+
+    def command(self, tau: float, lapse: float = NEVER, on_lapse: Callable[[], None] = lambda: None) -> None:
+        """From now on the drive aims at `tau` N·m; at `lapse` s, unless commanded again, it lets go and says so."""
+        self._tau, self._lapse, self._on_lapse = tau, lapse, on_lapse
+        plans = self._plans
+        self._next = lapse if not plans or lapse < plans[0][0] else plans[0][0]
+
+    def at(self, t: float, act: Callable[[], None]) -> None:
+        """Have `act` called when the world reaches `t` s, between two steps of the plant: a fault, a load, a lock."""
+        heapq.heappush(self._plans, (max(t, self.t), next(self._order), act))
+        self._next = min(self._lapse, self._plans[0][0])
+
+    def _happen(self) -> None:
+        if self.t >= self._lapse:
+            on_lapse = self._on_lapse
+            self.command(0.0)
+            on_lapse()
+        while self._plans and self._plans[0][0] <= self.t:
+            heapq.heappop(self._plans)[2]()
+        self._next = min(self._lapse, self._plans[0][0] if self._plans else NEVER)
+
+    def load_torque(self, tau_ext: float) -> None:
+        """Put `tau_ext` N·m on the load, positive drives it forward: a dead weight on a pulley."""
+        self.plant.tau_ext = tau_ext
+
+    def lock_output(self) -> None:
+        """Clamp the output where it is. Raises UsageError while it turns."""
+        omega_l = self.truth().omega_l
+        if omega_l != 0.0:
+            raise UsageError(f"the output turns at {omega_l:.3g} rad/s, it can be locked at rest only")
+        self.plant.locked = True
+
+    def unlock_output(self) -> None:
+        """Let the output turn again; a wound-up spring will move it."""
+        self.plant.locked = False
+
+    def truth(self) -> Truth:
+        """What really happens now, SI."""
+        return self.plant.truth()
+
+    def ledger(self) -> Ledger:
+        """Where the energy went since the world began."""
+        return self.plant.ledger()
