@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 from rig.core.clock import Clock
-from rig.core.errors import RecorderError
+from rig.core.errors import HdrigError, RecorderError
 from rig.core.ring import CAPACITY, Ring
 from rig.core.sample import Sample
 from rig.runfile import manifest
@@ -35,7 +36,8 @@ class Recorder:
         return self._ring.path
 
     def start(self) -> None:
-        """Start the process and wait until its journal is open. Raises RecorderError with the reason why it is not.
+        """Start the process and wait until its journal is open. Raises RecorderError (UsageError for a folder that is
+        no run) with the reason why it is not.
 
         Call it before the loop pins or schedules itself: a child inherits the processors it may run on.
         """
@@ -43,7 +45,8 @@ class Recorder:
             with manifest.told(RecorderError, f"samples cannot be kept in {self.folder}"):
                 manifest.update(self.folder, ring=str(self._ring.path))
             self._spawn()
-        except RecorderError:
+        except HdrigError:
+            self._stop()
             self._discard()
             raise
 
@@ -78,7 +81,8 @@ class Recorder:
             try:
                 if not self._ended_well():
                     self._spawn()  # finds the ring closed: writes what the journal lacks, and ends
-                    self._ended_well()
+                    if not self._ended_well():
+                        self.check()  # raises: it has ended, and not well
             except RecorderError as error:
                 raise RecorderError(f"{error}; {self._left_behind()}") from error
             self._discard(self._ring.acked)
@@ -86,8 +90,12 @@ class Recorder:
 
     def _spawn(self) -> None:
         command = [sys.executable, "-m", "rig.recorder", str(self.folder), str(self._ring.path)]
+        self._ring.tell_reader(0, 0)  # the error of the one before is told already
         # a group of its own: a Ctrl-C must not reach it even before it has learnt to ignore one
-        self._process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0)
+        with manifest.told(RecorderError, "the recorder's process cannot be started"):
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, process_group=0
+            )
         give_up = time.monotonic() + READY_WITHIN
         while self._ring.reader[0] != self._process.pid and self._process.poll() != 0:
             self.check()
@@ -95,8 +103,15 @@ class Recorder:
                 raise RecorderError(f"the recorder opened no journal in {self.folder} within {READY_WITHIN:.0f} s")
             time.sleep(0.002)
 
+    def _stop(self) -> None:
+        """End a process that never began to record."""
+        if self._process is not None:
+            self._process.kill()
+            with contextlib.suppress(subprocess.TimeoutExpired):  # stuck in the disk's driver: not ours to wait for
+                self._process.wait(1.0)
+
     def _ended_well(self) -> bool:
-        """Wait for the process. True when it kept every row; False when it died or failed without a second try left."""
+        """Wait for the process. True when it kept every row; False when it died or failed."""
         if self._process is None:
             return True
         try:

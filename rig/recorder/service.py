@@ -31,10 +31,11 @@ class Service:
 
     def step(self, now: float) -> None:
         """Do what is due at `now` [s]. Raises OSError when the journal cannot take it."""
-        if self._ring.head > self._journal.rows and (now - self._flushed >= FLUSH or self.pressed):
+        sync = now - self._synced >= SYNC or self.pressed
+        if sync or now - self._flushed >= FLUSH:
             self._write()
             self._flushed = now
-        if self._journal.rows > self._ring.acked and (now - self._synced >= SYNC or self.pressed):
+        if sync:
             self._sync()
             self._synced = now
 
@@ -51,5 +52,6 @@ class Service:
             self._ring.tell_written(self._journal.rows)
 
     def _sync(self) -> None:
-        self._journal.sync()
-        self._ring.tell_acked(self._journal.rows)
+        if self._journal.rows > self._ring.acked:
+            self._journal.sync()
+            self._ring.tell_acked(self._journal.rows)

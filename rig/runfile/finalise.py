@@ -18,6 +18,7 @@ from rig.runfile.process import sole_writer, this_process
 
 STEPS = ("claim", "drain", "archive", "timing", "hash", "protect", "status")
 READ_ONLY = 0o444
+PATIENCE = 5.0  # s for a killed recorder to be gone altogether
 
 StepHook = Callable[[str], None]
 """Called with the name of each step before it is done."""
@@ -53,7 +54,7 @@ def finalise(
         raise UsageError(f"{folder} is closed already, as {about['status']}: {about.get('exit_reason', '')}")
     if status not in manifest.ENDINGS:
         raise UsageError(f"a run cannot end as {status!r}, expected one of {', '.join(manifest.ENDINGS)}")
-    with manifest.told(DataError, f"{folder} cannot be closed"), sole_writer(folder):
+    with manifest.told(DataError, f"{folder} cannot be closed"), sole_writer(folder, PATIENCE):
         return _close(folder, status, reason, timing, facts, step)
 
 

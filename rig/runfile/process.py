@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import os
 import platform
+import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
@@ -62,13 +63,25 @@ def _answers(pid: int) -> bool:
 
 
 @contextlib.contextmanager
-def sole_writer(folder: Path) -> Iterator[None]:
-    """Hold `folder` for one writer; let go when the process dies, however. Raises NotReady when another holds it."""
+def sole_writer(folder: Path, patience: float = 0.0) -> Iterator[None]:
+    """Hold `folder` for one writer; let go when the process dies, however.
+
+    Raises NotReady when another holds it for longer than `patience` [s]: a killed process, seen dead, may still be
+    letting go of its files. Raises OSError when the folder cannot be opened.
+    """
     handle = os.open(folder, os.O_RDONLY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _hold(handle, folder, time.monotonic() + patience)
         yield
-    except BlockingIOError:
-        raise NotReady(f"{folder} is being written by another process; wait for it to end") from None
     finally:
         os.close(handle)
+
+
+def _hold(handle: int, folder: Path, give_up: float) -> None:
+    while True:
+        try:
+            return fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() >= give_up:
+                raise NotReady(f"{folder} is being written by another process; wait for it to end") from None
+            time.sleep(0.02)

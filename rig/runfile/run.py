@@ -40,7 +40,7 @@ class Run:
         folder = Path(path)
         about = manifests.read(folder)
         run = cls(folder, about, open_samples(folder))
-        if not any(run.has(name) for name in ANGLES):
+        if not any(run.has(name) or (not run.rows and name in run.channels) for name in ANGLES):
             raise UsageError(f"{run.samples.path} has no angle: expected at least one of {', '.join(ANGLES)}")
         _refuse_backward_time(run)
         return run

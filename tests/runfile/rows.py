@@ -54,7 +54,9 @@ def new_folder(root: Path, **more: Any) -> Path:
     """A run folder of the twin, status running, made by a process that is dead."""
     gear = {"ratio": 50, "serial": "SN0042"}
     dead = {"process": {"pid": 0, "started": 0, "host": "nowhere"}}
-    return create(root, "kinematic_error", {"backend": "sim", "gear": gear, **dead, **more}, "schema = 'hdrig.bench/1'\n")
+    return create(
+        root, "kinematic_error", {"backend": "sim", "gear": gear, **dead, **more}, "schema = 'hdrig.bench/1'\n"
+    )
 
 
 def write_journal(folder: Path, start: int, stop: int, batch: int = 50, close: bool = False) -> Path:
