@@ -102,10 +102,12 @@ def _unit(raw: Section, name: str, quantity: str, text: str) -> tuple[str, str]:
 
 def _terms(raw: Section) -> tuple[Term, ...]:
     """`column` with its scale, or the terms of `sum`; exactly one of the two."""
-    if raw.has("column") == raw.has("sum"):
-        raise UsageError(f'{raw.file}: {raw.path} needs one of column = "…" and sum = [{{column = …, scale = …}}, …]')
+    if raw.has("column") and raw.has("sum"):
+        raise UsageError(f"{raw.file}: {raw.path} has column and sum; expected one of them")
     if raw.has("column"):
         return (_term(raw),)
+    if not raw.has("sum"):
+        raise UsageError(f"{raw.file}: {raw.missing('column')} (or sum = [{{column = …, scale = …}}, …])")
     inner = raw.tables("sum")
     if not inner or raw.path == "channels.t" or raw.path.startswith("channels.counts_"):
         raise UsageError(f"{raw.file}: {raw.path}.sum: expected " + ("at least one term" if not inner else "a column"))

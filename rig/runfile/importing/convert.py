@@ -69,7 +69,8 @@ def with_file_units(mapping: Mapping, stated: dict[str, str], file: str) -> Mapp
     """The mapping with every unit filled in from the file. Raises UsageError where none is stated, or they differ."""
     channels = {}
     for name, channel in mapping.channels.items():
-        found = known(stated.get(channel.terms[0].column, "")) if channel.plain else None
+        says = channel.plain and channel.unit != "datetime"  # then what the file states is about these very numbers
+        found = known(stated.get(channel.terms[0].column, "")) if says else None
         where = f"{mapping.source}: channels.{name}"
         if not channel.unit:
             others = ", ".join(u.word for u in UNITS.values() if u.quantity == channel.quantity)

@@ -18,7 +18,7 @@ from rig.runfile.importing.timing import EPOCH_END
 
 Array = npt.NDArray[Any]
 
-PERIOD = (2e-6, 0.5)  # s: 1 kHz stamped in s and read as ms is 1 µs; 1 kHz stamped in ms and read as s is 1 s
+PERIOD = (9e-6, 0.5)  # s: above 111 Hz stamped in s and read as ms; up to 2 kHz stamped in ms and read as s
 SPAN = 3.2e7  # s: a year; one wrong stamp at the end of a run is not a gap
 ANGLE = 1e9  # rad: beyond it a float64 no longer holds a fiftieth of an arcsec
 SPEED = 20_000.0  # rpm: above the input speed of any strain-wave gear on sale (14 000 rpm, size 5)
@@ -36,10 +36,15 @@ HINTS = ((57.2958, "180/π: one angle is in deg, the other in rad"), (6.28319, "
 
 def check(run: Converted, mapping: Mapping, file: str) -> None:
     """Raises UsageError for the first thing that cannot be; adds to `run.notes` what was measured or waived."""
-    checks = {
-        "epoch": _epoch, "period": _period, "still": _angle, "speed": _speed, "ratio": _ratio, "torque": _torque,
+    checks = {  # the first to complain is heard: the ratio says more of what is wrong than a speed does
+        "epoch": _epoch,
+        "period": _period,
+        "angle": _angle,
+        "ratio": _ratio,
+        "speed": _speed,
+        "torque": _torque,
         "stiffness": _stiffness,
-    }  # fmt: skip
+    }
     for name, one in checks.items():
         if complaint := one(run, mapping):
             if name not in mapping.accept:

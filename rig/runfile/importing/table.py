@@ -35,19 +35,20 @@ def locate(names: Iterable[str], wanted: Sequence[str], file: str) -> dict[str, 
 
     Raises UsageError naming the column and the nearest there is, or the paths it could mean.
     """
-    full = list(names)
-    by_last: dict[str, list[str]] = {}
-    for name in full:
-        by_last.setdefault(name.rpartition("/")[2], []).append(name)
-    exact, found = set(full), {}
+    places: dict[str, list[str]] = {}
+    for name in names:
+        places.setdefault(name, []).append(name)
+        last = name.rpartition("/")[2]
+        if last != name:
+            places.setdefault(last, []).append(name)
+    found = {}
     for column in wanted:
-        paths = [column] if column in exact else by_last.get(column, [])
+        paths = places.get(column, [])
         if not paths:
-            raise UsageError(f"{file} has no column '{column}'; {nearest(column, [*full, *by_last])}")
+            raise UsageError(f"{file} has no column '{column}'; {nearest(column, places)}")
         if len(paths) > 1:
-            raise UsageError(
-                f"{file}: column '{column}' stands in {len(paths)} places; expected one of {', '.join(paths)}"
-            )
+            different = f"one of {', '.join(paths)}" if len(set(paths)) > 1 else "it once"
+            raise UsageError(f"{file}: column '{column}' stands in {len(paths)} places; expected {different}")
         found[column] = paths[0]
     return found
 

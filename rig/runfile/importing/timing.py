@@ -91,8 +91,7 @@ def notes(found: dict[str, float]) -> list[str]:
     low, mid, high = (found[f"period_{k}"] * 1e3 for k in ("min", "median", "max"))
     said = [f"sample period {mid:.4g} ms median, {low:.4g} ms least, {high:.4g} ms most"]
     if found["gaps"]:
-        said.append(
-            f"{found['gaps']} gaps in time longer than {GAP:g} periods, the largest {found['largest_gap']:.4g} s "
-            f"before row {found['largest_gap_row']}"
-        )
+        many = "1 gap in time" if found["gaps"] == 1 else f"{found['gaps']} gaps in time"
+        where = f"the largest {found['largest_gap']:.4g} s, before row {found['largest_gap_row']}"
+        said.append(f"{many} longer than {GAP:g} periods, {where}")
     return said

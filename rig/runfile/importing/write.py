@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Mapping as Dict
+from datetime import UTC
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def manifest_of(run: Converted, mapping: Mapping, source: Path, software: Dict[s
         "notes": run.notes,
     }
     if run.utc is not None:
-        stamp = run.utc.isoformat(timespec="microseconds")
+        stamp = run.utc.astimezone(UTC).isoformat(timespec="microseconds")
         about |= {"started_utc": stamp, "clock": {"utc_at_start": stamp}}
     return about
 

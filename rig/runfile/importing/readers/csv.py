@@ -5,7 +5,6 @@ from __future__ import annotations
 import codecs
 import csv
 from collections.abc import Sequence
-from itertools import islice
 from pathlib import Path
 
 from rig.core.errors import UsageError
@@ -21,7 +20,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
     check_text(path, dialect.encoding)
     names, units = header(path, dialect)
-    check_names(path, names, wanted, dialect)
+    check_delimiter(path, names, dialect)
     found = locate(names, wanted, path.name)
     lines = dialect.skip_rows + (0 if dialect.names else 1) + (1 if dialect.units_row else 0)
 
@@ -89,13 +88,18 @@ def check_text(path: Path, encoding: str) -> None:
 
 def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:
     """(names, units) of the columns; units is empty where the file has no row of them."""
+    rows = 2 if dialect.units_row and not dialect.names else 1
     with path.open(encoding=dialect.encoding, newline="") as file:
         if file.read(1) != "\ufeff":  # a byte order mark is no part of the first name
             file.seek(0)
-        for number in range(dialect.skip_rows):
-            _line(file.readline(LONGEST_LINE), path, number + 1)
-        rows = 2 if dialect.units_row and not dialect.names else 1
-        lines = [_line(file.readline(LONGEST_LINE), path, dialect.skip_rows + i + 1) for i in range(rows)]
+        lines = [file.readline(LONGEST_LINE) for _ in range(dialect.skip_rows + rows)]
+    for number, line in enumerate(lines, start=1):
+        if len(line) >= LONGEST_LINE:
+            raise UsageError(f"{path.name}: line {number} is longer than {LONGEST_LINE} characters; expected a table")
+    lines = lines[dialect.skip_rows :]
+    if not lines[0].strip():
+        where = f"line {dialect.skip_rows + 1}"
+        raise UsageError(f"{path.name}: {where} is empty or past the end; expected the header (see csv.skip_rows)")
     try:
         cells = [[c.strip() for c in row] for row in csv.reader(lines, delimiter=dialect.delimiter)]
     except csv.Error as error:
@@ -107,18 +111,8 @@ def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:
     return names, units
 
 
-def _line(text: str, path: Path, number: int) -> str:
-    if len(text) >= LONGEST_LINE:
-        raise UsageError(f"{path.name}: line {number} is longer than {LONGEST_LINE} characters; expected a table")
-    if not text.strip():
-        raise UsageError(
-            f"{path.name}: line {number} is empty or past the end; expected the header (see csv.skip_rows)"
-        )
-    return text
-
-
-def check_names(path: Path, names: list[str], wanted: Sequence[str], dialect: Dialect) -> None:
-    """Raises UsageError when the delimiter is not the file's, or a wanted name stands twice."""
+def check_delimiter(path: Path, names: list[str], dialect: Dialect) -> None:
+    """Raises UsageError when everything is one column because the delimiter is not the file's."""
     if len(names) == 1:
         for other, spelt in ((";", ";"), (",", ","), ("\t", "\\t"), ("|", "|")):
             if other != dialect.delimiter and (count := names[0].count(other)):
@@ -126,5 +120,3 @@ def check_names(path: Path, names: list[str], wanted: Sequence[str], dialect: Di
                     f"{path.name} has 1 column when split at '{dialect.delimiter}', but its header holds '{spelt}' "
                     f'{count} times; set [csv] delimiter = "{spelt}"'
                 )
-    for name in islice((n for n in wanted if names.count(n) > 1), 1):
-        raise UsageError(f"{path.name}: column '{name}' stands {names.count(name)} times in the header; expected once")

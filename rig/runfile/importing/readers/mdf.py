@@ -20,9 +20,10 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
 
     try:
         with MDF(path) as file:
-            offered = _channels(file)
-            found = locate(offered, wanted, path.name)
-            signals = {name: file.get(group=offered[full][0], index=offered[full][1]) for name, full in found.items()}
+            channels = _channels(file)
+            found = locate([name for name, _ in channels], wanted, path.name)
+            at = dict(channels)
+            signals = {name: file.get(group=at[full][0], index=at[full][1]) for name, full in found.items()}
             columns = {name: _values(signal) for name, signal in signals.items()}
             started = file.header.start_time
     except MdfException as error:
@@ -30,15 +31,15 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     return Table(columns, {name: s.unit for name, s in signals.items() if s.unit}, started)
 
 
-def _channels(file: Any) -> dict[str, tuple[int, int]]:
-    """{group/channel: (group number, channel number)}."""
-    found: dict[str, tuple[int, int]] = {}
-    for g, group in enumerate(file.groups):
-        title = getattr(group.channel_group, "acq_name", "") or f"group {g}"
-        title = title if all(not name.startswith(f"{title}/") for name in found) else f"{title} {g}"
-        for c, channel in enumerate(group.channels):
-            found[f"{title}/{channel.name}"] = (g, c)
-    return found
+def _channels(file: Any) -> list[tuple[str, tuple[int, int]]]:
+    """(group/channel, (group number, channel number)); a name can stand twice, even in one group."""
+    titles = [getattr(group.channel_group, "acq_name", "") or f"group {g}" for g, group in enumerate(file.groups)]
+    titles = [f"{title} {g}" if titles.count(title) > 1 else title for g, title in enumerate(titles)]
+    return [
+        (f"{titles[g]}/{channel.name}", (g, c))
+        for g, group in enumerate(file.groups)
+        for c, channel in enumerate(group.channels)
+    ]
 
 
 def _values(signal: Any) -> Array:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from rig.core.errors import UsageError
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.table import Array, Table, locate
 
@@ -19,9 +18,6 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
 
     with pq.ParquetFile(path, page_checksum_verification=True) as file:
         schema = file.schema_arrow
-        twice = sorted({n for n in schema.names if schema.names.count(n) > 1 and n in wanted})
-        if twice:
-            raise UsageError(f"{path.name}: column '{twice[0]}' stands {schema.names.count(twice[0])} times")
         found = locate(schema.names, wanted, path.name)
         table = file.read(columns=list(found.values()))
         columns = {name: to_numpy(table[full]) for name, full in found.items()}
