@@ -1,0 +1,86 @@
+"""From a run to its Result: which analysis reads which procedure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from rig.analysis.angle import TURN
+from rig.analysis.findings import Findings, conclude
+from rig.analysis.lock import add_lock
+from rig.analysis.overview import add_overview
+from rig.analysis.result import Result
+from rig.analysis.source import Motion, Source, motion_of
+from rig.analysis.speed import Speed, motor_speed
+from rig.analysis.standstill import add_standstill
+from rig.analysis.turning import add_turning
+
+Part = Callable[[Findings, Source, Motion, Speed | None], None]
+
+
+def _slow(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_turning(found, run, motion, speed, slow=True)
+
+
+def _at_speed(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_turning(found, run, motion, speed, slow=False)
+
+
+def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_standstill(found, run, motion)
+
+
+def _lock(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_lock(found, run, motion)
+
+
+def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    """A procedure with no analysis of its own: what its motion allows."""
+    turns = float(np.ptp(motion.theta_m)) / TURN
+    found.cannot.append(
+        f"There is no analysis for {run.procedure} yet: these figures are what any run of this motion gives."
+    )
+    if turns >= 1.0:
+        _at_speed(found, run, motion, speed)
+    elif run.conditions.get("output_locked"):
+        _lock(found, run, motion, speed)
+    elif turns < 0.01:
+        _standstill(found, run, motion, speed)
+    else:
+        found.sentence = f"The motor moved {360 * turns:.2f}°, less than a turn: nothing here is periodic in its angle."
+
+
+PROCEDURES: Mapping[str, Part] = {
+    "kinematic_error": _slow,
+    "speed_convergence": _slow,
+    "full_turn": _slow,
+    "load_sweep": _slow,
+    "assembly_sweep": _slow,
+    "constant_torque": _at_speed,
+    "constant_speed": _at_speed,
+    "sentinel": _at_speed,
+    "stiffness_lock": _lock,
+    "standstill": _standstill,
+}
+
+
+def analyse(run: Source) -> Result:
+    """All that `run` says on its own: figures with 95 % intervals, checks, curves, and what it cannot tell.
+
+    `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks:
+    the Result says it. Limits and verdict: see `rig.analysis.findings.conclude`.
+    """
+    found = Findings()
+    motion = motion_of(run)
+    if motion is None or motion.theta_m.size < 16:
+        found.sentence = "The run has no motor angle: nothing can be said about the gear."
+        if motion is not None:
+            found.sentence = f"The run has {motion.theta_m.size} usable rows: nothing can be said about the gear."
+        found.cannot.append(found.sentence)
+        return conclude(found, run.procedure, run.manifest)
+    found.cannot += motion.notes
+    speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
+    add_overview(found, run, motion, speed)
+    PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
+    return conclude(found, run.procedure, run.manifest)

@@ -1,0 +1,52 @@
+"""Angles and their units, the wrap of a counter, and Equation 1."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rig.analysis.result import Array
+
+TURN = 2.0 * np.pi  # rad
+DEG = 180.0 / np.pi  # degrees in a radian
+ARCMIN = 60.0 * DEG
+ARCSEC = 3600.0 * DEG
+RPM = 60.0 / TURN  # rev/min in a rad/s
+
+
+def transmission_error(theta_m: Array, theta_l: Array, ratio: float) -> Array:
+    """θ̃ = θ_m/N − θ_l      [ghorbel2001, Eq. 1]
+
+    `theta_m`, `theta_l`: rad, any one shape; gives rad at the output, positive when the load lags the motor.
+    """
+    return np.asarray(theta_m / ratio - theta_l)
+
+
+def unwrap(values: Array, period: float) -> Array:
+    """Undo the wrap of a counter or an angle of `period` (unit of `values`), shape (n,).
+
+    A step of more than half a period between neighbours is taken for a wrap, so the true step must stay below that.
+    """
+    step = np.diff(values)
+    turns = np.cumsum(np.round(step / period))
+    out = np.array(values, dtype=np.float64)
+    out[1:] -= turns * period
+    return out
+
+
+def is_wrapped(theta: Array) -> bool:
+    """Whether `theta` [rad] jumps by whole turns now and then, as an angle that nobody unwrapped does."""
+    step = np.diff(theta)
+    jumps = step[np.abs(step) > TURN / 2]
+    if jumps.size == 0 or jumps.size > 0.05 * step.size:  # a motor that really does half a turn per row does so often
+        return False
+    usual = float(np.median(step))
+    turns = (jumps - usual) / TURN
+    return bool(np.all(np.abs(turns - np.round(turns)) < 0.1))
+
+
+def measured_ratio(theta_m: Array, theta_l: Array) -> float:
+    """Motor turns per load turn as the two encoders say it, by least squares; inf when the load did not move."""
+    x = theta_l - theta_l.mean()
+    y = theta_m - theta_m.mean()
+    cross = float(x @ y)
+    return float(y @ y) / cross if cross else float("inf")

@@ -1,0 +1,106 @@
+"""What an analysis collects on its way to a Result: each part of it adds what it found and what it could not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.intervals import against_limit
+from rig.analysis.result import Array, Check, Estimate, Result, Verdict
+
+
+@dataclass
+class Findings:
+    """A Result in the making."""
+
+    estimates: list[Estimate] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
+    cannot: list[str] = field(default_factory=list)
+    tables: dict[str, list[dict[str, float | str]]] = field(default_factory=dict)
+    curves: dict[str, Array] = field(default_factory=dict)
+    sentence: str = ""  # the headline
+    rejected: str = ""  # why the run must not be believed, "" when it may
+    believed: int = 0  # how many estimates were there when it was rejected: those are about the run, not the gear
+
+    def reject(self, why: str) -> None:
+        """The figures added from here on are shown and do not count."""
+        self.rejected, self.believed = why, len(self.estimates)
+
+    def figure(self, name: str, label: str, value: float, unit: str, half: float, how: str) -> None:
+        """Add an estimate given as value ± half width of its 95 % interval."""
+        self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how))
+
+    def exact(self, name: str, label: str, value: float, unit: str, how: str) -> None:
+        """Add a figure that describes this run completely: a count, a share, a span."""
+        self.estimates.append(Estimate(name, label, value, unit, (value, value), how))
+
+    def curve(self, **arrays: Array | None) -> None:
+        """Add curves; `ke__fit` stands for "ke.fit". None is left out: an absent curve is an absent figure."""
+        for key, array in arrays.items():
+            if array is not None:
+                self.curves[key.replace("__", ".", 1)] = np.asarray(array, dtype=np.float64)
+
+
+def _judged(estimates: list[Estimate], limits: Mapping[str, Any]) -> list[tuple[Estimate, Verdict, str]]:
+    """Every estimate that has a limit, with its verdict and the limit in words."""
+    out = []
+    for e in estimates:
+        limit = limits.get(e.name)
+        if limit is None:
+            continue
+        bounds = limit if isinstance(limit, Mapping) else {"upper": limit}
+        lower, upper = bounds.get("lower"), bounds.get("upper")
+        words = " and ".join(
+            f"{w} {float(b):g} {e.unit}" for w, b in (("at least", lower), ("at most", upper)) if b is not None
+        )
+        verdict = against_limit(
+            e.ci95, None if lower is None else float(lower), None if upper is None else float(upper)
+        )
+        out.append((e, verdict, words))
+    return out
+
+
+def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Result:
+    """The verdict and its sentence.
+
+    `manifest["limits"]`, optional: {estimate name: {"lower": x, "upper": y}} or {estimate name: upper}, in the unit of
+    the estimate. A rejected run is FAIL whatever its figures. A run that did not end as planned cannot PASS.
+    """
+    judged = _judged(found.estimates, manifest.get("limits") or {})
+    for e, v, words in judged:
+        low, high = e.ci95
+        where = {
+            Verdict.PASS: "the whole interval is inside",
+            Verdict.FAIL: "the whole interval is outside",
+            Verdict.INCONCLUSIVE: "the limit lies within the interval",
+        }[v]
+        text = f"{e.label} {e.value:.4g} {e.unit} ({low:.4g} to {high:.4g}), limit {words}: {where}."
+        found.checks.append(Check(f"limit_{e.name}", v is Verdict.PASS, text))
+    verdicts = {v for _, v, _ in judged}
+    verdict = next((v for v in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS) if v in verdicts), Verdict.MEASURED)
+    sentence = found.sentence
+    estimates = found.estimates
+    status = str(manifest.get("status", "completed"))
+    if status not in ("completed", "imported"):
+        reason = manifest.get("exit_reason")
+        text = f"The run is {status}" + (f" ({reason})" if reason else "") + ": the figures are from what was recorded."
+        found.checks.append(Check("run_complete", False, text))
+        sentence = f"{text} {sentence}"
+        verdict = Verdict.INCONCLUSIVE if verdict is Verdict.PASS else verdict
+    if found.rejected:
+        verdict, sentence = Verdict.FAIL, f"{found.rejected} Figures are shown but do not count: {sentence}"
+        doubtful = estimates[found.believed :]
+        estimates = estimates[: found.believed] + [replace(e, how=f"Rejected run. {e.how}") for e in doubtful]
+    return Result(
+        procedure=procedure,
+        verdict=verdict,
+        sentence=sentence,
+        estimates=tuple(estimates),
+        checks=tuple(found.checks),
+        cannot=tuple(found.cannot),
+        tables=found.tables,
+        curves=found.curves,
+    )

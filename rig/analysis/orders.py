@@ -1,0 +1,195 @@
+"""Order spectra: lines per motor turn (or per output turn) over long spans, non-integer ones included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.angle import TURN
+from rig.analysis.result import Array
+from rig.analysis.sums import BLOCK, Sums
+
+FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere in the spectrum
+NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
+MOST_LINES = 24
+
+
+@dataclass(frozen=True)
+class Line:
+    """A_o·cos(o·θ − ψ): amplitude in the unit of the data, 1 σ of it, ψ rad, the span's resolution in orders."""
+
+    order: float
+    amplitude: float
+    u: float
+    phase: float
+    u_phase: float
+    resolution: float
+
+    @property
+    def resolved(self) -> bool:
+        """Whether it stands above what noise alone reaches in 1 case of 20 at one given order."""
+        return self.amplitude > 2.448 * self.u
+
+
+def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
+    """`y` (n,) averaged in `per_turn` equal bins a turn of the angle `theta` [rad, one direction]: (turns, values).
+
+    All rows count: noise averages down within a bin. Empty bins are interpolated.
+    """
+    turns = theta / TURN
+    low, high = float(turns.min()), float(turns.max())
+    bins = max(int((high - low) * per_turn), 1)
+    place = np.minimum(((turns - low) * per_turn).astype(np.int64), bins - 1)
+    rows = np.bincount(place, minlength=bins)
+    here = rows > 0
+    where = np.bincount(place, turns, bins)[here] / rows[here]
+    grid = low + (np.arange(bins) + 0.5) / per_turn
+    return grid, np.interp(grid, where, np.bincount(place, y, bins)[here] / rows[here])
+
+
+def bins_per_turn(rows_per_turn: float, order_max: float) -> int:
+    """Bins for a spectrum up to `order_max`: four a period if the rows allow, never more bins than rows."""
+    return max(int(min(4.0 * order_max, rows_per_turn)), 2)
+
+
+def spectrum(theta: Array, y: Array, order_max: float = 40.0) -> tuple[Array, Array]:
+    """Amplitude spectrum of `y` over the angle `theta` [rad, one direction], Hann window, zero-padded twofold.
+
+    Gives (orders, amplitudes); a sine of amplitude A shows A (its averaging within bins is undone). Resolution is two
+    orders per span, 2/turns. Ends below `order_max` where the rows are too few.
+    """
+    turns, values = resample(theta, y, _bins(theta, order_max))
+    n, step = values.size, float(turns[1] - turns[0]) if turns.size > 1 else 1.0
+    window = np.hanning(n + 2)[1:-1]
+    padded = 1 << int(np.ceil(np.log2(max(2 * n, 4))))
+    amplitude = np.abs(np.fft.rfft((values - values.mean()) * window, padded)) * (2.0 / window.sum())
+    orders = np.arange(amplitude.size) / (padded * step)
+    keep = orders <= min(order_max, 0.4 / step)
+    return orders[keep], amplitude[keep] / np.sinc(orders[keep] * step)
+
+
+def _bins(theta: Array, order_max: float) -> int:
+    span = max(abs(float(theta[-1] - theta[0])) / TURN, 1e-9)
+    return bins_per_turn(theta.size / span, order_max)
+
+
+def _columns(turns: Array, orders: Array) -> Array:
+    angle = TURN * np.multiply.outer(orders, turns)
+    return np.concatenate((np.ones((1, turns.size)), np.cos(angle), np.sin(angle)))
+
+
+def _solve(turns: Array, values: Array, orders: Array) -> Array:
+    """Constant, cosines and sines of `orders` by least squares over all rows, in blocks."""
+    total = Sums(np.zeros((2 * orders.size + 1,) * 2), np.zeros(2 * orders.size + 1), 0.0, 0)
+    for lo in range(0, turns.size, BLOCK):
+        total = total + Sums.of(_columns(turns[lo : lo + BLOCK], orders), values[lo : lo + BLOCK])
+    return total.solve()
+
+
+def _without(turns: Array, values: Array, orders: Array, coefficients: Array) -> Array:
+    rest = np.empty_like(values)
+    for lo in range(0, turns.size, BLOCK):
+        rest[lo : lo + BLOCK] = values[lo : lo + BLOCK] - coefficients @ _columns(turns[lo : lo + BLOCK], orders)
+    return rest
+
+
+def _local_noise(step: float, rest: Array, order: float) -> float:
+    """Variance of one coefficient (cosine or sine) at `order`, from the residual's periodogram on either side of it."""
+    n = rest.size
+    power = np.abs(np.fft.rfft(rest)) ** 2 * (2.0 / n) ** 2  # squared amplitudes at whole cycles per span
+    away = np.abs(np.arange(power.size) - order * n * step)
+    near = (away <= NEIGHBOURS) & (away >= 1.5)
+    near[[0, -1]] = False
+    if near.sum() < 3:
+        return float(np.mean(rest**2) * 2.0 / n)
+    return float(np.mean(power[near])) / 2.0
+
+
+def fit_lines(theta: Array, y: Array, orders: list[float]) -> list[Line]:
+    """Amplitude and phase of the given orders together, by least squares over the rows; 1 σ from the noise around each.
+
+    `theta`: rad, one direction; `y`: any unit. Orders closer than 1/span cannot be told apart; their σ does not say so.
+    """
+    wanted, turns = np.asarray(orders, dtype=np.float64), theta / TURN
+    zero = float(y.mean())
+    c = _solve(turns, y - zero, wanted)
+    rest = _without(turns, y - zero, wanted, c)
+    grid, values = resample(theta, rest, _bins(theta, 2.0 * float(wanted.max()) + 4.0))
+    step = float(grid[1] - grid[0])
+    lines = []
+    for j, order in enumerate(orders):
+        a, b = float(c[1 + j]), float(c[1 + wanted.size + j])
+        u, amplitude = float(np.sqrt(_local_noise(step, values, order))), float(np.hypot(a, b))
+        u_phase = u / amplitude if amplitude > 0 else float("inf")
+        lines.append(Line(order, amplitude, u, float(np.arctan2(b, a)), u_phase, 1.0 / (grid.size * step)))
+    return lines
+
+
+def find_lines(
+    theta: Array,
+    y: Array,
+    order_max: float,
+    known: tuple[float, ...] = (),
+    false_alarm: float = FALSE_ALARM,
+    most: int = MOST_LINES,
+) -> list[Line]:
+    """Lines that stand out of the local noise, strongest first.
+
+    A periodogram of pure noise is exponential around its local mean, so the largest of M independent orders exceeds
+    ln(M/α) times that mean with probability α; the mean is taken from the running median, which lines do not lift.
+    The strongest line is refined, subtracted with all before it, and the search repeated. `known` orders are
+    subtracted from the start and fitted with the rest, and only returned where they stand out too.
+    """
+    turns, values = resample(theta, y, _bins(theta, order_max))
+    centred = values - values.mean()
+    n, step = centred.size, float(turns[1] - turns[0]) if turns.size > 1 else 1.0
+    span = n * step
+    independent = int(span * min(order_max, 0.4 / step))
+    if independent < 8:
+        return []
+    window = np.hanning(n + 2)[1:-1]
+    fine = np.arange(4 * independent) / (4.0 * span)  # four trial orders for every independent one
+    found = [k for k in known if k < 0.4 / step]
+    rest = centred
+    if found:
+        rest = _without(turns, centred, np.asarray(found), _solve(turns, centred, np.asarray(found)))
+    most += len(found)
+    while len(found) < most:
+        power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
+        power[fine < 1.5 / span] = 0.0  # slower than that is trend
+        noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)
+        ratio = power / np.maximum(noise, 1e-300)
+        best = int(np.argmax(ratio))
+        if ratio[best] < np.log(independent / false_alarm):
+            break
+        found.append(_refine(turns, rest, float(fine[best]), 0.5 / span))
+        orders = np.asarray(found)
+        rest = _without(turns, centred, orders, _solve(turns, centred, orders))
+    lines = fit_lines(theta, y, found) if found else []
+    return sorted((line for line in lines if line.resolved), key=lambda line: -line.amplitude)
+
+
+def _refine(turns: Array, rest: Array, order: float, width: float) -> float:
+    """The order near `order` at which one line explains most, by three rounds of a nine-point search."""
+    window = np.hanning(rest.size + 2)[1:-1] * rest
+    for _ in range(3):
+        trial = order + np.linspace(-width, width, 9)
+        power = np.abs(np.exp(-1j * TURN * np.multiply.outer(trial, turns)) @ window)
+        order, width = float(trial[int(np.argmax(power))]), width / 4.0
+    return order
+
+
+def _local_median(x: Array) -> Array:
+    """Median of the neighbours of each value: half as many as its own number, 5 to NEIGHBOURS on either side.
+
+    Friction and drift make noise that falls with frequency: near zero only close neighbours have the same noise.
+    """
+    out = np.empty_like(x)
+    i = 0
+    while i < x.size:
+        half = min(max(i // 3, 5), NEIGHBOURS)
+        step = max(half // 4, 1)  # held for a quarter of the width: the noise varies slowly
+        out[i : i + step] = np.median(x[max(i - half, 0) : i + half + 1])
+        i += step
+    return out

@@ -1,0 +1,54 @@
+"""The run over time, thinned so that no peak is lost: minimum and maximum of every piece."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.angle import DEG, RPM
+from rig.analysis.findings import Findings
+from rig.analysis.result import Array
+from rig.analysis.source import Motion, Source
+from rig.analysis.speed import Speed
+
+POINTS = 2000  # of every curve
+Index = npt.NDArray[np.int64]
+
+
+def pieces(rows: int, points: int = POINTS) -> Index:
+    """First rows of at most `points` equal pieces."""
+    return np.arange(0, rows, max(-(-rows // points), 1), dtype=np.int64)
+
+
+def _extremes(x: Array, starts: Index) -> tuple[Array, Array]:
+    return np.asarray(np.fmin.reduceat(x, starts)), np.asarray(np.fmax.reduceat(x, starts))
+
+
+def _speed_extremes(speed: Speed, starts: Index) -> tuple[Array, Array]:
+    """Minimum and maximum speed [rpm] in each piece of rows; pieces without a value of their own take the next one."""
+    first = np.minimum(np.searchsorted(speed.row, starts), speed.t.size - 1)
+    unique, back = np.unique(first, return_inverse=True)
+    low, high = _extremes(speed.omega * RPM, unique)
+    return low[back], high[back]
+
+
+def add_overview(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    """The "time.…" curves; nothing without a time column."""
+    t = motion.t
+    if t is None or t.size < 2:
+        return
+    starts = pieces(t.size)
+    found.curve(time__t=t[starts], time__theta_m_deg=motion.theta_m[starts] * DEG)
+    reference = motion.pick(run.column("theta_ref"))
+    if reference is not None and np.isfinite(reference).any():
+        low, high = _extremes((reference - motion.theta_m) * DEG, starts)
+        found.curve(time__theta_ref_deg=reference[starts] * DEG)
+        found.curve(time__following_error_min=low, time__following_error_max=high)
+    if speed is not None and speed.t.size:
+        low, high = _speed_extremes(speed, starts)
+        found.curve(time__speed_min=low, time__speed_max=high)
+    for name in ("tau_m", "tau_l"):
+        tau = motion.pick(run.column(name))
+        if tau is not None and np.isfinite(tau).any():
+            low, high = _extremes(tau, starts)
+            found.curve(**{f"time__{name}_min": low, f"time__{name}_max": high})

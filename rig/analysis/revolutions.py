@@ -1,0 +1,144 @@
+"""One stroke to its revolutions: the slow trend taken off, Fourier coefficients and a curve for each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rig.analysis.angle import TURN
+from rig.analysis.result import Array
+from rig.analysis.source import Motion
+from rig.analysis.strokes import Stroke
+from rig.analysis.sums import BLOCK, Sums, harmonics, legendre
+
+TERMS = 15  # orders of the paper's series      [ghorbel2001, Eq. 8]
+GRID = 512  # points per motor turn of the curves
+ROWS_PER_TERM = 4  # rows a revolution must have for each order: twice what Nyquist asks, the rows are not evenly spaced
+
+
+@dataclass(frozen=True)
+class StrokeResult:
+    """What the whole revolutions of one stroke say; R revolutions, k orders, G grid points; arcsec at the output."""
+
+    direction: int
+    cosine: Array  # (R, k) a_n of each revolution
+    sine: Array  # (R, k) b_n
+    mean: Array  # (R,) mean of θ̃ over each revolution, trend included
+    theta_l: Array  # (R,) rad, where on the output each revolution lies
+    middle: Array  # (R,) s, when; row numbers without time
+    speed_rpm: Array  # (R,) signed; NaN without time
+    total: Array  # (G,) sum of θ̃ less trend and stroke mean, over the rows in each bin
+    position: Array  # (G,) sum of the rows' place in the turn, 0..1
+    rows: Array  # (G,) rows in each bin
+    curves: Array  # (R, G) the same, each revolution by itself
+    residual_square: float  # arcsec², Σ over the rows of what no term explains
+    residual_rows: int
+    trend: Array  # Legendre coefficients over the stroke, arcsec, constant included
+
+
+def trend_degree(span: float, revolutions: int) -> int:
+    """Degree of the slow change a stroke of `span` turns may have taken off: a cubic at 6 turns, never faster.
+
+    Eccentricity of the output bends θ̃ over the stroke; a polynomial this slow takes it off and leaves order 1 alone.
+    """
+    if revolutions >= 12:
+        return min(revolutions // 4, 24)
+    if revolutions >= 2:
+        return min(revolutions // 2, 3)
+    return 1 if span >= 1.25 else 0  # one turn cannot tell a slope from its own sine terms; a turn and a quarter can
+
+
+def filled(total: Array, position: Array, rows: Array) -> Array:
+    """Bin means moved from where the rows lay to the middle of each bin; empty bins from their neighbours."""
+    here = rows > 0
+    grid = (np.arange(rows.size) + 0.5) / rows.size
+    return np.interp(grid, position[here] / rows[here], total[here] / rows[here], period=1.0)
+
+
+def _in_bins(theta: Array, y: Array) -> tuple[Array, Array, Array]:
+    place = (theta / TURN) % 1.0
+    bins = np.minimum((place * GRID).astype(np.int64), GRID - 1)
+    return (
+        np.asarray(np.bincount(bins, y, GRID), dtype=np.float64),
+        np.asarray(np.bincount(bins, place, GRID), dtype=np.float64),
+        np.asarray(np.bincount(bins, minlength=GRID), dtype=np.float64),
+    )
+
+
+def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
+    """Fourier coefficients of every whole revolution, by least squares over all its rows, with one trend per stroke.
+
+    The sums of each revolution are kept: the trend is solved from their total, the revolutions from their own, so the
+    rows are read once for the numbers and once for the curves.
+    """
+    edges = [int(e) for e in stroke.edges]
+    base, span = (
+        float(motion.theta_m[stroke.start]),
+        0.5 * float(motion.theta_m[stroke.stop - 1] - motion.theta_m[stroke.start]),
+    )
+    degree = trend_degree(2 * abs(span) / TURN, stroke.revolutions)
+    slow, fast = slice(0, degree + 1), slice(degree + 1, degree + 1 + 2 * terms)
+    zero = float(motion.error_arcsec(edges[0], edges[0] + 1)[0])  # keeps the sums small: only differences matter
+    order0 = [0, *range(fast.start, fast.stop)]
+
+    def slow_columns(theta: Array) -> Array:
+        return legendre((theta - base) / span - 1.0, degree)
+
+    def sums(lo: int, hi: int) -> Sums:
+        total = Sums(np.zeros((fast.stop, fast.stop)), np.zeros(fast.stop), 0.0, 0)
+        for a in range(lo, hi, BLOCK):
+            b = min(a + BLOCK, hi)
+            theta = motion.theta_m[a:b]
+            columns = np.concatenate((slow_columns(theta), harmonics(theta, terms)))
+            total = total + Sums.of(columns, motion.error_arcsec(a, b) - zero)
+        return total
+
+    pieces = [sums(a, b) for a, b in pairwise(edges)]
+    whole = pieces[0]
+    for piece in pieces[1:]:
+        whole = whole + piece
+    if stroke.revolutions == 1:
+        whole = whole + sums(stroke.start, edges[0]) + sums(edges[-1], stroke.stop)
+    trend = whole.solve()[slow]
+
+    coefficients = np.empty((stroke.revolutions, 1 + 2 * terms))
+    residual_square = 0.0
+    for r, piece in enumerate(pieces):
+        moment = piece.moment - piece.gram[:, 1 : degree + 1] @ trend[1:]
+        square = piece.square - 2.0 * float(trend[1:] @ piece.moment[1 : degree + 1])
+        square += float(trend[1:] @ piece.gram[1 : degree + 1, 1 : degree + 1] @ trend[1:])
+        own = Sums(piece.gram[np.ix_(order0, order0)], moment[order0], square, piece.count)
+        coefficients[r] = own.solve()
+        residual_square += own.residual(coefficients[r])
+
+    slow_mean = np.array([p.gram[0, 1 : degree + 1] @ trend[1:] / max(p.count, 1) for p in pieces])
+    curves = np.empty((stroke.revolutions, GRID))
+    total, position, rows = np.zeros(GRID), np.zeros(GRID), np.zeros(GRID)
+    for r, (a, b) in enumerate(pairwise(edges)):
+        theta = motion.theta_m[a:b]
+        y = motion.error_arcsec(a, b) - zero - trend @ slow_columns(theta)
+        one = _in_bins(theta, y)
+        curves[r] = filled(*one)
+        total, position, rows = total + one[0], position + one[1], rows + one[2]
+
+    theta_l = motion.theta_l
+    assert theta_l is not None
+    middle = np.array([(a + b) // 2 for a, b in pairwise(edges)])
+    return StrokeResult(
+        direction=stroke.direction,
+        cosine=coefficients[:, 1 : 1 + terms],
+        sine=coefficients[:, 1 + terms :],
+        mean=coefficients[:, 0] + slow_mean + zero,
+        theta_l=theta_l[middle],
+        middle=middle.astype(np.float64) if motion.t is None else motion.t[middle],
+        speed_rpm=np.array([motion.speed_rpm(a, b) for a, b in pairwise(edges)]),
+        total=total,
+        position=position,
+        rows=rows,
+        curves=curves,
+        residual_square=residual_square,
+        residual_rows=sum(piece.count for piece in pieces),
+        trend=trend,
+    )

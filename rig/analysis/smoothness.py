@@ -1,0 +1,170 @@
+"""Did the motor turn evenly enough for a slow run to mean what it says? Sticking, speed scatter, hunting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.angle import RPM, TURN
+from rig.analysis.result import Array, Check, Estimate
+from rig.analysis.source import Motion
+from rig.analysis.speed import Speed, motor_speed
+from rig.analysis.strokes import Stroke
+from rig.analysis.sums import harmonics
+
+STUCK_BELOW = 0.10  # of the nominal speed: below this the motor counts as stuck
+STUCK_LIMIT = 0.02  # share of the time
+SIGMA_LIMIT = 0.10  # of the nominal speed
+LOCKED_ORDERS = 30  # ripple up to this order follows the motor angle: gear and motor, not the loop
+HUNTING_SHARE = 0.25  # of the variance: a weaker peak is not called hunting
+ADVICE = {
+    "stuck": "it sticks and breaks loose: raise Kd (double it), then Kp",
+    "hunting": "either the loop hunts, then lower Ki (halve it), or something shakes the rig at that frequency "
+    "(a standstill run shows it)",
+    "rough": "it runs unevenly without a frequency of its own: raise Kp and Kd together",
+}
+
+
+@dataclass(frozen=True)
+class Smoothness:
+    """How evenly the motor turned within the strokes, reversals left out."""
+
+    nominal_rpm: float
+    stuck: float  # share of the time
+    sigma: float  # speed scatter over nominal
+    hunting_hz: float  # strongest frequency of the speed that is not locked to the angle
+    hunting_share: float  # of the speed's variance
+    window: float  # s, behind each speed value
+
+    @property
+    def passed(self) -> bool:
+        return self.stuck <= STUCK_LIMIT and self.sigma <= SIGMA_LIMIT
+
+    @property
+    def hunts(self) -> bool:
+        return self.hunting_share >= HUNTING_SHARE and np.isfinite(self.hunting_hz)
+
+
+def _locked(theta: Array, deviation: Array) -> Array:
+    """The part of `deviation` that repeats with the motor angle, orders 1 to LOCKED_ORDERS."""
+    orders = min(LOCKED_ORDERS, deviation.size // 8)
+    if orders < 1 or abs(theta[-1] - theta[0]) < 2 * TURN:  # one turn alone cannot tell angle from time
+        return np.zeros_like(deviation)
+    columns = harmonics(theta, orders)
+    return np.asarray(np.linalg.lstsq(columns @ columns.T, columns @ deviation, rcond=1e-10)[0] @ columns)
+
+
+def _hunting(parts: list[tuple[Array, Array]], step: float, variance: float) -> tuple[float, float]:
+    """(frequency [Hz], share of `variance`) of the strongest line of the angle-free deviations, over all strokes."""
+    longest = max(part.size for _, part in parts)
+    padded = 1 << int(np.ceil(np.log2(max(2 * longest, 16))))
+    power = np.zeros(padded // 2 + 1)
+    for _, part in parts:
+        window = np.hanning(part.size + 2)[1:-1]
+        power += np.abs(np.fft.rfft((part - part.mean()) * window, padded)) ** 2 / np.sum(window**2) * part.size
+    frequency = np.fft.rfftfreq(padded, step)
+    slow = frequency < 3.0 / (longest * step)  # slower than three periods a stroke is drift
+    power[slow] = 0.0
+    if variance <= 0 or not power.any():
+        return float("nan"), 0.0
+    peak = int(np.argmax(power))
+    wide = max(3 * padded // longest, 1)  # the line's own width under the window
+    rows = sum(part.size for _, part in parts)
+    share = 2.0 * float(np.sum(power[max(peak - wide, 0) : peak + wide + 1])) / padded / (rows * variance)
+    return float(frequency[peak]), min(share, 1.0)
+
+
+def nominal_rpm(motion: Motion, strokes: list[Stroke], reference: Array | None) -> float:
+    """What the speed should have been: the slope of the reference where there is one, else the strokes' own mean."""
+    if reference is not None and motion.t is not None:
+        slopes = []
+        for s in strokes:
+            dt = float(motion.t[s.stop - 1] - motion.t[s.start])
+            slopes.append(abs(float(reference[s.stop - 1] - reference[s.start])) / dt * RPM)
+        if np.all(np.isfinite(slopes)) and min(slopes) > 0:
+            return float(np.median(slopes))
+    return float(np.median([abs(motion.speed_rpm(s.start, s.stop - 1)) for s in strokes]))
+
+
+def smoothness(
+    motion: Motion, strokes: list[Stroke], reference: Array | None = None, speed: Speed | None = None
+) -> Smoothness | None:
+    """Judge the strokes (cut at the reversals already); None without time or strokes."""
+    if motion.t is None or not strokes:
+        return None
+    speed = speed or motor_speed(motion.t, motion.theta_m)
+    nominal = nominal_rpm(motion, strokes, reference)
+    parts, deviations, stuck, count = [], [], 0, 0
+    for s in strokes:
+        here = (speed.row >= s.start) & (speed.row < s.stop)
+        if here.sum() < 8:
+            continue
+        rpm = speed.omega[here] * RPM * s.direction
+        stuck += int(np.count_nonzero(np.abs(rpm) < STUCK_BELOW * nominal))
+        count += rpm.size
+        deviation = rpm - rpm.mean()
+        deviations.append(deviation)
+        theta = motion.theta_m[speed.row[here].astype(np.int64)]
+        parts.append((theta, deviation - _locked(theta, deviation)))
+    if not count or not nominal > 0:
+        return None
+    variance = float(np.mean(np.concatenate(deviations) ** 2))
+    hunting_hz, share = _hunting(parts, speed.window / 4, variance)
+    return Smoothness(nominal, stuck / count, float(np.sqrt(variance)) / nominal, hunting_hz, share, speed.window)
+
+
+def advice(s: Smoothness) -> str:
+    """Which gain to change and how, for a run that was not smooth."""
+    if s.stuck > STUCK_LIMIT:
+        cause = "stuck"
+    elif s.hunts:
+        cause = "hunting"
+    else:
+        cause = "rough"
+    return f"{ADVICE[cause]}; `hdrig tune` finds gains."
+
+
+def sentence(s: Smoothness) -> str:
+    """Why the run was rejected, or the figures it passed with."""
+    figures = (
+        f"stuck {100 * s.stuck:.1f} % of the time (limit {100 * STUCK_LIMIT:.0f} %), "
+        f"speed scatter {100 * s.sigma:.1f} % of {s.nominal_rpm:.2f} rpm (limit {100 * SIGMA_LIMIT:.0f} %)"
+    )
+    if s.hunts and not s.passed:
+        figures += f", swinging at {s.hunting_hz:.2f} Hz ({100 * s.hunting_share:.0f} % of the variance)"
+    return (
+        f"The motor ran smoothly: {figures}." if s.passed else f"The motor did not run smoothly: {figures}; {advice(s)}"
+    )
+
+
+def checks(s: Smoothness) -> tuple[Check, Check]:
+    """The two conditions a slow run has to meet."""
+    return (
+        Check(
+            "stuck_share",
+            s.stuck <= STUCK_LIMIT,
+            f"Stuck (below {100 * STUCK_BELOW:.0f} % of {s.nominal_rpm:.2f} rpm) for {100 * s.stuck:.2f} % of the "
+            f"strokes, limit {100 * STUCK_LIMIT:.0f} %.",
+        ),
+        Check(
+            "speed_scatter",
+            s.sigma <= SIGMA_LIMIT,
+            f"Speed scatter {100 * s.sigma:.2f} % of nominal (1 σ), limit {100 * SIGMA_LIMIT:.0f} %.",
+        ),
+    )
+
+
+def estimates(s: Smoothness) -> tuple[Estimate, ...]:
+    """The same as figures. They describe this run completely, so their interval is the value itself."""
+    how = f"speed over {1000 * s.window:.0f} ms windows, within the strokes, half a turn at each reversal left out"
+    stuck, sigma = 100 * s.stuck, 100 * s.sigma
+    rows = [
+        Estimate("stuck_share", "Time stuck", stuck, "%", (stuck, stuck), f"Share below 10 % of nominal; {how}."),
+        Estimate("speed_scatter", "Speed scatter", sigma, "%", (sigma, sigma), f"1 σ over nominal; {how}."),
+    ]
+    if s.hunts:
+        share = f"{100 * s.hunting_share:.0f} % of its variance"
+        what = f"Strongest frequency of the speed that does not follow the motor angle, {share}."
+        rows.append(Estimate("hunting_frequency", "Hunting frequency", s.hunting_hz, "Hz", (s.hunting_hz,) * 2, what))
+    return tuple(rows)

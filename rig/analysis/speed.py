@@ -1,0 +1,49 @@
+"""Motor speed from counts: the difference of two means, robust against quantisation and uneven sampling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.angle import RPM
+from rig.analysis.result import Array
+
+STEP = 0.010  # s    one speed value this often: hunting up to 50 Hz stays visible
+FEWEST = 2  # rows in a mean
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Speed over time; all shapes (m,). `row` is the row of the run in the middle of each value's window."""
+
+    t: Array  # s
+    omega: Array  # rad/s, motor
+    row: Array  # row numbers
+    window: float  # s, what one value looks at
+
+
+def motor_speed(t: Array, theta_m: Array, step: float = STEP) -> Speed:
+    """Slope of `theta_m` [rad] against `t` [s], both (n,), over windows of four steps (40 ms), one value a step.
+
+    Each value is (mean angle of two steps − mean angle of the two before) / (the same of time): as good as a line fit
+    to within 6 % of its σ, and at 10 000 counts per turn and 1 kHz its quantisation noise is 0.3 % of 9.6 rpm. Time is
+    averaged like the angle, so jitter of the samples does no harm beyond what the rows of a window leave of it.
+    """
+    if t.size < 8 * FEWEST:
+        return Speed(np.empty(0), np.empty(0), np.empty(0), 0.0)
+    period = float(t[-1] - t[0]) / (t.size - 1)
+    size = max(round(step / period), FEWEST)
+    starts = np.arange(0, t.size - size + 1, size)
+    # sums are taken from the middle of the run: the rounding error of long sums stays below a count
+    time = np.add.reduceat(t[: starts[-1] + size] - t[t.size // 2], starts) / size
+    angle = np.add.reduceat(theta_m[: starts[-1] + size] - theta_m[t.size // 2], starts) / size
+    two_t, two_a = time[1:] + time[:-1], angle[1:] + angle[:-1]
+    middle = 0.25 * (two_t[2:] + two_t[:-2]) + t[t.size // 2]
+    omega = (two_a[2:] - two_a[:-2]) / (two_t[2:] - two_t[:-2])
+    return Speed(middle, omega, starts[2:-1].astype(np.float64), 4 * size * period)
+
+
+def per_row_rpm(speed: Speed, t: Array) -> Array:
+    """The speed at any times `t` [s], rpm, linear between its values."""
+    return np.interp(t, speed.t, speed.omega) * RPM

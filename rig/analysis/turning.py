@@ -1,0 +1,171 @@
+"""Runs whose motor turns: slow ones give the kinematic error, fast ones what becomes of it at speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rig.analysis import kinematic_words as words
+from rig.analysis import smoothness as smooth
+from rig.analysis.angle import DEG, RPM, TURN
+from rig.analysis.findings import Findings
+from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.orders import find_lines, spectrum
+from rig.analysis.result import Check
+from rig.analysis.revolutions import TERMS
+from rig.analysis.source import Motion, Source
+from rig.analysis.speed import Speed, motor_speed
+from rig.analysis.strokes import Stroke, find_strokes
+from rig.analysis.torsion_words import add_torsion
+
+SPECTRUM_TO = 40.0  # orders of the motor drawn
+LINES_TO = 150.0  # orders searched: tooth mesh of a ratio-50 gear is 102
+LINES_FROM = 20  # turns a stroke needs before a line between the whole orders means anything
+NO_LOAD = "No load angle was recorded: kinematic error, torsion and orders of θ̃ cannot be had."
+
+
+def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | None, slow: bool) -> None:
+    """Everything a turning motor tells. `slow`: the run was meant to give the pure kinematic error, so it is judged."""
+    strokes = find_strokes(motion)
+    if not strokes:
+        span = float(np.ptp(motion.theta_m)) / TURN
+        found.sentence = (
+            f"The motor made no whole turn in one direction once the reversals are cut (it moved {span:.2f} turns)."
+        )
+        found.cannot.append(found.sentence)
+        return
+    smoothness = smooth.smoothness(motion, strokes, motion.pick(run.column("theta_ref")), speed) if slow else None
+    if smoothness is not None:
+        found.checks += smooth.checks(smoothness)
+        found.estimates += smooth.estimates(smoothness)
+        if not smoothness.passed:
+            found.reject(smooth.sentence(smoothness))
+    elif slow:
+        found.cannot.append(
+            "No usable time column: whether the motor stuck or hunted cannot be told; orders are unaffected."
+        )
+    if motion.theta_l is None:
+        found.cannot.append(NO_LOAD)
+        _speed_figures(found, motion, strokes)
+        found.sentence = found.sentence or "The motor turned, the load angle is missing."
+        return
+    wrong = angles_disagree(motion)
+    found.checks.append(Check("ratio", not wrong, wrong or f"The encoders agree with the ratio {motion.ratio:g}."))
+    if wrong:
+        found.sentence = "No kinematic error was computed."
+        found.reject(wrong)
+        return
+    _kinematic_error(found, run, motion, strokes, slow)
+    _orders(found, motion, max(strokes, key=lambda s: s.revolutions))
+    if not slow:
+        _speed_figures(found, motion, strokes)
+    tau_l = motion.pick(run.column("tau_l"))
+    if not add_torsion(found, motion, tau_l):
+        why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
+        found.cannot.append(f"Stiffness: {why}.")
+
+
+def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> None:
+    groups = groups_by_speed(motion, strokes)
+    most = max(sum(s.revolutions for s in g) for g in groups)
+    # the pure error is the slowest speed's; a run at speed is described by the speed it held longest
+    worthy = [g for g in groups if sum(s.revolutions for s in g) * 4 >= most]
+    main = worthy[0] if slow else max(groups, key=lambda g: sum(s.revolutions for s in g))
+    ke = measure(run, motion, main, slow)
+    if ke is None:
+        found.cannot.append("The rows are too few per motor turn for a single order.")
+        found.sentence = "The motor turned too fast for the row rate."
+        return
+    words.add_profile(found, ke, slow)
+    words.add_series(found, ke)
+    words.add_trend(found, ke)
+    words.add_limits_of_the_run(found, ke, motion.ratio, slow)
+    found.sentence = headline(found, ke, slow)
+    others = [(g, measure(run, motion, g, slow)) for g in worthy if g is not main]
+    if others:
+        found.tables["speeds"] = [_speed_row(k) for k in (ke, *(k for _, k in others)) if k is not None]
+        found.cannot.append(
+            f"The run holds {len(worthy)} speeds; the figures are those of {ke.speed_rpm:.4g} rpm, a table has all."
+        )
+
+
+def _speed_row(ke: KinematicError) -> dict[str, float | str]:
+    value, (low, high) = ke.profile.peak_to_peak()
+    order2 = float(ke.profile.amplitude[1]) if ke.profile.terms > 1 else float("nan")
+    return {
+        "speed_rpm": ke.speed_rpm,
+        "revolutions": float(ke.profile.forward + ke.profile.reverse),
+        "peak_to_peak_arcsec": value,
+        "lo": low,
+        "hi": high,
+        "order_2_arcsec": order2,
+    }
+
+
+def headline(found: Findings, ke: KinematicError, slow: bool) -> str:
+    """One sentence with the figure, its interval, the speed and the number of revolutions."""
+    p = ke.profile
+    value, (low, high) = p.peak_to_peak()
+    what = "Kinematic error" if slow else "θ̃"
+    at = f" at {ke.speed_rpm:.4g} rpm" if np.isfinite(ke.speed_rpm) else ""
+    text = (
+        f"{what} {value:.1f} arcsec ({value / 60:.2f} arcmin) peak to peak{at}, 95 % interval {low:.1f} to {high:.1f}"
+    )
+    text += f", from {p.forward} forward and {p.reverse} reverse revolutions"
+    strongest = int(np.argmax(p.amplitude)) + 1
+    return text + f"; order {strongest} is the largest with {p.amplitude[strongest - 1]:.2f} arcsec."
+
+
+def _orders(found: Findings, motion: Motion, stroke: Stroke) -> None:
+    """Fine order spectrum of the longest stroke, and the lines in it when it is long enough to place them."""
+    theta = motion.theta_m[stroke.start : stroke.stop]
+    error = motion.error_arcsec(stroke.start, stroke.stop)
+    error -= np.polynomial.Polynomial.fit(
+        theta[:: max(theta.size // 5000, 1)], error[:: max(theta.size // 5000, 1)], 1
+    )(theta)
+    orders, amplitude = spectrum(theta, error, SPECTRUM_TO)
+    found.curve(spectrum__order=orders, spectrum__amplitude=amplitude)
+    if stroke.revolutions < LINES_FROM:
+        return
+    lines = find_lines(theta, error, LINES_TO, known=tuple(range(1, TERMS + 1)))
+    found.tables["lines"] = [
+        {
+            "order": line.order,
+            "per_output_turn": line.order * motion.ratio,
+            "amplitude_arcsec": line.amplitude,
+            "u_arcsec": line.u,
+            "phase_deg": line.phase * DEG,
+            "u_phase": line.u_phase * DEG,
+            "resolution": line.resolution,
+        }
+        for line in lines
+    ]
+
+
+def _speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) -> None:
+    """Drift and ripple of the speed over the longest stroke."""
+    if motion.t is None:
+        found.cannot.append("No usable time column: speeds cannot be had.")
+        return
+    s = max(strokes, key=lambda s: s.revolutions)
+    edges = s.edges
+    turns = np.diff(motion.theta_m[edges]) / np.diff(motion.t[edges]) * RPM
+    if not any(e.name == "mean_speed" for e in found.estimates):
+        half = 1.96 * float(turns.std()) / np.sqrt(turns.size)
+        found.figure(
+            "mean_speed", "Mean motor speed", float(turns.mean()), "rpm", half, "Turn by turn over the longest stroke."
+        )
+    if turns.size >= 8:
+        middle = 0.5 * (motion.t[edges][1:] + motion.t[edges][:-1])
+        change = float(np.polyfit(middle - middle[0], turns, 1)[0] * (middle[-1] - middle[0]))
+        found.exact(
+            "speed_drift",
+            "Speed change over the stroke",
+            change,
+            "rpm",
+            "Line through the speeds of the turns, end to end.",
+        )
+    fine = motor_speed(motion.t[s.start : s.stop], motion.theta_m[s.start : s.stop], step=0.004)
+    if fine.omega.size > 16:
+        ripple = float(np.std(fine.omega) * RPM)
+        how = f"1 σ of the speed over {1000 * fine.window:.0f} ms windows: ripple with the angle, wander, count noise."
+        found.exact("speed_ripple", "Speed ripple", ripple, "rpm", how)
