@@ -138,9 +138,11 @@ def step(
         s * (k1[6] + 2.0 * (k2[6] + k3[6]) + k4[6]),
     )
     work = torque[0] * travel + 0.5 * v4 * v4 / p[PER_J_M]
-    if kick != 0.0:  # ∫ lag·e^{−t/T}·w dt with w a straight line
-        share = p[T_DRIVE] / h * (1.0 - half * half * (1.0 + h / p[T_DRIVE]))
-        work += kick / p[PER_J_M] * (w * (1.0 - half * half) + gain * share)
+    if kick != 0.0:  # ∫ lag·e^{−t/T}·w dt with w a parabola
+        x, keep = h / p[T_DRIVE], half * half
+        first = (1.0 - keep * (1.0 + x)) / x
+        second = (2.0 - keep * (2.0 + x * (2.0 + x))) / (x * x)
+        work += kick / p[PER_J_M] * (w * (1.0 - keep) + h * k1[0] * first + (gain - h * k1[0]) * second)
     return end, lost, work, half * half
 
 
@@ -195,16 +197,16 @@ def halted(y: Four, grip: Four) -> Four:
 
 
 @njit(cache=True)
-def longest_substep(omega_m: float, a_m: float, grip: Four, p: Vector) -> float:
-    """The longest substep [s] every rate allows; `omega_m` may change by what `a_m` does in one substep of the mode."""
+def longest_substep(omega_m: float, most_a: float, grip: Four, p: Vector) -> float:
+    """The longest substep [s] every rate allows, wherever an acceleration of `most_a` takes the speed."""
     h = C_MODE / p[MODE_RATE]
     if grip[0] == 0.0:
         return h / p[REFINE]
-    drift = abs(a_m) * h
-    order_rate = p[TERMS] * (abs(omega_m) + drift)
-    if order_rate * h > C_ORDER:
-        h = C_ORDER / order_rate
-    x = max((abs(omega_m) - drift) * p[PER_OMEGA_S], STEEPEST)
+    angle, speed = C_ORDER / p[TERMS], abs(omega_m)  # the motor may go through `angle`: speed·h + a·h² at most
+    reach = speed + math.sqrt(speed * speed + 4.0 * most_a * angle)
+    if reach * h > 2.0 * angle:
+        h = 2.0 * angle / reach
+    x = max((speed - most_a * h) * p[PER_OMEGA_S], STEEPEST)
     growth = 2.0 * grip[2] * (p[TAU_S] - p[TAU_C]) * x * math.exp(-x * x) * p[PER_OMEGA_S] * p[PER_J_M]
     if growth * h > C_STRIBECK:
         h = C_STRIBECK / growth
@@ -262,7 +264,7 @@ def advance(
             break
         h = left
         if grip[0] != 0.0 or grip[1] != 0.0:
-            most = longest_substep(y[1], a_m, grip, p)
+            most = longest_substep(y[1], max(abs(a_m), abs(k1[0])), grip, p)  # before and behind the drive's lag
             if not most >= H_LEAST:
                 status = TOO_FAST
                 break
@@ -274,8 +276,11 @@ def advance(
             event, end, series_end, net_end, keep, lost, work = attempt(y, k1, h, torque, lag, grip, hold, p)
             end = halted(end, grip)
             net_end = balance(end, series_end, tau + lag * keep, tau_ext, p)
-        if not math.isfinite(end[0] + end[1] + end[2] + end[3]):
+        if not math.isfinite(end[0] + end[1] + end[2] + end[3] + net_end[0]):
             status = NOT_FINITE
+            break
+        if p[TERMS] * abs(end[1]) * h > 2.0 * C_ORDER:  # what pushed it came up inside the substep, unforeseen
+            status = TOO_FAST
             break
         if events > MOST_EVENTS:
             status = CHATTER
