@@ -52,6 +52,8 @@ def _joined(batches: list[pa.RecordBatch]) -> pa.Table:
 
 def _pieces(batch: pa.RecordBatch) -> Iterator[tuple[pa.RecordBatch, float]]:
     """Stretches of a batch that lie in one minute of `t`; a sample without time counts as minute -1."""
+    if not batch.num_rows:
+        return
     minutes = np.nan_to_num(np.floor(as_float(pa.chunked_array([batch.column("t")])) / GROUP), nan=-1.0)
     cuts = [0, *(np.flatnonzero(np.diff(minutes)) + 1).tolist(), batch.num_rows]
     for start, stop in itertools.pairwise(cuts):

@@ -50,9 +50,9 @@ def _column(rows: Array, name: str, dtype: str) -> pa.Array:
             return pa.array(values, mask=absent if absent.any() else None)
 
 
-def checksum(batch: pa.RecordBatch) -> int:
-    """CRC-32 over validity and values of every column, as they are before and after the way through a file."""
-    crc = 0
+def checksum(batch: pa.RecordBatch, first: int) -> int:
+    """CRC-32 over `first`, the index of the first row, then validity and values of every column."""
+    crc = zlib.crc32(b"%d" % first)
     for column in batch.columns:
         validity, values = column.buffers()
         if column.null_count:

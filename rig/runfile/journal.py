@@ -49,7 +49,7 @@ class JournalWriter:
 
     def append(self, batch: pa.RecordBatch) -> None:
         """Hand one batch to the operating system. Raises OSError; then the file ends where it did before."""
-        self._stream.write_batch(batch, custom_metadata={FIRST: str(self.rows), CRC: str(checksum(batch))})
+        self._stream.write_batch(batch, custom_metadata={FIRST: str(self.rows), CRC: str(checksum(batch, self.rows))})
         self._flush()
         self.rows += batch.num_rows
 
@@ -136,9 +136,10 @@ def _batches(source: pa.NativeFile) -> Iterator[tuple[pa.RecordBatch, int | None
             if about is None or CRC not in about:
                 yield batch, None
                 continue
-            if int(about[CRC]) != checksum(batch):
+            first = int(about[FIRST])
+            if int(about[CRC]) != checksum(batch, first):
                 return
-            yield batch, int(about[FIRST])
+            yield batch, first
     except (StopIteration, ValueError, OSError, pa.ArrowException):
         return  # the stream's end, or a tear
 

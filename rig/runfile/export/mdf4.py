@@ -41,7 +41,7 @@ def _head(mdf: Any, run: Run) -> None:
     mdf.header.author = str(run.manifest.get("operator") or "")
     mdf.header.project = f"hdrig {run.procedure}"
     mdf.header.subject = str((run.manifest.get("gear") or {}).get("serial") or "")
-    mdf.header.comment = f"{'SIMULATED: every value is from the twin. ' if run.simulated else ''}Run {run.name}"
+    mdf.header.description = f"{'SIMULATED: every value is from the twin. ' if run.simulated else ''}Run {run.name}"
     if run.manifest.get("started_utc"):
         mdf.header.start_time = datetime.fromisoformat(run.manifest["started_utc"])
 

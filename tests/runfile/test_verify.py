@@ -1,0 +1,224 @@
+"""What verify holds against a run, and the list of runs."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from rig.core.channels import Flag
+from rig.core.errors import UsageError
+from rig.runfile import manifest
+from rig.runfile.finalise import finalise
+from rig.runfile.listing import list_runs
+from rig.runfile.process import this_process
+from rig.runfile.verify import verify
+from tests.runfile.rows import new_folder, write_journal
+
+
+def closed(root: Path, rows: int = 300, **about: Any) -> Path:
+    """A run as it should be."""
+    folder = new_folder(root, **about)
+    write_journal(folder, 0, rows, close=True)
+    finalise(folder, "completed", "end", timing={"missed": 0})
+    return folder
+
+
+def found(folder: Path, level: str = "error") -> list[tuple[str, str]]:
+    """Findings of one level, as (check, sentence)."""
+    return [(f.check, f.sentence) for f in verify(folder) if f.level == level]
+
+
+def tampered(folder: Path, name: str, change: Callable[[bytes], bytes]) -> None:
+    """Change a file behind hdrig's back."""
+    data = change((folder / name).read_bytes())
+    (folder / name).unlink()
+    (folder / name).write_bytes(data)
+    (folder / name).chmod(0o444)
+
+
+def with_column(folder: Path, name: str, change: Callable[[np.ndarray[Any, Any]], None], journal: bool = False) -> None:
+    """Rewrite one column of the archive, hash and all; the journal goes, unless it is wanted."""
+    path = folder / "samples.parquet"
+    table = pq.read_table(path)
+    at = table.schema.get_field_index(name)
+    values = table.column(name).to_numpy().copy()
+    change(values)
+    table = table.set_column(at, table.schema.field(at), pa.array(values, from_pandas=True))
+    path.unlink()
+    pq.write_table(table, path)
+    path.chmod(0o444)
+    from rig.runfile.finalise import describe
+
+    files = manifest.read(folder)["files"]
+    files["samples.parquet"] |= describe(path)
+    if not journal:
+        (folder / "journal-0001.arrows").unlink()
+        del files["journal-0001.arrows"]
+    manifest.update(folder, files=files)
+
+
+def test_a_run_as_it_should_be_has_nothing_held_against_it(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    assert found(folder) == []
+    assert found(folder, "warning") == []
+    assert found(folder, "note") == [("flags", "43 of 300 rows are flagged STALE_TAU")]
+
+
+@pytest.mark.parametrize("name", ["samples.parquet", "journal-0001.arrows", "bench.toml", "timing.json"])
+def test_one_changed_byte_of_any_file_is_found(tmp_path: Path, name: str) -> None:
+    folder = closed(tmp_path)
+    tampered(folder, name, lambda data: data[:2] + bytes([data[2] ^ 1]) + data[3:])
+    assert ("hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's") in found(folder)
+
+
+def test_a_missing_file_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    (folder / "timing.json").unlink()
+    assert found(folder) == [("hashes", "timing.json is in the manifest and not in the folder")]
+
+
+def test_a_raw_file_that_can_be_written_to_is_pointed_out(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    (folder / "samples.parquet").chmod(0o644)
+    assert [check for check, _ in found(folder, "warning")] == ["read-only"]
+    assert found(folder) == []
+
+
+def test_rows_that_are_not_as_many_as_said_are_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    files = manifest.read(folder)["files"]
+    files["samples.parquet"]["rows"] = 301
+    manifest.update(folder, files=files)
+    assert found(folder) == [("rows", "300 rows, the manifest says 301")]
+
+
+def test_time_that_runs_backwards_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+
+    def back(t: np.ndarray[Any, Any]) -> None:
+        t[100] = 0.05
+
+    with_column(folder, "t", back)
+    ((check, sentence),) = found(folder)
+    assert check == "samples"
+    assert "time runs backwards after row 99" in sentence
+
+
+def late(t: np.ndarray[Any, Any]) -> None:
+    """Three cycles that are not there, after row 149."""
+    t[150:] += 3e-3
+
+
+def test_a_gap_nobody_told_of_is_an_error(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    with_column(folder, "t", late)
+    assert found(folder) == [
+        ("gaps", "1 gaps longer than 1.5 periods of 1 ms, unexplained by the loop; the longest is 4 ms at t = 0.149 s")
+    ]
+
+
+@pytest.mark.parametrize(("row", "flag"), [(150, Flag.MISSED), (149, Flag.STALE_M)])
+def test_a_gap_the_loop_flagged_is_a_warning(tmp_path: Path, row: int, flag: Flag) -> None:
+    folder = closed(tmp_path)
+
+    def set_flag(flags: np.ndarray[Any, Any]) -> None:
+        flags[row] |= int(flag)
+
+    with_column(folder, "t", late, journal=True)
+    with_column(folder, "flags", set_flag)
+    assert found(folder) == []
+    ((check, sentence),) = found(folder, "warning")
+    assert check == "gaps"
+    assert "flagged by the loop" in sentence
+    assert ("flags", f"1 of 300 rows are flagged {flag.name}") in found(folder, "note")
+
+
+def test_an_archive_that_differs_from_its_journal_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+
+    def spoil(theta: np.ndarray[Any, Any]) -> None:
+        theta[7] += 1e-9
+
+    with_column(folder, "theta_m", spoil, journal=True)
+    assert found(folder) == [("journal", "journal and samples.parquet differ from row 0 on")]
+
+
+def test_simulated_rows_never_pass_for_measured_ones(tmp_path: Path) -> None:
+    folder = closed(tmp_path, backend="can")
+    assert found(folder) == [("backend", "300 of 300 rows are simulated, the backend is 'can'")]
+
+
+def test_a_measured_row_in_a_simulated_run_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+
+    def measured(flags: np.ndarray[Any, Any]) -> None:
+        flags[5] = 0
+
+    with_column(folder, "flags", measured)
+    assert found(folder) == [("backend", "299 of 300 rows are simulated, the backend is 'sim'")]
+
+
+def test_a_run_never_closed_is_found_and_the_way_out_is_named(tmp_path: Path) -> None:
+    folder = new_folder(tmp_path)
+    write_journal(folder, 0, 100)
+    assert found(folder) == [("status", "the run was never closed; hdrig recover makes it readable")]
+    manifest.update(folder, process=this_process())
+    assert found(folder, "warning") == [("status", f"process {os.getpid()} is still making this run")]
+
+
+def test_a_folder_of_somebody_else_is_checked_as_far_as_it_goes(tmp_path: Path) -> None:
+    about = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
+    (tmp_path / "manifest.json").write_text(json.dumps(about))
+    pq.write_table(pa.table({"theta_m": np.arange(9.0)}), tmp_path / "samples.parquet")
+    assert [f.level for f in verify(tmp_path)] == ["note"]
+
+
+def test_no_run_folder_at_all_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is not a run folder"):
+        verify(tmp_path)
+
+
+def test_the_list_shows_every_run_oldest_first_from_its_manifest_alone(tmp_path: Path) -> None:
+    later = closed(tmp_path, started_utc="2026-11-21T09:00:00+00:00")
+    first = closed(tmp_path, started_utc="2026-11-20T01:47:00+00:00")
+    manifest.update(first, verdict="PASS")
+    for folder in (later, first):
+        (folder / "samples.parquet").unlink()
+    row, other = list_runs(tmp_path)
+    assert (row.path, other.path) == (first, later)
+    assert (row.procedure, row.gear, row.status) == ("kinematic_error", "SN0042", "completed")
+    assert (row.duration, row.rows, row.simulated, row.verdict) == (0.299, 300, True, "PASS")
+
+
+def test_a_run_found_dead_is_listed_as_interrupted_and_a_living_one_as_running(tmp_path: Path) -> None:
+    new_folder(tmp_path / "dead")
+    new_folder(tmp_path / "alive", process=this_process())
+    assert {
+        row.path.parts[-3]: row.status for row in [*list_runs(tmp_path / "dead"), *list_runs(tmp_path / "alive")]
+    } == {
+        "dead": "interrupted",
+        "alive": "running",
+    }
+
+
+def test_a_damaged_manifest_spoils_no_list(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    (folder.parent / "x").mkdir()
+    (folder.parent / "x" / "manifest.json").write_text("{")
+    (folder.parent / "no run").mkdir()
+    assert [row.status for row in list_runs(tmp_path)] == ["unreadable", "completed"]
+
+
+def test_runs_side_by_side_are_a_root_too(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    assert [row.path for row in list_runs(folder.parent)] == [folder]
+    with pytest.raises(UsageError, match="there is no folder"):
+        list_runs(tmp_path / "gone")
