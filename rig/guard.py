@@ -144,7 +144,11 @@ def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     limit = guard.limits.following + guard.limits.following_time * abs(asked.omega_ref)
     if not abs(error) > limit:
         return None
-    return Trip("following", f"motor {error / DEG:.1f}° behind its reference, limit ±{limit / DEG:.1f}° at this speed")
+    return Trip(
+        "following",
+        f"motor {error / DEG:.1f}° behind its reference, limit ±{limit / DEG:.1f}° at this speed: "
+        "the gains are too weak (hdrig tune finds better ones) or something holds the motor",
+    )
 
 
 Rule = Callable[[Guard, Sample, Torque], Trip | None]

@@ -87,7 +87,7 @@ class Session:
         """Sign-and-scale proof, recorded as a run of its own. Raises NotReady with what was measured."""
         done = self.run(SignAndScale())
         if not isinstance(done.ending.finding, Proof):
-            raise Unproven(f"the sign-and-scale proof did not finish: {done.ending.reason}", done.ending.exit)
+            raise Ended(f"the sign-and-scale proof did not finish: {done.ending.reason}", done.ending.exit)
         self._proof = done.ending.finding
         return self._proof
 
@@ -167,8 +167,8 @@ class Session:
         }
 
 
-class Unproven(HdrigError):
-    """The proof was ended by the guard or the operator: its exit code is the command's."""
+class Ended(HdrigError):
+    """A run that others build on was ended by the guard or the operator: its exit code is the command's."""
 
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)

@@ -150,8 +150,8 @@ def _value(figure: tuple[float, float], unit: str) -> tuple[float, str, float]:
     return figure[0], unit, figure[1]
 
 
-def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, pure: bool) -> None:
-    """What this run cannot tell, and why."""
+def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, output: str, pure: bool) -> None:
+    """What this run cannot tell, and why. `output`: the manifest's gear.output."""
     p, tell = ke.profile, found.cannot.append
     if p.odd_cosine is None:
         tell(
@@ -161,8 +161,8 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, pur
     longest = max(s.mean.size for s in ke.strokes)
     if longest < ratio / 2:
         tell(
-            f"The longest stroke has {longest} whole turns: order 2 (fixed to the circular spline) and "
-            f"{2 + 2 / ratio:.4g} (fixed to the flexspline) need {ratio / 2:.0f} in one direction to be told apart."
+            f"The longest stroke has {longest} whole turns: order {_two(ratio, output)} need "
+            f"{ratio / 2:.0f} in one direction to be told apart."
         )
     if ke.trend.covered_deg < 360.0:
         tell(
@@ -188,3 +188,10 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, pur
             "At this speed θ̃ holds the pure kinematic error and what the gear's flexibility makes of it; the pure part "
             "needs a slow run in both directions."
         )
+
+
+def _two(ratio: float, output: str) -> str:
+    """The pair of orders that the two toothed parts make of their two-lobed errors."""
+    if output == "circular_spline":
+        return f"2 (fixed to the flexspline) and {2 - 2 / ratio:.4g} (fixed to the circular spline)"
+    return f"2 (fixed to the circular spline) and {2 + 2 / ratio:.4g} (fixed to the flexspline)"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from rig.analysis.angle import TURN
 from rig.analysis.result import Array
-from rig.analysis.sums import BLOCK, Sums
+from rig.analysis.sums import fit, without
 
 FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere in the spectrum
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
@@ -74,24 +75,14 @@ def _bins(theta: Array, order_max: float) -> int:
     return bins_per_turn(theta.size / span, order_max)
 
 
-def _columns(turns: Array, orders: Array) -> Array:
-    angle = TURN * np.multiply.outer(orders, turns)
-    return np.concatenate((np.ones((1, turns.size)), np.cos(angle), np.sin(angle)))
+def _sinusoids(turns: Array, orders: Array) -> Callable[[int, int], Array]:
+    """Constant, cosines and sines of `orders` at the rows asked for."""
 
+    def columns(lo: int, hi: int) -> Array:
+        angle = TURN * np.multiply.outer(orders, turns[lo:hi])
+        return np.concatenate((np.ones((1, hi - lo)), np.cos(angle), np.sin(angle)))
 
-def _solve(turns: Array, values: Array, orders: Array) -> Array:
-    """Constant, cosines and sines of `orders` by least squares over all rows, in blocks."""
-    total = Sums(np.zeros((2 * orders.size + 1,) * 2), np.zeros(2 * orders.size + 1), 0.0, 0)
-    for lo in range(0, turns.size, BLOCK):
-        total = total + Sums.of(_columns(turns[lo : lo + BLOCK], orders), values[lo : lo + BLOCK])
-    return total.solve()
-
-
-def _without(turns: Array, values: Array, orders: Array, coefficients: Array) -> Array:
-    rest = np.empty_like(values)
-    for lo in range(0, turns.size, BLOCK):
-        rest[lo : lo + BLOCK] = values[lo : lo + BLOCK] - coefficients @ _columns(turns[lo : lo + BLOCK], orders)
-    return rest
+    return columns
 
 
 def _local_noise(step: float, rest: Array, order: float) -> float:
@@ -113,8 +104,9 @@ def fit_lines(theta: Array, y: Array, orders: list[float]) -> list[Line]:
     """
     wanted, turns = np.asarray(orders, dtype=np.float64), theta / TURN
     zero = float(y.mean())
-    c = _solve(turns, y - zero, wanted)
-    rest = _without(turns, y - zero, wanted, c)
+    columns = _sinusoids(turns, wanted)
+    c = fit(columns, y - zero)
+    rest = without(columns, y - zero, c)
     grid, values = resample(theta, rest, _bins(theta, 2.0 * float(wanted.max()) + 4.0))
     step = float(grid[1] - grid[0])
     lines = []
@@ -153,21 +145,28 @@ def find_lines(
     found = [k for k in known if k < 0.4 / step]
     rest = centred
     if found:
-        rest = _without(turns, centred, np.asarray(found), _solve(turns, centred, np.asarray(found)))
+        rest = _cleaned(turns, centred, found)
     most += len(found)
     while len(found) < most:
         power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
         power[fine < 1.5 / span] = 0.0  # slower than that is trend
+        for order in found:  # what is left this close is the same line, not quite steady
+            power[np.abs(fine - order) < 1.5 / span] = 0.0
         noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)
         ratio = power / np.maximum(noise, 1e-300)
         best = int(np.argmax(ratio))
         if ratio[best] < np.log(independent / false_alarm):
             break
         found.append(_refine(turns, rest, float(fine[best]), 0.5 / span))
-        orders = np.asarray(found)
-        rest = _without(turns, centred, orders, _solve(turns, centred, orders))
+        rest = _cleaned(turns, centred, found)
     lines = fit_lines(theta, y, found) if found else []
     return sorted((line for line in lines if line.resolved), key=lambda line: -line.amplitude)
+
+
+def _cleaned(turns: Array, values: Array, orders: list[float]) -> Array:
+    """`values` less the lines at `orders`."""
+    columns = _sinusoids(turns, np.asarray(orders))
+    return without(columns, values, fit(columns, values))
 
 
 def _refine(turns: Array, rest: Array, order: float, width: float) -> float:

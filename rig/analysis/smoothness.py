@@ -11,7 +11,7 @@ from rig.analysis.result import Array, Check, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.strokes import Stroke
-from rig.analysis.sums import harmonics
+from rig.analysis.sums import fit, harmonics, without
 
 STUCK_BELOW = 0.10  # of the nominal speed: below this the motor counts as stuck
 STUCK_LIMIT = 0.02  # share of the time
@@ -46,21 +46,24 @@ class Smoothness:
         return self.hunting_share >= HUNTING_SHARE and np.isfinite(self.hunting_hz)
 
 
-def _locked(theta: Array, deviation: Array) -> Array:
-    """The part of `deviation` that repeats with the motor angle, orders 1 to LOCKED_ORDERS."""
+def _not_locked(theta: Array, deviation: Array) -> Array:
+    """`deviation` less what repeats with the motor angle, orders 1 to LOCKED_ORDERS."""
     orders = min(LOCKED_ORDERS, deviation.size // 8)
     if orders < 1 or abs(theta[-1] - theta[0]) < 2 * TURN:  # one turn alone cannot tell angle from time
-        return np.zeros_like(deviation)
-    columns = harmonics(theta, orders)
-    return np.asarray(np.linalg.lstsq(columns @ columns.T, columns @ deviation, rcond=1e-10)[0] @ columns)
+        return deviation
+
+    def columns(lo: int, hi: int) -> Array:
+        return harmonics(theta[lo:hi], orders)
+
+    return without(columns, deviation, fit(columns, deviation))
 
 
-def _hunting(parts: list[tuple[Array, Array]], step: float, variance: float) -> tuple[float, float]:
+def _hunting(parts: list[Array], step: float, variance: float) -> tuple[float, float]:
     """(frequency [Hz], share of `variance`) of the strongest line of the angle-free deviations, over all strokes."""
-    longest = max(part.size for _, part in parts)
+    longest = max(part.size for part in parts)
     padded = 1 << int(np.ceil(np.log2(max(2 * longest, 16))))
     power = np.zeros(padded // 2 + 1)
-    for _, part in parts:
+    for part in parts:
         window = np.hanning(part.size + 2)[1:-1]
         power += np.abs(np.fft.rfft((part - part.mean()) * window, padded)) ** 2 / np.sum(window**2) * part.size
     frequency = np.fft.rfftfreq(padded, step)
@@ -70,7 +73,7 @@ def _hunting(parts: list[tuple[Array, Array]], step: float, variance: float) -> 
         return float("nan"), 0.0
     peak = int(np.argmax(power))
     wide = max(3 * padded // longest, 1)  # the line's own width under the window
-    rows = sum(part.size for _, part in parts)
+    rows = sum(part.size for part in parts)
     share = 2.0 * float(np.sum(power[max(peak - wide, 0) : peak + wide + 1])) / padded / (rows * variance)
     return float(frequency[peak]), min(share, 1.0)
 
@@ -106,7 +109,7 @@ def smoothness(
         deviation = rpm - rpm.mean()
         deviations.append(deviation)
         theta = motion.theta_m[speed.row[here].astype(np.int64)]
-        parts.append((theta, deviation - _locked(theta, deviation)))
+        parts.append(_not_locked(theta, deviation))
     if not count or not nominal > 0:
         return None
     variance = float(np.mean(np.concatenate(deviations) ** 2))

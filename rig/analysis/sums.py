@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +41,23 @@ class Sums:
         """Σ (y − columnsᵀ·c)², never below zero."""
         explained = 2.0 * float(coefficients @ self.moment) - float(coefficients @ self.gram @ coefficients)
         return max(self.square - explained, 0.0)
+
+
+def fit(columns: Callable[[int, int], Array], y: Array) -> Array:
+    """Coefficients (p,) of y ≈ columnsᵀ·c; `columns(lo, hi)` gives the columns (p, hi − lo) of those rows."""
+    total: Sums | None = None
+    for lo in range(0, y.size, BLOCK):
+        part = Sums.of(columns(lo, min(lo + BLOCK, y.size)), y[lo : lo + BLOCK])
+        total = part if total is None else total + part
+    return np.empty(0) if total is None else total.solve()
+
+
+def without(columns: Callable[[int, int], Array], y: Array, coefficients: Array) -> Array:
+    """y − columnsᵀ·c, shape (n,)."""
+    out = np.empty_like(y)
+    for lo in range(0, y.size, BLOCK):
+        out[lo : lo + BLOCK] = y[lo : lo + BLOCK] - coefficients @ columns(lo, min(lo + BLOCK, y.size))
+    return out
 
 
 def harmonics(theta: Array, orders: int) -> Array:

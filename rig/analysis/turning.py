@@ -9,17 +9,20 @@ from rig.analysis import smoothness as smooth
 from rig.analysis.angle import DEG, RPM, TURN
 from rig.analysis.findings import Findings
 from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
-from rig.analysis.orders import find_lines, spectrum
-from rig.analysis.result import Check
-from rig.analysis.revolutions import TERMS
+from rig.analysis.orders import Line, find_lines, fit_lines, spectrum
+from rig.analysis.result import Array, Check
+from rig.analysis.revolutions import TERMS, trend_degree
 from rig.analysis.source import Motion, Source
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.strokes import Stroke, find_strokes
+from rig.analysis.sums import fit, legendre, without
 from rig.analysis.torsion_words import add_torsion
 
 SPECTRUM_TO = 40.0  # orders of the motor drawn
 LINES_TO = 150.0  # orders searched: tooth mesh of a ratio-50 gear is 102
 LINES_FROM = 20  # turns a stroke needs before a line between the whole orders means anything
+OUTPUT_ORDERS = (1, 2, 3, 4)  # per output turn, looked at when the stroke has one
+JITTER = 0.01  # of the speed window: more makes a ripple of its own
 NO_LOAD = "No load angle was recorded: kinematic error, torsion and orders of θ̃ cannot be had."
 
 
@@ -54,8 +57,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
-    _kinematic_error(found, run, motion, strokes, slow)
-    _orders(found, motion, max(strokes, key=lambda s: s.revolutions))
+    main = _kinematic_error(found, run, motion, strokes, slow)
+    _orders(found, motion, max(main, key=lambda s: s.revolutions))
     if not slow:
         _speed_figures(found, motion, strokes)
     tau_l = motion.pick(run.column("tau_l"))
@@ -64,7 +67,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.cannot.append(f"Stiffness: {why}.")
 
 
-def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> None:
+def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> list[Stroke]:
+    """Add the kinematic error of the speed that matters, and give the strokes that had it."""
     groups = groups_by_speed(motion, strokes)
     most = max(sum(s.revolutions for s in g) for g in groups)
     # the pure error is the slowest speed's; a run at speed is described by the speed it held longest
@@ -74,11 +78,12 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     if ke is None:
         found.cannot.append("The rows are too few per motor turn for a single order.")
         found.sentence = "The motor turned too fast for the row rate."
-        return
+        return main
     words.add_profile(found, ke, slow)
     words.add_series(found, ke)
     words.add_trend(found, ke)
-    words.add_limits_of_the_run(found, ke, motion.ratio, slow)
+    output = str(run.manifest.get("gear", {}).get("output", ""))
+    words.add_limits_of_the_run(found, ke, motion.ratio, output, slow)
     found.sentence = headline(found, ke, slow)
     others = [(g, measure(run, motion, g, slow)) for g in worthy if g is not main]
     if others:
@@ -86,6 +91,7 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
         found.cannot.append(
             f"The run holds {len(worthy)} speeds; the figures are those of {ke.speed_rpm:.4g} rpm, a table has all."
         )
+    return main
 
 
 def _speed_row(ke: KinematicError) -> dict[str, float | str]:
@@ -112,33 +118,51 @@ def headline(found: Findings, ke: KinematicError, slow: bool) -> str:
     )
     text += f", from {p.forward} forward and {p.reverse} reverse revolutions"
     strongest = int(np.argmax(p.amplitude)) + 1
-    return text + f"; order {strongest} is the largest with {p.amplitude[strongest - 1]:.2f} arcsec."
+    text += f"; order {strongest} is the largest with {p.amplitude[strongest - 1]:.2f} arcsec."
+    slow_part = ke.trend.peak_to_peak
+    if slow_part is not None and slow_part[0] > value:
+        text += f" The slow change over the output angle is larger ({slow_part[0]:.0f} arcsec) and not in it."
+    return text
 
 
 def _orders(found: Findings, motion: Motion, stroke: Stroke) -> None:
     """Fine order spectrum of the longest stroke, and the lines in it when it is long enough to place them."""
     theta = motion.theta_m[stroke.start : stroke.stop]
     error = motion.error_arcsec(stroke.start, stroke.stop)
-    error -= np.polynomial.Polynomial.fit(
-        theta[:: max(theta.size // 5000, 1)], error[:: max(theta.size // 5000, 1)], 1
-    )(theta)
-    orders, amplitude = spectrum(theta, error, SPECTRUM_TO)
+    orders, amplitude = spectrum(theta, _less_trend(theta, error, 1), SPECTRUM_TO)
     found.curve(spectrum__order=orders, spectrum__amplitude=amplitude)
     if stroke.revolutions < LINES_FROM:
         return
-    lines = find_lines(theta, error, LINES_TO, known=tuple(range(1, TERMS + 1)))
-    found.tables["lines"] = [
-        {
-            "order": line.order,
-            "per_output_turn": line.order * motion.ratio,
-            "amplitude_arcsec": line.amplitude,
-            "u_arcsec": line.u,
-            "phase_deg": line.phase * DEG,
-            "u_phase": line.u_phase * DEG,
-            "resolution": line.resolution,
-        }
-        for line in lines
-    ]
+    # what the output does in so few of its turns is no line yet, and would leak into all others
+    slow = trend_degree(float(stroke.revolutions), stroke.revolutions)
+    lines = find_lines(theta, _less_trend(theta, error, slow), LINES_TO, known=tuple(range(1, TERMS + 1)))
+    found.tables["lines"] = [_line_row(line, motion.ratio) for line in lines]
+    if stroke.revolutions >= motion.ratio - 1:
+        per_output = [k / motion.ratio for k in OUTPUT_ORDERS]
+        lines = fit_lines(theta, _less_trend(theta, error, 1), per_output)
+        found.tables["output_lines"] = [_line_row(line, motion.ratio) for line in lines]
+
+
+def _less_trend(theta: Array, y: Array, degree: int) -> Array:
+    """`y` less a polynomial in `theta`."""
+    scale = 2.0 / float(theta[-1] - theta[0])
+
+    def columns(lo: int, hi: int) -> Array:
+        return legendre((theta[lo:hi] - theta[0]) * scale - 1.0, degree)
+
+    return without(columns, y, fit(columns, y))
+
+
+def _line_row(line: Line, ratio: float) -> dict[str, float | str]:
+    return {
+        "order": line.order,
+        "per_output_turn": line.order * ratio,
+        "amplitude_arcsec": line.amplitude,
+        "u_arcsec": line.u,
+        "phase_deg": line.phase * DEG,
+        "u_phase": line.u_phase * DEG,
+        "resolution": line.resolution,
+    }
 
 
 def _speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) -> None:
@@ -165,7 +189,10 @@ def _speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) -> No
             "Line through the speeds of the turns, end to end.",
         )
     fine = motor_speed(motion.t[s.start : s.stop], motion.theta_m[s.start : s.stop], step=0.004)
-    if fine.omega.size > 16:
+    jitter = float(np.std(np.diff(motion.t[s.start : s.stop])))
+    if jitter > JITTER * fine.window:
+        found.cannot.append(f"Speed ripple: the rows' times jitter by {1000 * jitter:.2g} ms, which looks like ripple.")
+    elif fine.omega.size > 16:
         ripple = float(np.std(fine.omega) * RPM)
         how = f"1 σ of the speed over {1000 * fine.window:.0f} ms windows: ripple with the angle, wander, count noise."
         found.exact("speed_ripple", "Speed ripple", ripple, "rpm", how)

@@ -54,7 +54,10 @@ def analyse_folder(folder: Path, out: Path | None = None) -> Result:
     target = folder if out is None else out / run.name
     try:
         target.mkdir(parents=True, exist_ok=True)
-        made = [write_result(target, result), write(target, run.manifest, dict(run.timing), read_events(folder), result)]
+        made = [
+            write_result(target, result),
+            write(target, run.manifest, dict(run.timing), read_events(folder), result),
+        ]
     except OSError as error:
         raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
     if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is

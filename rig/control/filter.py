@@ -15,7 +15,7 @@ class SpeedFilter:
         self.theta = 0.0
 
     def step(self, t: float, theta: float) -> float:
-        """Filtered speed [rad/s] after angle `theta` rad at `t` s. The first call, and one with no new time, keep it."""
+        """Filtered speed [rad/s] after angle `theta` rad at `t` s. The first call, or no new time, keeps it."""
         dt = t - self.t
         if dt > 0.0:
             self.omega += ((theta - self.theta) / dt - self.omega) * dt / (self.time_constant + dt)

@@ -23,7 +23,9 @@ class Gear:
     B_ml: float  # N·m·s/rad, wave generator against flexspline
     B_sp: float  # N·m·s/rad, damping of the torsional spring
     kinematic_error: FourierSeries
-    sigma: int = 1  # +1: flexspline is the output, it turns against the wave generator; 0: circular spline is the output
+    sigma: int = (
+        1  # +1: flexspline is the output, it turns against the wave generator; 0: circular spline is the output
+    )
     tau_c: float = 0.0  # N·m, Coulomb friction, motor side
     tau_s: float = 0.0  # N·m, breakaway torque, motor side
     omega_s: float = 1.0  # rad/s, Stribeck speed, motor side

@@ -49,12 +49,12 @@ def plain(value: float, digits: int = 4) -> str:
 
 
 def quantity(value: float, half: float, unit: str = "") -> str:
-    """`value` ± `half` in `unit`: "93.2 ± 1.4 arcsec", "(3.10 ± 0.12)·10⁻⁶ rad". A half-width that is zero or not a
-    number leaves the value alone.
+    """`value` ± `half` in `unit`: "93.2 ± 1.4 arcsec", "(3.10 ± 0.12)·10⁻⁶ rad". A half-width that is zero, lost in
+    rounding or not a number leaves the value alone.
     """
     if not math.isfinite(value):
         return ABSENT
-    if not (math.isfinite(half) and half > 0):
+    if not (math.isfinite(half) and half > max(1e-12 * abs(value), 1e-290)):
         return join(plain(value), unit)
     size = max(abs(value), half)
     if 1e-3 <= size < 1e6:

@@ -11,12 +11,13 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
-from rig.analysis.result import Array, Estimate, Result
+from rig.analysis.result import Array, Result
 from rig.report import rows, words
+from rig.report.cards import cards
 from rig.report.figures import CATALOGUE, Drawing, Frame, svg
-from rig.report.numbers import companion, duration, estimate
+from rig.report.numbers import duration
 from rig.report.palette import DARK, LIGHT, variables
-from rig.report.tables import Table, tables
+from rig.report.tables import Table, number, tables
 from rig.runfile.manifest import write_atomic
 
 HERE = Path(__file__).parent
@@ -73,7 +74,7 @@ def render(
         "ruling": words.RULINGS[result.verdict],
         "sentence": result.sentence,
         "ending": words.ended_early(manifest),
-        "main": [_figure(e) for e in result.estimates],
+        "main": cards(result.estimates),
         "checks": [{"passed": c.passed, "sentence": c.sentence} for c in result.checks],
         "checks_said": _checks_said(result),
         "plots": [p for d in CATALOGUE if (p := _plot(d, curves, origin.mark)) is not None],
@@ -101,24 +102,14 @@ NUMBERS = {"ke.peak_to_peak": "kinematic_error_peak_to_peak", "mse.chosen": "fou
 
 
 def with_numbers(result: Result) -> dict[str, Array]:
-    """The curves, and the figures that are drawn into them: a figure and its text must not say different numbers."""
+    """The curves, and the numbers that are drawn into them: a drawing and its text must not say different things."""
     found = {e.name: e.value for e in result.estimates}
     numbers = {curve: np.array([found[name]]) for curve, name in NUMBERS.items() if name in found}
+    rows = result.tables.get("coefficients", [])
+    for curve, key in (("orders.low", "C_lo"), ("orders.high", "C_hi")):
+        if rows and all(key in row for row in rows):
+            numbers[curve] = np.array([number(row, key) for row in rows])
     return numbers | result.curves
-
-
-def _figure(found: Estimate) -> dict[str, str]:
-    text = estimate(found.value, found.ci95, found.unit)
-    mark = next((m for m in (" ± ", " (") if m in text and text[0] != "("), "")
-    value, _, spread = text.partition(mark) if mark else (text, "", "")
-    return {
-        "label": found.label,
-        "value": value,
-        "spread": mark + spread,
-        "also": companion(found.value, found.ci95, found.unit),
-        "how": found.how,
-        "definition": words.definition(found.name),
-    }
 
 
 def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, Any] | None:

@@ -109,14 +109,14 @@ SUFFIXES = {
     "turns": "turns",
 }
 
-DEFINITIONS = (  # by a part of the estimate's name, first match
+DEFINITIONS = (  # by the beginning of the estimate's name, first match
     (
-        "peak_to_peak",
+        "kinematic_error_peak_to_peak",
         "Per wave-generator turn, as in the paper. The maker’s transmission accuracy is over one output turn "
         "and is not the same.",
     ),
     (
-        "stiffness",
+        "torsional_stiffness",
         "Of the whole path between the two encoders: gear, torque sensor, couplings and fixture together.",
     ),
     ("hysteresis", "Torsion between the two branches of the loop at zero torque."),
@@ -124,9 +124,16 @@ DEFINITIONS = (  # by a part of the estimate's name, first match
 )
 
 
+HEADLINES = (
+    "kinematic_error_peak_to_peak",
+    "torsional_stiffness",
+    "torsional_stiffness_apparent",
+)  # the first there is
+
+
 def definition(name: str) -> str:
     """What a figure of this machine name means, "" where the label says it all."""
-    return next((text for part, text in DEFINITIONS if part in name), "")
+    return next((text for part, text in DEFINITIONS if name.startswith(part)), "")
 
 
 def humanise(key: str) -> str:

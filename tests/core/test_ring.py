@@ -28,13 +28,14 @@ for i in range(40):
 print(ring.path, flush=True)
 time.sleep(60)
 """
+HAMMERED = 40_000  # rows
 HAMMER = """
 import sys
 from rig.core.ring import Ring
 from rig.core.sample import Sample
-ring = Ring.create(32)
+ring = Ring.create(256)
 print(ring.path, flush=True)
-for i in range(400_000):
+for i in range(int(sys.argv[1])):
     while not ring.put(Sample(i, i, i, i, i, i, i, i, i, i, ""), i, i, i):
         pass
 sys.stdin.read()
@@ -123,12 +124,12 @@ def test_it_survives_the_death_of_every_process() -> None:
 
 
 def test_a_reader_beside_a_producer_at_full_speed_sees_no_torn_row() -> None:
-    command = [sys.executable, "-c", HAMMER]
+    command = [sys.executable, "-c", HAMMER, str(HAMMERED)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as hammer:
         assert hammer.stdout is not None
         ring = Ring.attach(Path(hammer.stdout.readline().strip()), writable=True)
         seen = 0
-        while seen < 400_000:
+        while seen < HAMMERED:
             got = ring.read(seen, ring.head)
             index = np.arange(seen, seen + len(got))
             for name in ("t", "tau_l", "flags"):  # first, middle and last field of the row

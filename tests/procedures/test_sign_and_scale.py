@@ -10,7 +10,7 @@ from rig.core.errors import NotReady
 from rig.guard import Guard
 from rig.interrupts import Interrupts
 from rig.loop import Loop
-from rig.procedures.sign_and_scale import Proof, SignAndScale
+from rig.procedures.sign_and_scale import Leg, Proof, SignAndScale, judge
 from rig.supervisor import Act, Supervisor
 from rig.timing import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
@@ -45,7 +45,7 @@ def test_a_rig_that_is_what_it_says_is_proven_with_its_numbers() -> None:
 @pytest.mark.parametrize(
     ("prepare", "words"),
     [
-        (lambda w: setattr(w, "load_sign", -1.0), ["flip the sign", "ratio -50"]),
+        (lambda w: setattr(w, "load_sign", -1.0), ["flip one encoder", "ratio -50"]),
         (lambda w: setattr(w, "motor_sign", -1.0), ["wrong sign", "expected a positive angle"]),
         (lambda w: setattr(w, "drag", 4.0), ["did not turn", "2.00 N·m"]),
         (lambda w: setattr(w, "load_sign", 0.0), ["load encoder moved 0.000°", "locked"]),
@@ -60,6 +60,14 @@ def test_a_rig_that_is_something_else_is_refused_with_what_was_measured(
         prove(prepare)
     for word in words:
         assert word in str(refusal.value)
+
+
+def test_an_uneven_motor_proves_nothing_about_the_torque_sensor() -> None:
+    forward = Leg(6.28, 6.28 / 50, (-0.4,) * 7 + (-0.39,), slowest=0.02)
+    reverse = Leg(-6.28, -6.28 / 50, (0.4,) * 7 + (0.39,), slowest=0.5)
+    assert "not judged" in judge(forward, reverse, 0.5, SETTING).sentence
+    with pytest.raises(NotReady, match="wrong sign"):
+        judge(forward._replace(slowest=0.4), reverse, 0.5, SETTING)
 
 
 def test_a_reversed_torque_sensor_is_refused() -> None:

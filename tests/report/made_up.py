@@ -29,34 +29,33 @@ C_DEG = [
 ]
 PSI_DEG = [35, -62, 110, 20, -140, 75, 10, -95, 150, 45, -20, 130, -75, 5, -160]
 SERIES = FourierSeries.from_polar(np.array(C_DEG) * 3600, np.radians(PSI_DEG))  # arcsec
-REVOLUTIONS, GRID = 28, 512
 
 Array = npt.NDArray[np.float64]
 
 
-def curves(seed: int = 1) -> dict[str, Array]:
+def curves(seed: int = 1, revolutions: int = 28, grid: int = 512) -> dict[str, Array]:
     """Every curve the report knows, in the units of `Result.curves`."""
     rng = np.random.default_rng(seed)
-    theta = np.linspace(0, 360, GRID, endpoint=False)
+    theta = np.linspace(0, 360, grid, endpoint=False)
     true = SERIES.value(np.radians(theta))
     offset = 1.1 * np.cos(np.radians(2 * theta) + 0.4)
 
     def turns(sign: float) -> Array:
-        wander = rng.normal(0, 0.5, (REVOLUTIONS, 1)) + np.cumsum(rng.normal(0, 0.12, (REVOLUTIONS, GRID)), axis=1)
-        return np.asarray(true + sign * offset + wander + rng.normal(0, 0.9, (REVOLUTIONS, GRID)))
+        wander = rng.normal(0, 0.5, (revolutions, 1)) + np.cumsum(rng.normal(0, 0.12, (revolutions, grid)), axis=1)
+        return np.asarray(true + sign * offset + wander + rng.normal(0, 0.9, (revolutions, grid)))
 
     forward, reverse = turns(1.0), turns(-1.0)
     mean_f, mean_r = forward.mean(0), reverse.mean(0)
     pure = (mean_f + mean_r) / 2
     pure -= pure.mean()
-    spectrum = 2 * np.fft.rfft(pure) / GRID
+    spectrum = 2 * np.fft.rfft(pure) / grid
     n = np.arange(1, 16)
     angle = np.multiply.outer(np.radians(theta), n)
     a, b = spectrum.real[1:16], -spectrum.imag[1:16]
     fit = np.cos(angle) @ a + np.sin(angle) @ b
     k = np.arange(1, 26)
     mse = np.array([np.sum(np.abs(spectrum[j + 1 : -1]) ** 2) / 2 for j in k])
-    fine = np.arange(0, 20.001, 1 / 28)
+    fine = np.arange(0, 20.001, 1 / revolutions)
     lines = 0.08 * rng.rayleigh(1, fine.size) / (1 + fine)
     for order, c in zip(n, np.hypot(a, b), strict=True):
         lines += c * np.exp(-(((fine - order) / 0.03) ** 2))

@@ -20,7 +20,7 @@ from rig.runfile.columns import batch_of_rows, checksum, schema
 from rig.runfile.journal import JournalReader, journal_files
 from tests.runfile.rows import expected, new_folder, ring_of, write_journal
 
-OURS = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+OURS = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=40)
 
 
 def rows_of(folder: Path) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -82,8 +83,18 @@ def test_analysing_again_gives_the_same_figures_and_leaves_the_samples_alone(slo
 def test_a_run_that_sticks_is_rejected_with_the_number_and_the_gain_to_change(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    weak = ["--set", "control.Kp=0.3", "--set", "control.Ki=1", "--set", "control.Kd=0.005", "--set", "twin.omega_s=1.5"]
-    assert main(["run", "kinematic-error", "--out", str(tmp_path), *weak, *SHORT]) in (1, 5)
-    out = capsys.readouterr()
-    assert "stuck" in out.out + out.err
-    assert "Kd" in out.out + out.err
+    weak = ["control.Kp=2.5", "control.Ki=5", "control.Kd=0.01", "twin.omega_s=1.5", "limits.following_deg=60"]
+    settings = [word for change in weak for word in ("--set", change)]
+    assert main(["run", "kinematic-error", "--out", str(tmp_path), *settings, *SHORT]) == 1
+    out = capsys.readouterr().out
+    assert re.search(r"stuck \d+\.\d % of the time \(limit 2 %\)", out)
+    assert "raise Kd" in out
+
+
+def test_gains_too_weak_to_hold_the_reference_trip_with_the_way_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    weak = ["--set", "control.Kp=0.3", "--set", "control.Ki=1", "--set", "control.Kd=0.005"]
+    assert main(["run", "kinematic-error", "--out", str(tmp_path), *weak, *SHORT]) == 5
+    assert "behind its reference" in (err := capsys.readouterr().err)
+    assert "hdrig tune" in err

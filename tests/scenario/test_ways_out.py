@@ -53,7 +53,7 @@ def test_one_signal_stops_the_motor_and_finishes_the_run(sig: signal.Signals, tm
     process = start(tmp_path)
     folder = wait_for(tmp_path, "kinematic-error", process)
     process.send_signal(sig)
-    out, err = process.communicate(timeout=120)
+    _, err = process.communicate(timeout=120)
     assert process.returncode == 4, err
     manifest = json.loads((folder / "manifest.json").read_text())
     assert (manifest["status"], manifest["exit"]) == ("stopped", 4)

@@ -18,6 +18,12 @@ def line(curves: Curves, name: str, length: int | None = None) -> Array | None:
     return np.where(np.isfinite(values), values, np.nan)
 
 
+def axis(curves: Curves, name: str) -> Array | None:
+    """The same for what is drawn along x: also None when it has gaps or does not extend anywhere."""
+    values = line(curves, name)
+    return None if values is None or np.isnan(values).any() or np.ptp(values) == 0 else values
+
+
 def rows(curves: Curves, name: str, length: int) -> Array | None:
     """Several curves as float64, shape (R, `length`), less those without two finite points; None when none remain."""
     found = curves.get(name)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from rig.report.figures.arrays import line, scalar
+from rig.report.figures.arrays import axis, line, scalar
 from rig.report.figures.canvas import Curves, Drawing, Frame, foot, log_axis, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
@@ -14,7 +14,7 @@ from rig.report.palette import LIGHT
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
     """Uses mse.k, mse.value (k,), mse.floor (1,), arcsec²; mse.chosen (1,), the terms used. None without values."""
-    k = line(curves, "mse.k")
+    k = axis(curves, "mse.k")
     value = None if k is None else line(curves, "mse.value", len(k))
     if k is None or value is None or not (value > 0).any():
         return None
@@ -40,11 +40,20 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     if at.size and np.isfinite(shown[at[0]]):
         place = (k[at[0]], shown[at[0]])
         panel.plot(*place, marker="o", ms=12, mfc="none", mec=LIGHT["ink"], mew=1.5, ls="none", clip_on=False)
+        late = place[0] > k.min() + 0.6 * (
+            k.max() - k.min()
+        )  # no room at the right: below, for the curve comes from above
         panel.annotate(
-            f"{k[at[0]]:g} terms used", place, (9, 12), textcoords="offset points", fontsize=11.5, fontweight="bold"
+            f"{k[at[0]]:g} terms used",
+            place,
+            (6, -19) if late else (9, 12),
+            textcoords="offset points",
+            ha="right" if late else "left",
+            fontsize=11.5,
+            fontweight="bold",
         )
     panel.set_xlim(k.min() - 0.6, k.max() + 0.6)
-    panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(16, 8)), integer=True))
+    panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(16, 8)), integer=True, steps=[1, 2, 5, 10]))
     title(panel, "Mean square left over", "arcsec²")
     foot(panel, "Number of Fourier terms k")
     return figure
@@ -52,7 +61,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
 
 def say(curves: Curves) -> str:
     """The figure in words."""
-    k, value = line(curves, "mse.k"), line(curves, "mse.value")
+    k, value = axis(curves, "mse.k"), line(curves, "mse.value")
     if k is None or value is None:
         return ""
     floor, chosen = scalar(curves, "mse.floor"), scalar(curves, "mse.chosen")

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from rig.report.figures.arrays import line, rows, scalar, span, thin
+from rig.report.figures.arrays import axis, line, rows, scalar, span, thin
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, angle_axis, key, sheet, title
 from rig.report.figures.direction import FIT_DASH, FORWARD, REVERSE, Direction
 from rig.report.numbers import plain
@@ -50,7 +50,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     """Uses ke.theta_deg (G,), ke.revolutions_* (R, G), ke.mean_*, ke.pure, ke.fit (G,), arcsec; ke.peak_to_peak (1,) as
     the number at the dimension line. None without a curve.
     """
-    theta = line(curves, "ke.theta_deg")
+    theta = axis(curves, "ke.theta_deg")
     if theta is None:
         return None
     both = sides(curves, len(theta))
@@ -151,7 +151,7 @@ def _dimension(panel: Axes, values: Array, stated: float | None) -> None:
 
 def say(curves: Curves) -> str:
     """The figure in words."""
-    theta = line(curves, "ke.theta_deg")
+    theta = axis(curves, "ke.theta_deg")
     length = 0 if theta is None else len(theta)
     parts = []
     for direction, revolutions, mean in sides(curves, length):

@@ -2,73 +2,98 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
-from rig.report.figures.arrays import line
-from rig.report.figures.canvas import Curves, Drawing, Frame, foot, key, log_axis, sheet, title
+from rig.report.figures.arrays import axis, line
+from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, log_axis, sheet, title
 from rig.report.numbers import fixed, places, plain
 from rig.report.palette import LIGHT
 
+Bool = npt.NDArray[np.bool_]
+
+
+def interval(curves: Curves, amplitude: Array) -> tuple[Array, Array]:
+    """Ends of the 95 % interval of each amplitude, (k,): orders.low and orders.high, else orders.ci95 either side.
+
+    An interval that reaches zero does not tell its order from zero; without any, the ends are the amplitude itself.
+    """
+    low, high = line(curves, "orders.low", len(amplitude)), line(curves, "orders.high", len(amplitude))
+    half = line(curves, "orders.ci95", len(amplitude))
+    if low is None or high is None:
+        half = np.zeros_like(amplitude) if half is None else np.nan_to_num(np.abs(half))
+        low, high = amplitude - half, amplitude + half
+    return np.fmax(np.where(np.isfinite(low), low, amplitude), 0.0), np.where(np.isfinite(high), high, amplitude)
+
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
-    """Uses orders.order, orders.amplitude, orders.ci95 (half width) (k,), arcsec. None without a positive amplitude."""
-    order = line(curves, "orders.order")
+    """Uses orders.order, orders.amplitude, orders.ci95 (half width) or orders.low and orders.high (k,), arcsec. None
+    without a positive amplitude.
+    """
+    order = axis(curves, "orders.order")
     amplitude = None if order is None else line(curves, "orders.amplitude", len(order))
     if order is None or amplitude is None or not (amplitude > 0).any():
         return None
-    half = line(curves, "orders.ci95", len(order))
-    half = np.zeros_like(order) if half is None else np.nan_to_num(np.abs(half))
-    known = amplitude > half  # else nothing tells it from zero
-    positive = amplitude[amplitude > 0]
-    low = 10.0 ** np.floor(np.log10(positive.min() / 1.5))
-    high = float(np.nanmax(amplitude + half)) * 1.9
+    least, greatest = interval(curves, amplitude)
+    floor = float(10.0 ** np.floor(np.log10(np.nanmin(amplitude[amplitude > 0]) / 1.5)))
     figure, (panel,) = sheet(frame, [frame.pick(250, 220)], keys=int(frame.narrow))
-    log_axis(panel, low, high)
-    even = np.isclose(order % 2, 0)
-    for chosen, style in (
-        (known & even, {"color": LIGHT["bar"]}),
-        (known & ~even, {"color": LIGHT["bar-soft"]}),
-        (~known, {"facecolor": "none", "edgecolor": LIGHT["axis"], "linestyle": (0, (2, 2))}),
-    ):
-        if chosen.any():
-            panel.bar(order[chosen], np.fmax(amplitude[chosen], low) - low, 0.66, bottom=low, zorder=2, **style)
-    if half.any():
-        ends = np.clip(amplitude - half, low, None), amplitude + half
-        panel.vlines(order, *ends, color=LIGHT["ink"], lw=1.3, zorder=3)
-        for end in ends:
-            panel.hlines(
-                end[end > low], order[end > low] - 0.13, order[end > low] + 0.13, color=LIGHT["ink"], lw=1.3, zorder=3
-            )
+    log_axis(panel, floor, float(np.nanmax(greatest)) * 1.9)
+    handles = _bars(panel, order, amplitude, (amplitude > 0) & (least > 0), floor)
+    if (greatest > least).any():
+        _whiskers(panel, order, np.fmax(least, floor), greatest, floor)
     if not frame.narrow:
-        for n, c, h in zip(order, amplitude, half, strict=True):
-            if np.isfinite(c):
-                text = (
-                    fixed(c, places(h) - 1) if h > 0 else plain(c, 3)
-                )  # one digit of the uncertainty: bars are crowded
-                panel.annotate(text, (n, c + h), (0, 5), textcoords="offset points", ha="center", fontsize=10.5)
+        _numbers(panel, order, amplitude, least, greatest)
     title(panel, "Amplitude", "arcsec", keys=int(frame.narrow))
-    names = [("bar", "even orders"), ("bar-soft", "odd orders")]
-    handles = [
-        Patch(color=LIGHT[c], label=n)
-        for (c, n), any_ in zip(names, (even, ~even), strict=True)
-        if (known & any_).any()
-    ]
-    if (~known).any():
-        handles.append(Patch(facecolor="none", edgecolor=LIGHT["axis"], ls=(0, (2, 2)), label="not told from zero"))
     key(panel, handles, columns=3 * frame.narrow)
-    panel.set_xlim(order.min() - 0.6, order.max() + 0.6)
-    panel.xaxis.set_major_locator(FixedLocator(list(order[:: max(1, int(np.ceil(len(order) / frame.pick(25, 15))))])))
+    panel.set_xlim(float(np.nanmin(order)) - 0.6, float(np.nanmax(order)) + 0.6)
+    every = max(1, int(np.ceil(len(order) / frame.pick(25, 15))))
+    panel.xaxis.set_major_locator(FixedLocator(list(order[::every])))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     foot(panel, "Order, cycles per turn of the wave generator")
     return figure
 
 
+def _bars(panel: Axes, order: Array, amplitude: Array, known: Bool, floor: float) -> list[Patch]:
+    """Bars from `floor` up, dashed outlines for orders not told from zero; gives the key."""
+    even = np.isclose(order % 2, 0)
+    outline: dict[str, Any] = {"facecolor": "none", "edgecolor": LIGHT["axis"], "linestyle": (0, (2, 2))}
+    handles = []
+    for label, chosen, style in (
+        ("even orders", known & even, {"color": LIGHT["bar"]}),
+        ("odd orders", known & ~even, {"color": LIGHT["bar-soft"]}),
+        ("not told from zero", ~known, outline),
+    ):
+        if chosen.any():
+            heights = np.fmax(amplitude[chosen], floor) - floor
+            panel.bar(order[chosen], heights, 0.66, bottom=floor, zorder=2, **style)
+            handles.append(Patch(label=label, **style))
+    return handles
+
+
+def _whiskers(panel: Axes, order: Array, least: Array, greatest: Array, floor: float) -> None:
+    panel.vlines(order, least, greatest, color=LIGHT["ink"], lw=1.3, zorder=3)
+    for end in (least, greatest):
+        at, level = order[end > floor], end[end > floor]  # an interval that reaches the floor has no end there
+        panel.hlines(level, at - 0.13, at + 0.13, color=LIGHT["ink"], lw=1.3, zorder=3)
+
+
+def _numbers(panel: Axes, order: Array, amplitude: Array, least: Array, greatest: Array) -> None:
+    """The amplitude above each bar, to one digit of its uncertainty: bars are crowded."""
+    for n, c, low, high in zip(order, amplitude, least, greatest, strict=True):
+        if np.isfinite(c):
+            text = fixed(c, places((high - low) / 2) - 1) if high > low else plain(c, 3)
+            panel.annotate(text, (n, high), (0, 5), textcoords="offset points", ha="center", fontsize=10.5)
+
+
 def say(curves: Curves) -> str:
     """The figure in words."""
-    order, amplitude = line(curves, "orders.order"), line(curves, "orders.amplitude")
+    order, amplitude = axis(curves, "orders.order"), line(curves, "orders.amplitude")
     if order is None or amplitude is None:
         return ""
     first = np.argsort(-np.nan_to_num(amplitude))[:3]

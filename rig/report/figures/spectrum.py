@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from rig.report.figures.arrays import columns, line
+from rig.report.figures.arrays import axis, columns, line
 from rig.report.figures.canvas import Curves, Drawing, Frame, foot, log_axis, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
@@ -14,7 +14,7 @@ from rig.report.palette import LIGHT
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
     """Uses spectrum.order, spectrum.amplitude (n,), arcsec. None without two positive amplitudes."""
-    order = line(curves, "spectrum.order")
+    order = axis(curves, "spectrum.order")
     amplitude = None if order is None else line(curves, "spectrum.amplitude", len(order))
     if order is None or amplitude is None or (amplitude > 0).sum() < 2:
         return None
@@ -28,7 +28,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     shown = np.clip(np.nan_to_num(peaks, nan=low), low, None)
     panel.fill_between(places, low, shown, color=LIGHT["bar"], alpha=0.16, linewidth=0)
     panel.plot(places, shown, color=LIGHT["bar"], lw=1.0)
-    panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(16, 8)), integer=True))
+    panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(16, 8)), integer=True, steps=[1, 2, 5, 10]))
     panel.set_xlim(float(np.nanmin(order)), float(np.nanmax(order)))
     title(panel, "Amplitude", "arcsec")
     foot(panel, "Order, cycles per turn of the wave generator")
@@ -37,7 +37,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
 
 def say(curves: Curves) -> str:
     """The figure in words."""
-    order, amplitude = line(curves, "spectrum.order"), line(curves, "spectrum.amplitude")
+    order, amplitude = axis(curves, "spectrum.order"), line(curves, "spectrum.amplitude")
     if order is None or amplitude is None:
         return ""
     top = int(np.nanargmax(amplitude))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from rig.report.figures.arrays import line
+from rig.report.figures.arrays import axis, line
 from rig.report.figures.canvas import Curves, Drawing, Frame, angle_axis, sheet, title
 from rig.report.figures.kinematic_error import closed
 from rig.report.numbers import plain
@@ -16,7 +16,7 @@ PARTS = (("ke.pure", "E, same in both directions"), ("ke.direction", "O, changes
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
     """Uses ke.theta_deg, ke.pure, ke.direction (G,), arcsec. None without a direction part: one way tells nothing."""
-    theta = line(curves, "ke.theta_deg")
+    theta = axis(curves, "ke.theta_deg")
     if theta is None or line(curves, "ke.direction", len(theta)) is None:
         return None
     parts = [(v, name) for c, name in PARTS if (v := line(curves, c, len(theta))) is not None]

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from rig.report.figures.arrays import band, columns, line, span
+from rig.report.figures.arrays import axis, band, columns, line, span
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
@@ -33,7 +33,7 @@ STRIPS = (
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
     """Uses time.t (n,) s, time.theta_m_deg, time.theta_ref_deg (n,) deg, and *_min, *_max (n,) of every strip."""
-    t = line(curves, "time.t")
+    t = axis(curves, "time.t")
     if t is None:
         return None
     angle, reference = line(curves, "time.theta_m_deg", len(t)), line(curves, "time.theta_ref_deg", len(t))
@@ -48,8 +48,10 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     for panel, (strip, (low, high)) in zip(panels[with_angle:], bands, strict=True):
         _band(panel, frame, t, low, high)
         title(panel, strip.name, strip.unit)
+    first, last = float(np.nanmin(t)), float(np.nanmax(t))
+    ends = (0.0 if 0 < first < 0.01 * last else first, last)  # a run that starts a tick after zero still starts at zero
     for panel in panels:
-        panel.set_xlim(float(np.nanmin(t)), float(np.nanmax(t)))
+        panel.set_xlim(*ends)
         panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(10, 5))))
     foot(panels[-1], "Time, s")
     return figure
@@ -76,7 +78,7 @@ def _band(panel: Axes, frame: Frame, t: Array, low: Array, high: Array) -> None:
 
 def say(curves: Curves) -> str:
     """The figure in words."""
-    t = line(curves, "time.t")
+    t = axis(curves, "time.t")
     if t is None:
         return ""
     said = [f"The run over {plain(float(np.nanmax(t) - np.nanmin(t)), 3)} s"]
