@@ -122,6 +122,7 @@ def find_lines(
     theta: Array,
     y: Array,
     order_max: float,
+    slowest: float = 0.0,
     known: tuple[float, ...] = (),
     false_alarm: float = FALSE_ALARM,
     most: int = MOST_LINES,
@@ -131,7 +132,8 @@ def find_lines(
     A periodogram of pure noise is exponential around its local mean, so the largest of M independent orders exceeds
     ln(M/α) times that mean with probability α; the mean is taken from the running median, which lines do not lift.
     The strongest line is refined, subtracted with all before it, and the search repeated. `known` orders are
-    subtracted from the start and fitted with the rest, and only returned where they stand out too.
+    subtracted from the start and fitted with the rest, and only returned where they stand out too. Nothing below
+    `slowest` is looked at: noise rises there, and a rise is easily taken for a line.
     """
     turns, values = resample(theta, y, _bins(theta, order_max))
     centred = values - values.mean()
@@ -149,7 +151,7 @@ def find_lines(
     most += len(found)
     while len(found) < most:
         power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
-        power[fine < 1.5 / span] = 0.0  # slower than that is trend
+        power[fine < max(slowest, 1.5 / span)] = 0.0  # slower than that is trend
         for order in found:  # what is left this close is the same line, not quite steady
             power[np.abs(fine - order) < 1.5 / span] = 0.0
         noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)

@@ -17,6 +17,7 @@ PIECES = 100  # the run is looked at in this many pieces to see when it had sett
 OUTLIER = 5.0  # σ of the settled pieces
 STILL = 0.01  # turns of the motor: more is not a standstill
 MOST_LINES = 5  # per channel
+TEN = 10.0  # periods in the run: slower is drift, not a line
 SHAKES = 0.3  # of a channel's variance in one line: below, it is a peak in the noise
 CHANNELS = (
     ("theta_m", "Motor angle", "arcsec", ARCSEC),
@@ -51,11 +52,14 @@ def settled_from(columns: list[Array]) -> int:
         return 0
     worst = 0
     for x in columns:
+        steps = np.abs(np.diff(x))
+        count = float(np.min(steps, where=steps > 0, initial=np.inf))  # one step of the channel: a count, a bit
+        count = count if np.isfinite(count) else 1.0
         block = x[: pieces * size].reshape(pieces, size)
         for what in (block.mean(axis=1), block.std(axis=1)):
             late = what[pieces // 2 :]
             usual = float(np.median(late))
-            spread = max(1.4826 * float(np.median(np.abs(late - usual))), float(np.std(late)) / 2, 1e-12 * abs(usual))
+            spread = max(1.4826 * float(np.median(np.abs(late - usual))), float(np.std(late)) / 2, count / 2)
             out = np.abs(what[: pieces // 2] - usual) > OUTLIER * spread
             quiet = np.flatnonzero(~out & ~np.append(out[1:], False))  # two pieces in a row must be quiet
             worst = max(worst, int(quiet[0]) if quiet.size else pieces // 2)
@@ -121,8 +125,13 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
             found.figure(
                 f"drift_{name}", f"{label}, drift", f.drift, f"{unit}/min", f.u_drift, f"Line through {since}."
             )
-            rate = (rows - 1) / float(t[-1] - t[0])
-            seen = find_lines(TURN * (t - t[0]), x, 0.4 * rate, most=MOST_LINES) if f.rms > 0 else []
+            duration = float(t[-1] - t[0])
+            rate = (rows - 1) / duration
+            seen = (
+                find_lines(TURN * (t - t[0]), x, 0.4 * rate, slowest=TEN / duration, most=MOST_LINES)
+                if f.rms > 0
+                else []
+            )
             lines += [_row(name, line, unit, f.rms) for line in seen]
     if t is None:
         found.cannot.append("No usable time column: drift and fixed frequencies cannot be had.")

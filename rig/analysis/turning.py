@@ -20,6 +20,7 @@ from rig.analysis.torsion_words import add_torsion
 
 SPECTRUM_TO = 40.0  # orders of the motor drawn
 LINES_TO = 150.0  # orders searched: tooth mesh of a ratio-50 gear is 102
+SLOWEST = 0.3  # orders; a cage of rolling elements makes 0.4, below stand output orders, friction and drift
 LINES_FROM = 20  # turns a stroke needs before a line between the whole orders means anything
 OUTPUT_ORDERS = (1, 2, 3, 4)  # per output turn, looked at when the stroke has one
 JITTER = 0.01  # of the speed window: more makes a ripple of its own
@@ -135,7 +136,9 @@ def _orders(found: Findings, motion: Motion, stroke: Stroke) -> None:
         return
     # what the output does in so few of its turns is no line yet, and would leak into all others
     slow = trend_degree(float(stroke.revolutions), stroke.revolutions)
-    lines = find_lines(theta, _less_trend(theta, error, slow), LINES_TO, known=tuple(range(1, TERMS + 1)))
+    lines = find_lines(
+        theta, _less_trend(theta, error, slow), LINES_TO, slowest=SLOWEST, known=tuple(range(1, TERMS + 1))
+    )
     found.tables["lines"] = [_line_row(line, motion.ratio) for line in lines]
     if stroke.revolutions >= motion.ratio - 1:
         per_output = [k / motion.ratio for k in OUTPUT_ORDERS]
