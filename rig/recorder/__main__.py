@@ -25,7 +25,11 @@ from rig.runfile.process import sole_writer, started
 def main(folder: Path, ring_path: Path) -> int:
     """Record until told to end; the exit code is 0 when every row is on disk."""
     _be_ordinary()
-    ring = Ring.attach(ring_path, writable=True)
+    try:
+        ring = Ring.attach(ring_path, writable=True)
+    except HdrigError as error:  # the loop died at once, and its run was recovered before we looked
+        print(error, file=sys.stderr)
+        return 1
     try:
         with sole_writer(folder):
             _record(folder, ring)
@@ -45,6 +49,7 @@ def _be_ordinary() -> None:
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):  # AttributeError: no such call on this system
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        os.setpriority(os.PRIO_PROCESS, 0, max(0, os.getpriority(os.PRIO_PROCESS, 0)))
 
 
 def _record(folder: Path, ring: Ring) -> None:

@@ -148,10 +148,25 @@ def test_signals_meant_for_the_whole_program_do_not_reach_it(tmp_path: Path, num
     assert_prefix(folder, 100)
 
 
-def test_it_runs_at_normal_priority(tmp_path: Path) -> None:
+@contextmanager
+def real_time() -> Iterator[None]:
+    """As the loop of a real rig."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    except PermissionError:
+        pytest.skip("this user may not schedule in real time")
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
+def test_it_runs_at_normal_priority_even_under_a_real_time_loop(tmp_path: Path) -> None:
     recorder = Recorder(new_folder(tmp_path), WallClock())
-    recorder.start()
-    assert os.sched_getscheduler(pid_of(recorder)) == os.SCHED_OTHER
+    with real_time():
+        recorder.start()
+        assert os.sched_getscheduler(0) == os.SCHED_FIFO
+        assert os.sched_getscheduler(pid_of(recorder)) == os.SCHED_OTHER
     recorder.close()
 
 
