@@ -51,7 +51,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
         _numbers(panel, order, amplitude, least, greatest)
     title(panel, "Amplitude", "arcsec", keys=int(frame.narrow))
     key(panel, handles, columns=3 * frame.narrow)
-    panel.set_xlim(float(np.nanmin(order)) - 0.6, float(np.nanmax(order)) + 0.6)
+    panel.set_xlim(float(order.min()) - 0.6, float(order.max()) + 0.6)
     every = max(1, int(np.ceil(len(order) / frame.pick(25, 15))))
     panel.xaxis.set_major_locator(FixedLocator(list(order[::every])))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))

@@ -29,7 +29,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     panel.fill_between(places, low, shown, color=LIGHT["bar"], alpha=0.16, linewidth=0)
     panel.plot(places, shown, color=LIGHT["bar"], lw=1.0)
     panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(16, 8)), integer=True, steps=[1, 2, 5, 10]))
-    panel.set_xlim(float(np.nanmin(order)), float(np.nanmax(order)))
+    panel.set_xlim(float(order.min()), float(order.max()))
     title(panel, "Amplitude", "arcsec")
     foot(panel, "Order, cycles per turn of the wave generator")
     return figure

@@ -48,7 +48,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     for panel, (strip, (low, high)) in zip(panels[with_angle:], bands, strict=True):
         _band(panel, frame, t, low, high)
         title(panel, strip.name, strip.unit)
-    first, last = float(np.nanmin(t)), float(np.nanmax(t))
+    first, last = float(t.min()), float(t.max())
     ends = (0.0 if 0 < first < 0.01 * last else first, last)  # a run that starts a tick after zero still starts at zero
     for panel in panels:
         panel.set_xlim(*ends)
@@ -81,7 +81,7 @@ def say(curves: Curves) -> str:
     t = axis(curves, "time.t")
     if t is None:
         return ""
-    said = [f"The run over {plain(float(np.nanmax(t) - np.nanmin(t)), 3)} s"]
+    said = [f"The run over {plain(float(np.ptp(t)), 3)} s"]
     for strip in STRIPS:
         found = band(curves, strip.curve, len(t))
         if found is not None:
