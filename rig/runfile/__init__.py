@@ -12,8 +12,11 @@
 | recover | what a killed program left → a readable run |
 | verify | does the folder keep its promises |
 | listing | the runs under a root, from their manifests alone |
+| process | who writes a run, and whether they live |
+| samples | archive or journal, one channel at a time |
 | run | `Run`: columns when asked for, whoever made the folder |
-| export | CSV, MDF4, MCAP, HDF5 |
+| export/ | CSV, MDF4, MCAP, HDF5; one format a file |
+| importing/ | files of other loggers → run folders |
 
 Import from the modules: this package loads nothing by itself, so that the recorder and `--help` start quickly.
 """

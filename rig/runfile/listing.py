@@ -34,10 +34,10 @@ def list_runs(root: Path | str) -> list[Row]:
     return sorted((_row(path) for path in run_folders(str(root))), key=lambda row: (row.started_utc, row.path.name))
 
 
-def run_folders(root: str, depth: int = 2) -> Iterator[str]:
-    """Folders with a manifest, down to runs/date/run."""
+def run_folders(root: str, depth: int = 3) -> Iterator[str]:
+    """Folders with a manifest, down to ./runs/date/run; hidden ones are passed by."""
     with os.scandir(root) as entries:
-        folders = [e.path for e in entries if e.is_dir()]
+        folders = [e.path for e in entries if e.is_dir() and not e.name.startswith(".")]
     for folder in folders:
         if os.path.exists(f"{folder}/{NAME}"):
             yield folder

@@ -11,6 +11,7 @@ import numpy as np
 from rig.core.channels import Flag
 from rig.core.errors import HdrigError
 from rig.runfile import archive, manifest
+from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, raw_files
 from rig.runfile.journal import JournalReader, journal_files
 from rig.runfile.process import is_being_made
@@ -18,6 +19,7 @@ from rig.runfile.run import Run
 from rig.runfile.samples import Archive
 
 GAP = 1.5  # periods between two rows that are still neighbours
+MAKE_UP = 5  # rows within which a late tick has been made up for: the loop counts deadlines, not delays
 
 
 class Finding(NamedTuple):
@@ -79,19 +81,31 @@ def _rows(run: Run) -> Iterator[Finding]:
 
 
 def _gaps(run: Run) -> Iterator[Finding]:
-    """Steps of `t` longer than 1.5 periods; explained by a cycle the loop said it missed, or a stale latch before."""
+    """Steps of `t` longer than 1.5 periods, by why: told by the loop, a late tick made up for, or a lost row."""
     t = run.column("t")
     if t is None or t.size < 3:
         return
     dt = np.diff(t)
     period = float(np.median(dt[dt > 0])) if (dt > 0).any() else np.inf  # equal times are stale rows
     gaps, flags = np.flatnonzero(dt > GAP * period), run.flags
-    told = (flags[gaps + 1] & int(Flag.MISSED)) | (flags[gaps] & int(Flag.STALE_M))
-    for level, found, why in (("warning", gaps[told > 0], "flagged"), ("error", gaps[told == 0], "unexplained")):
+    told = ((flags[gaps + 1] & int(Flag.MISSED)) | (flags[gaps] & int(Flag.STALE_M))) > 0
+    late = ~told & np.array([_made_up_for(t, int(i), period) for i in gaps], dtype=bool)
+    for level, found, why in (
+        ("warning", gaps[told], "flagged by the loop"),
+        ("warning", gaps[late], "a tick came late, no row is gone"),
+        ("error", gaps[~told & ~late], "unexplained"),
+    ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
-            many = f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why} by the loop"
+            many = f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why}"
             yield Finding(level, "gaps", f"{many}; the longest is {dt[worst] * 1e3:.4g} ms at t = {t[worst]:.3f} s")
+
+
+def _made_up_for(t: Array, i: int, period: float) -> bool:
+    """True when the rows after the gap behind row `i` stand again where they would without it."""
+    after = t[i + 1 : i + 1 + MAKE_UP] - t[i]
+    in_time = (np.arange(after.size) + 1.5) * period
+    return bool((after < in_time).any() or (after.size < MAKE_UP and after[0] < 2 * period))
 
 
 def _flags(run: Run) -> Iterator[Finding]:

@@ -119,7 +119,7 @@ def test_a_gap_nobody_told_of_is_an_error(tmp_path: Path) -> None:
     folder = closed(tmp_path)
     with_column(folder, "t", late)
     assert found(folder) == [
-        ("gaps", "1 gaps longer than 1.5 periods of 1 ms, unexplained by the loop; the longest is 4 ms at t = 0.149 s")
+        ("gaps", "1 gaps longer than 1.5 periods of 1 ms, unexplained; the longest is 4 ms at t = 0.149 s")
     ]
 
 
@@ -137,6 +137,30 @@ def test_a_gap_the_loop_flagged_is_a_warning(tmp_path: Path, row: int, flag: Fla
     assert check == "gaps"
     assert "flagged by the loop" in sentence
     assert ("flags", f"1 of 300 rows are flagged {flag.name}") in found(folder, "note")
+
+
+@pytest.mark.parametrize("row", [150, 298, 299])
+def test_a_late_tick_that_was_made_up_for_is_no_lost_row(tmp_path: Path, row: int) -> None:
+    folder = closed(tmp_path)
+
+    def late_once(t: np.ndarray[Any, Any]) -> None:
+        t[row] += 0.7e-3
+
+    with_column(folder, "t", late_once)
+    assert found(folder) == []
+    ((_, sentence),) = found(folder, "warning")
+    assert "1 gaps longer than 1.5 periods of 1 ms, a tick came late, no row is gone; the longest is 1.7 ms" in sentence
+
+
+@pytest.mark.parametrize("row", [1, 150, 298])
+def test_a_row_cut_out_is_found(tmp_path: Path, row: int) -> None:
+    folder = closed(tmp_path)
+
+    def cut(t: np.ndarray[Any, Any]) -> None:
+        t[row:] += 1e-3
+
+    with_column(folder, "t", cut)
+    assert [check for check, _ in found(folder)] == ["gaps"]
 
 
 def test_an_archive_that_differs_from_its_journal_is_found(tmp_path: Path) -> None:
