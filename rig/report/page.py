@@ -98,13 +98,15 @@ def render(
     return environment.get_template("page.html").render(view)
 
 
-NUMBERS = {"ke.peak_to_peak": "kinematic_error_peak_to_peak", "mse.chosen": "fourier_terms"}
-
-
 def with_numbers(result: Result) -> dict[str, Array]:
     """The curves, and the numbers that are drawn into them: a drawing and its text must not say different things."""
-    found = {e.name: e.value for e in result.estimates}
-    numbers = {curve: np.array([found[name]]) for curve, name in NUMBERS.items() if name in found}
+    numbers: dict[str, Array] = {}
+    for e in result.estimates:
+        match e.name:
+            case "kinematic_error_peak_to_peak":
+                numbers["ke.peak_to_peak"] = np.array([e.value, *e.ci95])
+            case "fourier_terms":
+                numbers["mse.chosen"] = np.array([e.value])
     rows = result.tables.get("coefficients", [])
     for curve, key in (("orders.low", "C_lo"), ("orders.high", "C_hi")):
         if rows and all(key in row for row in rows):

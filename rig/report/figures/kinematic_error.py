@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from rig.report.figures.arrays import axis, line, rows, scalar, span, thin
+from rig.report.figures.arrays import axis, line, rows, span, thin
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, angle_axis, key, sheet, title
 from rig.report.figures.direction import FIT_DASH, FORWARD, REVERSE, Direction
-from rig.report.numbers import plain
+from rig.report.numbers import estimate, plain
 from rig.report.palette import LIGHT
 
 MOST = 40  # revolutions drawn per direction; more only thicken the band
@@ -47,8 +47,8 @@ def sides(curves: Curves, length: int) -> list[Side]:
 
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
-    """Uses ke.theta_deg (G,), ke.revolutions_* (R, G), ke.mean_*, ke.pure, ke.fit (G,), arcsec; ke.peak_to_peak (1,) as
-    the number at the dimension line. None without a curve.
+    """Uses ke.theta_deg (G,), ke.revolutions_* (R, G), ke.mean_*, ke.pure, ke.fit (G,), arcsec; ke.peak_to_peak (3,),
+    value and ends of its interval, at the dimension line. None without a curve.
     """
     theta = axis(curves, "ke.theta_deg")
     if theta is None:
@@ -74,7 +74,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     key(panels[0], handles, columns)
     shown = best if best is not None else next((s.mean for s in both if s.mean is not None), None)
     if shown is not None and not frame.narrow:
-        _dimension(panels[0], shown, scalar(curves, "ke.peak_to_peak"))
+        _dimension(panels[0], shown, line(curves, "ke.peak_to_peak", 3))
     for panel, side in zip(panels[1:], apart, strict=True):
         _apart(panel, frame, theta, side, best)
         what = "the fit" if fit is not None else "the mean of both"
@@ -123,14 +123,14 @@ def _apart(panel: Axes, frame: Frame, theta: Array, side: Side, best: Array | No
     panel.yaxis.set_major_locator(MaxNLocator(3))
 
 
-def _dimension(panel: Axes, values: Array, stated: float | None) -> None:
+def _dimension(panel: Axes, values: Array, stated: Array | None) -> None:
     """A dimension line right of the panel: from the least to the greatest of the curve, and how far that is."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     place = panel.get_yaxis_transform()
     for level in (low, high):
         panel.plot([1.008, 1.034], [level, level], transform=place, color=LIGHT["ink"], lw=1, clip_on=False)
     panel.plot([1.021, 1.021], [low, high], transform=place, color=LIGHT["ink"], lw=1, clip_on=False)
-    number = plain(high - low if stated is None else stated, 3)
+    number = plain(high - low, 3) if stated is None else estimate(stated[0], (stated[1], stated[2])).split(" ")[0]
     for text, lift, size, weight, colour in (
         (number, 3.0, 16, "bold", "ink"),
         ("arcsec", -12.0, 11, "normal", "muted"),

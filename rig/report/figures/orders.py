@@ -41,16 +41,19 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     if order is None or amplitude is None or not (amplitude > 0).any():
         return None
     least, greatest = interval(curves, amplitude)
-    floor = float(10.0 ** np.floor(np.log10(np.nanmin(amplitude[amplitude > 0]) / 1.5)))
-    figure, (panel,) = sheet(frame, [frame.pick(250, 220)], keys=int(frame.narrow))
+    known = (amplitude > 0) & (least > 0)
+    shown = np.where(known, amplitude, greatest)  # of an order that may be zero, how large it is at most
+    floor = float(10.0 ** np.floor(np.log10(np.nanmin(shown[shown > 0]) / 1.5)))
+    lines = int(frame.pick(0, 1 if known.all() else 2))
+    figure, (panel,) = sheet(frame, [frame.pick(250, 220)], keys=lines)
     log_axis(panel, floor, float(np.nanmax(greatest)) * 1.9)
-    handles = _bars(panel, order, amplitude, (amplitude > 0) & (least > 0), floor)
+    handles = _bars(panel, order, shown, known, floor)
     if (greatest > least).any():
-        _whiskers(panel, order, np.fmax(least, floor), greatest, floor)
+        _whiskers(panel, order[known], np.fmax(least, floor)[known], greatest[known], floor)
     if not frame.narrow:
-        _numbers(panel, order, amplitude, least, greatest)
-    title(panel, "Amplitude", "arcsec", keys=int(frame.narrow))
-    key(panel, handles, columns=3 * frame.narrow)
+        _numbers(panel, order, shown, known, np.stack((least, greatest)))
+    title(panel, "Amplitude", "arcsec", keys=lines)
+    key(panel, handles, columns=2 * frame.narrow)
     panel.set_xlim(float(order.min()) - 0.6, float(order.max()) + 0.6)
     every = max(1, int(np.ceil(len(order) / frame.pick(25, 15))))
     panel.xaxis.set_major_locator(FixedLocator(list(order[::every])))
@@ -60,14 +63,14 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
 
 
 def _bars(panel: Axes, order: Array, amplitude: Array, known: Bool, floor: float) -> list[Patch]:
-    """Bars from `floor` up, dashed outlines for orders not told from zero; gives the key."""
+    """Bars from `floor` up, dashed outlines up to the upper limit of orders not told from zero; gives the key."""
     even = np.isclose(order % 2, 0)
     outline: dict[str, Any] = {"facecolor": "none", "edgecolor": LIGHT["axis"], "linestyle": (0, (2, 2))}
     handles = []
     for label, chosen, style in (
         ("even orders", known & even, {"color": LIGHT["bar"]}),
         ("odd orders", known & ~even, {"color": LIGHT["bar-soft"]}),
-        ("not told from zero", ~known, outline),
+        ("upper limit, not told from zero", ~known, outline),
     ):
         if chosen.any():
             heights = np.fmax(amplitude[chosen], floor) - floor
@@ -83,12 +86,14 @@ def _whiskers(panel: Axes, order: Array, least: Array, greatest: Array, floor: f
         panel.hlines(level, at - 0.13, at + 0.13, color=LIGHT["ink"], lw=1.3, zorder=3)
 
 
-def _numbers(panel: Axes, order: Array, amplitude: Array, least: Array, greatest: Array) -> None:
-    """The amplitude above each bar, to one digit of its uncertainty: bars are crowded."""
-    for n, c, low, high in zip(order, amplitude, least, greatest, strict=True):
+def _numbers(panel: Axes, order: Array, shown: Array, known: Bool, ends: Array) -> None:
+    """The number above each bar, to one digit of its uncertainty: bars are crowded. `ends`: (2, k)."""
+    for n, c, sure, low, high in zip(order, shown, known, *ends, strict=True):
         if np.isfinite(c):
-            text = fixed(c, places((high - low) / 2) - 1) if high > low else plain(c, 3)
-            panel.annotate(text, (n, high), (0, 5), textcoords="offset points", ha="center", fontsize=10.5)
+            text = plain(c, 2) if not sure else fixed(c, places((high - low) / 2) - 1) if high > low else plain(c, 3)
+            place = (n, high if sure else c)
+            words = text if sure else f"< {text}"
+            panel.annotate(words, place, (0, 5), textcoords="offset points", ha="center", fontsize=10.5)
 
 
 def say(curves: Curves) -> str:

@@ -24,7 +24,7 @@ class Strip(NamedTuple):
 
 
 STRIPS = (
-    Strip("time.following_error", "Following error of the motor", "deg"),
+    Strip("time.following_error", "Following error, reference less motor", "deg"),
     Strip("time.speed", "Motor speed", "rpm"),
     Strip("time.tau_m", "Motor torque", "N·m"),
     Strip("time.tau_l", "Torque at the load", "N·m"),
@@ -93,8 +93,7 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "time",
     "The run over time",
-    "Each strip spans the least and the greatest sample of each stretch of time, so that no peak is lost. The "
-    "following error is the reference less the measured motor angle.",
+    "Each strip spans the least and the greatest sample of each stretch of time, so that no peak is lost.",
     draw,
     say,
     full=True,

@@ -71,9 +71,10 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "torsion",
     "Torsion against torque",
-    "Torsion is motor angle divided by gear ratio less load angle, with the kinematic error taken out. The "
-    "slope is the compliance of the whole path between the encoders: gear, torque sensor, couplings and "
-    "fixture together. The height of the loop at zero torque is the hysteresis loss.",
+    "Torsion is the motor angle divided by the gear ratio, less the load angle; the kinematic error at these "
+    "motor angles is still in it. The slope is the compliance of the whole path between the encoders: gear, "
+    "torque sensor, couplings and fixture together. The height of the loop at zero torque is the hysteresis "
+    "loss.",
     draw,
     say,
 )
