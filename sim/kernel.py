@@ -42,8 +42,8 @@ PER_N, PER_J_M, PER_J_L, K, B_M, B_L, B_ML, B_SP, SIGMA, TAU_C, TAU_S, PER_OMEGA
 T_DRIVE, T_SENSOR, WANDER, T_WANDER, MODE_RATE, TERMS, REFINE, SERIES = range(13, 21)
 
 # Places in the state vector. Wander is relative. The last eight are the energy ledger [J].
-THETA_M, OMEGA_M, THETA_L, OMEGA_L, TAU_M, TAU_L, FILTERED, WANDER_M, WANDER_L, VALUE, SLOPE = range(11)
-IN_MOTOR, IN_EXTERNAL, LOST_B_M, LOST_B_L, LOST_B_ML, LOST_B_SP, LOST_MOTOR, LOST_LOAD, STATE_SIZE = range(11, 20)
+THETA_M, OMEGA_M, THETA_L, OMEGA_L, TAU_M, TAU_L, FILTERED, WANDER_M, WANDER_L, VALUE, SLOPE, RATE = range(12)
+IN_MOTOR, IN_EXTERNAL, LOST_B_M, LOST_B_L, LOST_B_ML, LOST_B_SP, LOST_MOTOR, LOST_LOAD, STATE_SIZE = range(12, 21)
 
 FINE, NOT_FINITE, TOO_FAST, CHATTER = range(4)  # what `advance` reports
 
@@ -52,7 +52,7 @@ C_ORDER = 0.32  # rad of the highest order of the kinematic error per substep
 C_STRIBECK = 0.1  # of the time in which falling friction makes the speed grow e-fold
 H_LEAST = 1e-7  # s; a state that needs less has run away: 15 orders at 10^5 rad/s
 MOST_EVENTS = 10_000  # in one call; stick and slip cannot alternate that often
-H_SLOPE = 1e-6  # s; across less, the slope of the shaft torque would be rounding
+H_SLOPE = 1e-9  # s; across less, the slope of the shaft torque would be rounding: the last one stays
 STEEPEST = math.sqrt(0.5)  # ω/ω_s where the Stribeck curve falls most
 HALVINGS = 45  # of a substep, to find an event in it to the last digits
 
@@ -269,7 +269,7 @@ def advance(
     series, filtered = (state[VALUE], state[SLOPE]), state[FILTERED]
     torque, lag = (tau, tau_ext), state[TAU_M] - tau
     net = balance(y, series, state[TAU_M], tau_ext, p)
-    left, rate, events, status = dt, 0.0, 0, FINE
+    left, rate, events, status = dt, state[RATE], 0, FINE
     while True:
         grip = (way(y[1], net[0], hold[0]), way(y[3], net[1], hold[1]), level_m, friction_l)
         k1 = rates(y, series, torque, grip, p)
@@ -311,5 +311,5 @@ def advance(
         state[THETA_M], state[OMEGA_M], state[THETA_L], state[OMEGA_L] = y
         state[TAU_M], state[TAU_L], state[FILTERED] = tau + lag, net[2], filtered
         state[WANDER_M], state[WANDER_L] = wander_m, wander_l
-        state[VALUE], state[SLOPE] = series
+        state[VALUE], state[SLOPE], state[RATE] = series[0], series[1], rate
     return status, (y[0], y[1], a_m), (y[2], y[3], k1[1]), (tau + lag, net[2], rate, filtered)

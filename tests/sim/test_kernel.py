@@ -96,7 +96,7 @@ def test_a_load_no_rig_could_bear_fails_loudly_too(calm: TwinParameters, tau_ext
     plant = Plant(calm)
     plant.tau_ext = tau_ext
     with pytest.raises(PlantFailure):
-        plant.advance(0.1, 0.0)
+        plant.advance(1e-3, 0.0)
 
 
 def test_a_runaway_is_followed_truly_or_refused(calm: TwinParameters) -> None:
@@ -109,6 +109,18 @@ def test_a_runaway_is_followed_truly_or_refused(calm: TwinParameters) -> None:
     assert plant.truth().omega_m > 1e4  # 100 000 rpm
     with pytest.raises(PlantFailure, match="too fast"):
         plant.advance(10.0, 5e5)
+
+
+@pytest.mark.parametrize("sliver", [1e-18, 1e-15, 1e-12])
+def test_a_sliver_of_time_changes_nothing(calm: TwinParameters, sliver: float) -> None:
+    plant = Plant(calm)
+    plant.place(300.0, 20.0)
+    plant.advance(1e-3, 0.5)
+    before = plant.truth(), plant.shaft
+    plant.advance(sliver, 0.5)
+    assert plant.truth() == pytest.approx(before[0], rel=1e-9)
+    assert abs(before[1][2]) > 1.0
+    assert plant.shaft == pytest.approx(before[1], rel=1e-6)  # its slope among them
 
 
 @pytest.mark.parametrize("changes", [{"B_sp": 3000.0}, {"B_m": 10.0}, {"B_l": 1e5}, {"K": 1e8}, {"omega_s": 0.001}])

@@ -162,3 +162,21 @@ def test_friction_wanders_by_its_sigma_with_its_correlation_time(twin: TwinParam
         assert np.std(series) == pytest.approx(0.05, rel=0.15)
         assert np.corrcoef(series[:-lag], series[lag:])[0, 1] == pytest.approx(math.exp(-1.0), abs=0.15)
     assert abs(np.corrcoef(both.T)[0, 1]) < 0.25  # the two sides know nothing of each other
+
+
+def test_what_holds_a_side_wanders_with_its_own_friction(calm: TwinParameters) -> None:
+    plant = Plant(dataclasses.replace(calm, friction_noise_s=1e12), theta_m=0.7)
+    plant.state[[kernel.WANDER_M, kernel.WANDER_L]] = 0.2, 0.3
+    plant.tau_ext = 1.299 * calm.gear.F_cl
+    advance(plant, 1.0, 0.0)
+    assert plant.truth().omega_l == 0.0
+    plant.tau_ext = 1.301 * calm.gear.F_cl
+    plant.advance(TICK, 0.0)
+    assert plant.truth().omega_l > 0.0
+    plant.place(0.7)
+    plant.state[kernel.WANDER_M] = 0.2
+    plant.tau_ext = 0.0
+    advance(plant, 1.0, 1.199 * calm.gear.tau_s)
+    assert plant.truth().omega_m == 0.0
+    advance(plant, 0.02, 1.201 * calm.gear.tau_s)
+    assert plant.truth().omega_m > 0.0

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from rig.core.errors import UsageError
+from sim import kernel
+from sim.noise import normal
 from sim.parameters import TwinParameters
 from sim.plant import PlantFailure
 from sim.world import World
@@ -117,6 +119,14 @@ def test_a_turning_output_cannot_be_locked(twin: TwinParameters) -> None:
     world.wait_until(0.005)
     with pytest.raises(UsageError, match="it can be locked at rest only"):
         world.lock_output()
+
+
+def test_friction_wanders_on_during_one_long_wait(twin: TwinParameters) -> None:
+    world, single = World(twin, 1), normal(1, "friction")
+    world.wait_until(60.0)
+    wander = world.plant.state[kernel.WANDER_M]
+    assert 0.0 < abs(wander) < 6 * twin.friction_noise
+    assert wander != pytest.approx(twin.friction_noise * single(), rel=1e-3)  # what one draw for it all would give
 
 
 def test_a_plant_that_fails_stops_time(twin: TwinParameters) -> None:
