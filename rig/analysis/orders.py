@@ -13,6 +13,7 @@ from rig.analysis.sums import fit, without
 
 FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere in the spectrum
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
+MARGIN = 1.25  # the local noise is itself known to a quarter only
 MOST_LINES = 24
 
 
@@ -151,13 +152,13 @@ def find_lines(
     most += len(found)
     while len(found) < most:
         power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
-        power[fine < max(slowest, 1.5 / span)] = 0.0  # slower than that is trend
-        for order in found:  # what is left this close is the same line, not quite steady
-            power[np.abs(fine - order) < 1.5 / span] = 0.0
         noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)
         ratio = power / np.maximum(noise, 1e-300)
+        ratio[fine < max(slowest, 1.5 / span)] = 0.0  # slower than that is trend
+        for order in found:  # what is left this close is the same line, not quite steady
+            ratio[np.abs(fine - order) < 1.5 / span] = 0.0
         best = int(np.argmax(ratio))
-        if ratio[best] < np.log(independent / false_alarm):
+        if ratio[best] < MARGIN * np.log(fine.size / false_alarm):
             break
         found.append(_refine(turns, rest, float(fine[best]), 0.5 / span))
         rest = _cleaned(turns, centred, found)
@@ -182,14 +183,14 @@ def _refine(turns: Array, rest: Array, order: float, width: float) -> float:
 
 
 def _local_median(x: Array) -> Array:
-    """Median of the neighbours of each value: half as many as its own number, 5 to NEIGHBOURS on either side.
+    """Median of the neighbours of each value: half as many as its own number, 8 to NEIGHBOURS on either side.
 
     Friction and drift make noise that falls with frequency: near zero only close neighbours have the same noise.
     """
     out = np.empty_like(x)
     i = 0
     while i < x.size:
-        half = min(max(i // 3, 5), NEIGHBOURS)
+        half = min(max(i // 3, 8), NEIGHBOURS)
         step = max(half // 4, 1)  # held for a quarter of the width: the noise varies slowly
         out[i : i + step] = np.median(x[max(i - half, 0) : i + half + 1])
         i += step

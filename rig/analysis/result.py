@@ -1,4 +1,4 @@
-"""What an analysis says: figures with uncertainty, checks in words, curves to draw. `result.json` is this, written down."""
+"""What an analysis says: figures with uncertainty, checks in words, curves to draw. `result.json` is this on disk."""
 
 from __future__ import annotations
 

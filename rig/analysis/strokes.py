@@ -81,7 +81,9 @@ def _stroke(theta: Array, lo: int, hi: int, cut_start: float, cut_end: float) ->
     span = float(progress[-1])
     usable = (span - cut_start - cut_end) / TURN
     revolutions = max(int(np.floor(usable + TOLERANCE)), 0)
-    first = cut_start + (usable - revolutions) * TURN / 2  # the whole revolutions sit in the middle of what is usable
+    # whole revolutions sit as far as they can from an end that was not cut, else in the middle of what is usable
+    spare, share = (usable - revolutions) * TURN, 0.5 + 0.5 * (bool(cut_end) - bool(cut_start))
+    first = cut_start + spare * share
     marks = first + TURN * np.arange(revolutions + 1)
     edges = lo + np.searchsorted(progress, marks)
     start = lo + int(np.searchsorted(progress, min(cut_start, first)))

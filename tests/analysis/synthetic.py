@@ -99,7 +99,7 @@ def slow_run(
     manifest: Mapping[str, Any] | None = None,
 ) -> MadeRun:
     """A triangle under a position loop: ripple of the speed (locked to the angle and not), quantised encoders, friction
-    wander, an offset by direction that builds up over 0.3 motor turns, and eccentricity of the output (`trend_arcsec`).
+    wander, an offset by direction that builds up over a tenth of a turn, eccentricity of the output (`trend_arcsec`).
     """
     rng = np.random.default_rng(seed)
     dt = 1.0 / rate
@@ -110,8 +110,8 @@ def slow_run(
     theta_m = reference + ripple * omega * (0.02 * sway + 0.1 * np.sin(2 * reference + 1.0) + 0.02 * np.sin(40.0 * t))
     travelled = np.diff(reference, prepend=reference[0])
     side = np.empty_like(t)
-    memory = 0.0  # the offset follows the direction over 0.3 turns of travel
-    sign, step = np.sign(travelled), np.abs(travelled) / (0.1 * TURN)
+    memory = 0.0  # the offset follows the direction over a tenth of a turn of travel
+    sign, step = np.sign(travelled), np.abs(travelled) / (0.03 * TURN)
     flips = np.flatnonzero(np.diff(sign, prepend=sign[0]))
     for lo, hi in zip([0, *flips], [*flips, t.size], strict=True):
         s = sign[min(lo + 1, t.size - 1)]

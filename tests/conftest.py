@@ -1,0 +1,19 @@
+"""Fixtures of more than one package."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of reference campaigns that lies beside a checkout (HDRIG_SHARED); skips where there is none."""
+    folder = Path(os.environ.get("HDRIG_SHARED", ROOT.parent / "shared"))
+    if not (folder / "cases").is_dir():
+        pytest.skip(f"no reference campaigns at {folder} (set HDRIG_SHARED)")
+    return folder
