@@ -103,6 +103,7 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
         Row("Ending", status(manifest) or "unknown"),
         Row("Started", utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown"),
         *([Row("Ended", utc(manifest["ended_utc"]))] if manifest.get("ended_utc") else []),
+        *_length(manifest),
         Row("Origin", f"{origin(backend).word.capitalize()}, backend {show(backend)}"),
         Row("Gear", show(gear.get("serial"))),
         Row("Gear ratio", show(gear.get("ratio"))),
@@ -111,9 +112,6 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
         Row("Software", software(manifest) or "unknown"),
         Row("Schema", show(manifest.get("schema"))),
     ]
-    length = manifest.get("duration")
-    if isinstance(length, int | float):
-        known.insert(-6, Row("Duration", duration(length)))
     told = {
         "duration",
         "uid",
@@ -133,6 +131,15 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
     rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
     rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
     return known + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
+
+
+def _length(manifest: Mapping[str, Any]) -> list[Row]:
+    """How long the run took; on a virtual clock that is not what lies between its start and its end."""
+    seconds = manifest.get("duration")
+    if not isinstance(seconds, int | float):
+        return []
+    virtual = table(manifest.get("loop")).get("clock") == "virtual"
+    return [Row("Duration", duration(seconds) + (" on a virtual clock" if virtual else ""))]
 
 
 def flat(tree: Mapping[str, Any], stem: str = "") -> Iterator[tuple[str, str]]:

@@ -80,3 +80,9 @@ def test_a_time_without_a_zone_stays_as_it_stands() -> None:
     assert rows.utc("2026-11-20T03:47:12+02:00") == "2026-11-20 01:47:12 UTC"
     assert rows.utc("2026-11-20T03:47:12") == "2026-11-20T03:47:12"
     assert rows.utc("yesterday") == "yesterday"
+
+
+def test_a_duration_on_a_virtual_clock_is_said_to_be_one() -> None:
+    found = rows.provenance(made_up.manifest(loop={"clock": "virtual"}), "run")
+    assert rows.Row("Duration", "3\u00a0min 20\u00a0s on a virtual clock") in found
+    assert rows.Row("Duration", "3\u00a0min 20\u00a0s") in rows.provenance(made_up.manifest(), "run")
