@@ -49,10 +49,13 @@ class TwinDrive(Drive):
     def close(self) -> None:
         """Torque off, then gone."""
         self.halt()
-        self._connected = False
+        self._connected, self._read_at = False, UNREAD
 
     def enable(self) -> None:
-        """Zero torque, commands expected from now on. Raises NotReady: not connected, or a fault is latched."""
+        """Zero torque. Raises NotReady: not connected, or a fault is latched.
+
+        The watchdog starts with the first command, as a CANopen heartbeat consumer does with the first heartbeat.
+        """
         self._expect_connection()
         if self.trouble:
             raise NotReady(f"the drive does not enable: {self.trouble}; reset the fault first")
@@ -60,7 +63,7 @@ class TwinDrive(Drive):
             raise NotReady("the drive does not enable: it does not answer")
         if not self._enabled:
             self._enabled = True
-            self._command(0.0)
+            self.world.command(0.0)
 
     def read(self) -> DriveReading:
         """The newest reading; the same one again until time has passed. Raises NotReady when not connected."""
@@ -98,7 +101,7 @@ class TwinDrive(Drive):
             carried -= math.copysign(self._resolution, carried)
         if not self.deaf:
             self._flags = SIMULATED if tau == asked else DRIVE_SATURATED
-            self._command(carried)
+            self.world.command(carried, self.world.t + self._watchdog, self._lapsed)
         return carried
 
     def halt(self) -> bool:
@@ -122,9 +125,6 @@ class TwinDrive(Drive):
     def _let_go(self) -> None:
         self._enabled, self._flags, self._read_at = False, SIMULATED, UNREAD
         self.world.command(0.0)
-
-    def _command(self, tau: float) -> None:
-        self.world.command(tau, self.world.t + self._watchdog, self._lapsed)
 
     def _lapsed(self) -> None:
         self.trip(f"watchdog: no command for {self._watchdog * 1e3:g} ms")

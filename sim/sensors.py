@@ -34,7 +34,7 @@ class TwinLoadEncoder(Encoder):
 
     def close(self) -> None:
         """Gone."""
-        self._connected = False
+        self._connected, self._read_at = False, UNREAD
 
     def read(self) -> AngleReading:
         """The newest angle; the same reading again until time has passed. Raises NotReady when not connected."""
@@ -88,7 +88,7 @@ class TwinTorqueSensor(TorqueSensor):
 
     def close(self) -> None:
         """Gone."""
-        self._connected = False
+        self._connected, self._read_at = False, UNREAD
 
     def read(self) -> TorqueReading:
         """The newest torque; the same reading again until time has passed. Raises NotReady when not connected."""

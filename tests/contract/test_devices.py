@@ -106,6 +106,7 @@ def test_reading_twice_at_one_instant_gives_the_same(device: Device, world: Worl
 def test_closing_twice_or_unopened_is_no_error_and_a_device_can_be_opened_again(device: Device) -> None:
     device.close()
     device.connect()
+    read(device)
     device.close()
     device.close()
     with pytest.raises(NotReady):

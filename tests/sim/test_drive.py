@@ -106,6 +106,16 @@ def test_without_commands_the_watchdog_lets_go_and_latches(drive: TwinDrive, twi
     assert abs(drive.world.truth().tau_m) < 1e-9
 
 
+def test_the_watchdog_starts_with_the_first_command(drive: TwinDrive) -> None:
+    # the world may lie far behind a wall clock when the drive is enabled; no torque flows until the first command
+    drive.enable()
+    drive.world.advance_to(3.0)
+    assert drive.read().fault == ""
+    assert drive.write(Torque(0.3)) == pytest.approx(0.3)
+    drive.world.advance_to(3.5)
+    assert drive.read().fault.startswith("watchdog")
+
+
 def test_a_latched_fault_refuses_to_enable_until_reset_and_reset_never_energises(drive: TwinDrive) -> None:
     drive.enable()
     drive.trip("overcurrent")
