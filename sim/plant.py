@@ -47,7 +47,7 @@ class Plant:
 
     τ_ext stands beside the paper's Eq. 7, positive when it drives the load forward. Friction stands beside both:
     τ_f = (τ_c + (τ_s − τ_c)·exp(−(ω_m/ω_s)²))·sgn ω_m and F_l = F_cl·sgn ω_l while sliding; at rest whatever is
-    needed, up to τ_s and F_cl.      [armstrong1994; karnopp1985]
+    needed, up to τ_s and F_cl      [armstrong1994] [karnopp1985]
 
     `refine` divides the substeps, for tests of convergence.
     """
