@@ -17,6 +17,7 @@ from rig.report.cards import cards
 from rig.report.figures import CATALOGUE, Drawing, Frame, svg
 from rig.report.numbers import duration
 from rig.report.palette import DARK, LIGHT, variables
+from rig.report.provenance import provenance
 from rig.report.tables import Table, number, tables
 from rig.runfile.manifest import write_atomic
 
@@ -85,7 +86,7 @@ def render(
         "declared": rows.declared(manifest),
         "cannot": result.cannot,
         "events": rows.events(events),
-        "provenance": rows.provenance(manifest, run),
+        "provenance": provenance(manifest, run),
         "files": rows.files(manifest),
         "bench": list(rows.bench_numbers(numbers)),
         "css": _css(run, origin.mark),

@@ -3,6 +3,7 @@
 from rig.analysis.result import Estimate
 from rig.report import rows
 from rig.report.cards import cards
+from rig.report.provenance import provenance
 from rig.report.tables import tables
 from rig.report.words import named
 from tests.report import made_up
@@ -83,6 +84,6 @@ def test_a_time_without_a_zone_stays_as_it_stands() -> None:
 
 
 def test_a_duration_on_a_virtual_clock_is_said_to_be_one() -> None:
-    found = rows.provenance(made_up.manifest(loop={"clock": "virtual"}), "run")
+    found = provenance(made_up.manifest(loop={"clock": "virtual"}), "run")
     assert rows.Row("Duration", "3\u00a0min 20\u00a0s on a virtual clock") in found
-    assert rows.Row("Duration", "3\u00a0min 20\u00a0s") in rows.provenance(made_up.manifest(), "run")
+    assert rows.Row("Duration", "3\u00a0min 20\u00a0s") in provenance(made_up.manifest(), "run")

@@ -75,8 +75,9 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     shown = best if best is not None else next((s.mean for s in both if s.mean is not None), None)
     if shown is not None and not frame.narrow:
         _dimension(panels[0], shown, line(curves, "ke.peak_to_peak", 3))
+    strips = [_apart(panel, frame, theta, side, best) for panel, side in zip(panels[1:], apart, strict=True)]
     for panel, side in zip(panels[1:], apart, strict=True):
-        _apart(panel, frame, theta, side, best)
+        panel.set_ylim(*_limits(strips))  # one scale, so that the directions can be compared
         what = "the fit" if fit is not None else "the mean of both"
         title(panel, f"{side.direction.name.capitalize()} less {what}", "arcsec")
     angle_axis(panels, frame)
@@ -106,21 +107,27 @@ def _revolutions(panel: Axes, frame: Frame, theta: Array, revolutions: Array, di
     return Line2D([], [], color=direction.soft, lw=1.4, label=f"{count} {turns} {direction.name}")
 
 
-def _apart(panel: Axes, frame: Frame, theta: Array, side: Side, best: Array | None) -> None:
-    """One direction less the best curve. The strip spans the revolutions, not their rarest spikes."""
+def _apart(panel: Axes, frame: Frame, theta: Array, side: Side, best: Array | None) -> tuple[float, float] | None:
+    """One direction less the best curve; gives its span, that of the revolutions without their rarest spikes."""
     assert best is not None
     panel.axhline(0, color=LIGHT["axis"], lw=1)
+    panel.yaxis.set_major_locator(MaxNLocator(3))
     rest = None if side.revolutions is None else side.revolutions - best
     mean = None if side.mean is None else side.mean - best
     if rest is not None:
         _revolutions(panel, frame, theta, rest, side.direction)
     if mean is not None:
         panel.plot(*closed(theta, mean), color=side.direction.colour, ls=side.direction.dash, lw=1.5)
-    middle = None if rest is None else np.nanpercentile(rest, [0.5, 99.5])
-    if (ends := span(middle, mean)) and ends[1] > ends[0]:
-        margin = 0.15 * (ends[1] - ends[0])
-        panel.set_ylim(min(ends[0], 0) - margin, max(ends[1], 0) + margin)
-    panel.yaxis.set_major_locator(MaxNLocator(3))
+    usual = None if rest is None or not np.isfinite(rest).any() else np.nanpercentile(rest, [0.5, 99.5])
+    return span(usual, mean)
+
+
+def _limits(spans: Sequence[tuple[float, float] | None]) -> tuple[float, float]:
+    """From the least to the greatest of all spans and zero, with a margin."""
+    low = min([0.0, *(s[0] for s in spans if s)])
+    high = max([0.0, *(s[1] for s in spans if s)])
+    margin = 0.15 * (high - low) or 1.0
+    return low - margin, high + margin
 
 
 def _dimension(panel: Axes, values: Array, stated: Array | None) -> None:

@@ -1,0 +1,74 @@
+"""Who, what, when, with what: every key of a manifest as a row, known or not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rig.report.numbers import duration
+from rig.report.rows import Row, flat, measured, show, table, utc
+from rig.report.words import PROCEDURES, humanise, origin, status
+
+
+def software(manifest: Mapping[str, Any]) -> str:
+    """Version, commit, and whether the tree was clean; "" when the manifest does not say."""
+    found = table(manifest.get("software"))
+    if not found:
+        return ""
+    parts = [f"hdrig {found['version']}"] if found.get("version") else []
+    parts += [f"commit {found['commit']}"] if found.get("commit") else []
+    parts += ["with uncommitted changes"] if found.get("dirty") else ["clean"] if "dirty" in found else []
+    return ", ".join(parts)
+
+
+def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
+    """Who, what, when, with what. Every key of the manifest ends up in a row, known or not."""
+    gear, encoders = table(manifest.get("gear")), table(manifest.get("encoders"))
+    backend = manifest.get("backend")
+    known = [
+        Row("Run", folder, True),
+        Row("Unique id", show(manifest.get("uid")), True),
+        Row(
+            "Procedure",
+            PROCEDURES.get(str(manifest.get("procedure")), humanise(str(manifest.get("procedure", "unknown")))),
+        ),
+        Row("Ending", status(manifest) or "unknown"),
+        Row("Started", utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown"),
+        *([Row("Ended", utc(manifest["ended_utc"]))] if manifest.get("ended_utc") else []),
+        *_length(manifest),
+        Row("Origin", f"{origin(backend).word.capitalize()}, backend {show(backend)}"),
+        Row("Gear", show(gear.get("serial"))),
+        Row("Gear ratio", show(gear.get("ratio"))),
+        Row("Output of the gear", show(gear.get("output"))),
+        *(measured(str(k), v) for k, v in encoders.items()),
+        Row("Software", software(manifest) or "unknown"),
+        Row("Schema", show(manifest.get("schema"))),
+    ]
+    told = {
+        "duration",
+        "uid",
+        "procedure",
+        "status",
+        "exit_reason",
+        "started_utc",
+        "ended_utc",
+        "backend",
+        "encoders",
+        "software",
+        "schema",
+    }
+    apart = {"files", "conditions", "declared", "verdict"}  # shown in tables of their own
+    rest = {k: v for k, v in manifest.items() if k not in told | apart | {"gear"}}
+    known_software = ("version", "commit", "dirty")
+    rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
+    rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
+    return known + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
+
+
+def _length(manifest: Mapping[str, Any]) -> list[Row]:
+    """How long the run took; on a virtual clock that is not what lies between its start and its end."""
+    seconds = manifest.get("duration")
+    if not isinstance(seconds, int | float):
+        return []
+    virtual = table(manifest.get("loop")).get("clock") == "virtual"
+    return [Row("Duration", duration(seconds) + (" on a virtual clock" if virtual else ""))]
