@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import getpass
 import platform
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Any
 
 from rig.bench import Bench, ClockName
 from rig.control.filter import SpeedFilter
-from rig.core.errors import Exit, HdrigError, NotReady
+from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -113,7 +114,7 @@ class Session:
         setting = self.bench.setting(lambda text: self._event("note", text))
         guard = Guard(self.bench.limits, procedure.envelope(setting), setting.ratio)
         loop = Loop(self.instruments, self.supervisor, guard, recorder, self.interrupts, timing, watch)
-        ending = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL)
+        ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
         try:
             ending = loop.run(procedure, setting)
         except HdrigError as error:
@@ -121,15 +122,27 @@ class Session:
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
-            self._close(recorder, folder, ending, timing)
+            problem = self._close(recorder, folder, ending, timing)
+            if problem:
+                print(f"hdrig: {problem}; hdrig recover {folder} tries again", file=sys.stderr)
+        if problem:
+            raise RecorderError(f"{ending.reason}; but {problem}")
         return Done(folder, ending)
 
-    def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming) -> None:
-        recorder.close()
+    def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming) -> str:
+        """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""
         if ending.finding is not None:
             self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
-        self._end_log()  # its hash is taken next: nothing may be added after
-        finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
+        try:
+            with contextlib.suppress(
+                RecorderError
+            ):  # what it could not write is in the ring; closing the run tries again
+                recorder.close()
+            self._end_log()  # its hash is taken next: nothing may be added after
+            finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
+        except HdrigError as error:
+            return str(error)
+        return ""
 
     def _end_log(self) -> None:
         if self._log is not None:

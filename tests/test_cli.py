@@ -62,7 +62,11 @@ def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str
     ],
 )
 def test_a_wrong_command_line_is_one_sentence_and_exit_2_and_writes_nothing(
-    args: list[str], words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    args: list[str],
+    words: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     try:

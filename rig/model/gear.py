@@ -11,7 +11,7 @@ from rig.model.fourier import FourierSeries
 class Gear:
     """The two-inertia rig of the paper: motor and wave generator, flexible gear, load      [ghorbel2001, Eqs. 3-8]
 
-    SI; `_m` motor side, `_l` load side. The paper leaves friction out of Eqs. 6-7; it stands here because the rig has it.
+    SI; `_m` motor side, `_l` load side. The paper leaves friction out of Eqs. 6-7; it stands here as the rig has it.
     """
 
     ratio: float  # N, motor turns per load turn

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from rig.cli import main
 from rig.runfile.recover import recover
 from rig.runfile.verify import verify
 
@@ -131,3 +132,30 @@ def recorder_of(pid: int) -> int:
         if int(fields[1]) == pid and b"rig.recorder" in (entry.parent / "cmdline").read_bytes():
             return int(entry.parent.name)
     raise AssertionError(f"process {pid} has no recorder")
+
+
+@pytest.mark.slow
+def test_a_journal_that_cannot_grow_trips_the_run_and_every_row_is_kept(tmp_path: Path) -> None:
+    # 8 MB is room for the ring (6.8 MB) and for 80 s of journal; the run would need 10 MB
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (8_000_000, resource.RLIM_INFINITY)); "
+    code = limit + "import rig.cli; raise SystemExit(rig.cli.main())"
+    args = ["run", "kinematic-error", "--out", str(tmp_path), "--with", "cycles=1", "--with", "frequency=0.01"]
+    done = subprocess.run([sys.executable, "-c", code, *args], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 5, done.stderr
+    assert "File too large" in done.stderr
+    assert "Traceback" not in done.stderr
+    (folder,) = tmp_path.glob("*/*kinematic-error*")
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert (manifest["status"], manifest["exit"]) == ("tripped", 5)
+    assert manifest["rows"] > 75_000  # what the journal held at 8 MB, and all that waited in the ring
+    t = pq.read_table(folder / "samples.parquet")["t"].to_numpy()
+    assert np.allclose(np.diff(t), 1e-3, atol=1e-6)
+    assert [f for f in verify(folder) if f.level == "error"] == []
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_anything_moves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert main(["run", "kinematic-error", "--out", str(tmp_path / "file" / "runs")]) == 3
+    assert "Not a directory" in capsys.readouterr().err
