@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN, transmission_error
+from rig.analysis.angle import ARCMIN, ARCSEC, transmission_error
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import t95
 from rig.analysis.result import Array, Check, Estimate
@@ -16,7 +16,9 @@ from rig.analysis.strokes import turning_points
 
 RAMP = 0.4  # of the whole torque range: a shorter ramp is not used
 NEAR_ZERO = 0.15  # of the largest torque: the line through these rows says where the ramp crosses zero torque
-SLOPE_OF_ERROR = 0.033  # N·θ̃_p′ of a gear like the paper's: unknown at this wave-generator angle, so an allowance
+ERROR = (
+    90.0 / ARCSEC
+)  # rad   order-2 kinematic error of an older gear (3 arcmin peak to peak): unknown here, so allowed for
 MOST = 3000  # points drawn
 
 
@@ -36,7 +38,7 @@ def ramps_of(windup: Array, tau: Array) -> list[Ramp]:
     pivots = turning_points(windup, 0.1 * whole) if whole > 0 else []
     span, most = float(np.ptp(tau)), float(np.max(np.abs(tau)))
     out = []
-    for lo, hi in pairwise(pivots):
+    for lo, hi in pairwise(pivots) if span > 0 else ():
         w, y = windup[lo : hi + 1], tau[lo : hi + 1]
         if np.ptp(y) < RAMP * span or w.size < 16:
             continue
@@ -87,11 +89,14 @@ def add_lock(found: Findings, run: Source, motion: Motion) -> None:
     slopes = np.array([r.slope for r in used])
     K = float(slopes.mean())
     random = t95(slopes.size - 1) * float(slopes.std(ddof=1)) / np.sqrt(slopes.size) if slopes.size > 1 else 0.0
-    half = float(np.hypot(random, 1.96 * SLOPE_OF_ERROR / np.sqrt(3.0) * abs(K)))
+    tilt = (
+        2.0 * motion.ratio * ERROR
+    )  # N·θ̃_p′: the motor turns over a piece of the error, whose slope looks like torsion
+    half = float(np.hypot(random, 1.96 * tilt / np.sqrt(3.0) * abs(K)))
     how = (
         f"Line through shaft torque against θ_m/N − θ_l, {slopes.size} ramps, {tau.min():.1f} to {tau.max():.1f} N·m; "
-        f"the interval holds ±{100 * SLOPE_OF_ERROR:.1f} % for the slope of the kinematic error at this motor angle, "
-        "which this run does not know."
+        f"the ramps repeat to ±{100 * random / abs(K):.2g} %, the rest of the interval (±{100 * tilt:.1f} % at most) is for "
+        "the slope of the kinematic error at this motor angle, which this run does not know."
     )
     found.figure("torsional_stiffness", "System torsional stiffness, secant", K, "N·m/rad", half, how)
     up = np.array([r.at_zero for r in ramps if r.direction > 0 and np.isfinite(r.at_zero)])

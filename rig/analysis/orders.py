@@ -51,8 +51,8 @@ def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
 
 
 def bins_per_turn(rows_per_turn: float, order_max: float) -> int:
-    """Bins for a spectrum up to `order_max`: four a period if the rows allow, never more bins than rows."""
-    return max(int(min(4.0 * order_max, rows_per_turn)), 2)
+    """Bins for a spectrum up to `order_max`: eight a period if the rows allow, never more bins than rows."""
+    return max(int(min(8.0 * order_max, rows_per_turn)), 2)
 
 
 def spectrum(theta: Array, y: Array, order_max: float = 40.0) -> tuple[Array, Array]:

@@ -56,10 +56,12 @@ def settled_from(columns: list[Array]) -> int:
         count = float(np.min(steps, where=steps > 0, initial=np.inf))  # one step of the channel: a count, a bit
         count = count if np.isfinite(count) else 1.0
         block = x[: pieces * size].reshape(pieces, size)
+        # a channel that mostly rests on one count and at times takes the next has not moved
+        least = count / 2 if np.median(block.std(axis=1)) < count / 4 else 0.0
         for what in (block.mean(axis=1), block.std(axis=1)):
             late = what[pieces // 2 :]
             usual = float(np.median(late))
-            spread = max(1.4826 * float(np.median(np.abs(late - usual))), float(np.std(late)) / 2, count / 2)
+            spread = max(1.4826 * float(np.median(np.abs(late - usual))), float(np.std(late)) / 2, least)
             out = np.abs(what[: pieces // 2] - usual) > OUTLIER * spread
             quiet = np.flatnonzero(~out & ~np.append(out[1:], False))  # two pieces in a row must be quiet
             worst = max(worst, int(quiet[0]) if quiet.size else pieces // 2)
