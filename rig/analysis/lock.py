@@ -16,9 +16,7 @@ from rig.analysis.strokes import turning_points
 
 RAMP = 0.4  # of the whole torque range: a shorter ramp is not used
 NEAR_ZERO = 0.15  # of the largest torque: the line through these rows says where the ramp crosses zero torque
-ERROR = (
-    90.0 / ARCSEC
-)  # rad   order-2 kinematic error of an older gear (3 arcmin peak to peak): unknown here, so allowed for
+ERROR = 90.0 / ARCSEC  # rad   order 2 of an older gear (3 arcmin peak to peak), with a quarter as much of order 4
 MOST = 3000  # points drawn
 
 
@@ -89,14 +87,13 @@ def add_lock(found: Findings, run: Source, motion: Motion) -> None:
     slopes = np.array([r.slope for r in used])
     K = float(slopes.mean())
     random = t95(slopes.size - 1) * float(slopes.std(ddof=1)) / np.sqrt(slopes.size) if slopes.size > 1 else 0.0
-    tilt = (
-        2.0 * motion.ratio * ERROR
-    )  # N·θ̃_p′: the motor turns over a piece of the error, whose slope looks like torsion
+    # the motor turns over a piece of the kinematic error, whose slope N·θ̃_p′ looks like torsion: 2·C_2 + 4·C_4 at most
+    tilt = (2.0 + 4.0 / 4.0) * motion.ratio * ERROR
     half = float(np.hypot(random, 1.96 * tilt / np.sqrt(3.0) * abs(K)))
     how = (
         f"Line through shaft torque against θ_m/N − θ_l, {slopes.size} ramps, {tau.min():.1f} to {tau.max():.1f} N·m; "
-        f"the ramps repeat to ±{100 * random / abs(K):.2g} %, the rest of the interval (±{100 * tilt:.1f} % at most) is for "
-        "the slope of the kinematic error at this motor angle, which this run does not know."
+        f"the ramps repeat to ±{100 * random / abs(K):.2g} %, the rest of the interval (±{100 * tilt:.1f} % at most) "
+        "is for the slope of the kinematic error at this motor angle, which this run does not know."
     )
     found.figure("torsional_stiffness", "System torsional stiffness, secant", K, "N·m/rad", half, how)
     up = np.array([r.at_zero for r in ramps if r.direction > 0 and np.isfinite(r.at_zero)])

@@ -15,6 +15,7 @@ FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere 
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
 MARGIN = 1.25  # the local noise is itself known to a quarter only
 MOST_LINES = 24
+LINE_BINS = 4.0  # bins a period when searching: the amplitudes are fitted to the rows themselves afterwards
 
 
 @dataclass(frozen=True)
@@ -136,9 +137,8 @@ def find_lines(
     subtracted from the start and fitted with the rest, and only returned where they stand out too. Nothing below
     `slowest` is looked at: noise rises there, and a rise is easily taken for a line.
     """
-    turns, values = resample(theta, y, _bins(theta, order_max))
-    centred = values - values.mean()
-    n, step = centred.size, float(turns[1] - turns[0]) if turns.size > 1 else 1.0
+    turns, values = resample(theta, y, _bins(theta, LINE_BINS / 8.0 * order_max))
+    n, step = values.size, float(turns[1] - turns[0]) if turns.size > 1 else 1.0
     span = n * step
     independent = int(span * min(order_max, 0.4 / step))
     if independent < 8:
@@ -146,9 +146,10 @@ def find_lines(
     window = np.hanning(n + 2)[1:-1]
     fine = np.arange(4 * independent) / (4.0 * span)  # four trial orders for every independent one
     found = [k for k in known if k < 0.4 / step]
-    rest = centred
+    centred = turns - turns.mean()
+    rest = values - values.mean()
     if found:
-        rest = _cleaned(turns, centred, found)
+        rest = _clean(centred, rest, np.asarray(found))[0]
     most += len(found)
     while len(found) < most:
         power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
@@ -160,38 +161,43 @@ def find_lines(
         best = int(np.argmax(ratio))
         if ratio[best] < MARGIN * np.log(fine.size / false_alarm):
             break
-        found.append(_refine(turns, rest, float(fine[best]), 0.5 / span))
-        rest = _cleaned(turns, centred, found)
+        _, shift = _clean(centred, rest, fine[best : best + 1])
+        order = float(fine[best] + np.clip(shift[0], -0.5 / span, 0.5 / span))
+        rest, shift = _clean(centred, rest, np.array([order]))
+        found.append(order + float(np.clip(shift[0], -0.1 / span, 0.1 / span)))
     lines = fit_lines(theta, y, found) if found else []
     return sorted((line for line in lines if line.resolved), key=lambda line: -line.amplitude)
 
 
-def _cleaned(turns: Array, values: Array, orders: list[float]) -> Array:
-    """`values` less the lines at `orders`."""
-    columns = _sinusoids(turns, np.asarray(orders))
-    return without(columns, values, fit(columns, values))
+def _clean(turns: Array, values: Array, orders: Array) -> tuple[Array, Array]:
+    """`values` less lines whose amplitude and phase may change along the span, and how far each order was missed.
 
+    Fits (a + c·x)·cos + (b + d·x)·sin, x centred: a line at order + δ has c = 2πδ·b and d = −2πδ·a, to first order.
+    """
+    plain, k, reach = _sinusoids(turns, orders), orders.size, float(np.abs(turns).max())
 
-def _refine(turns: Array, rest: Array, order: float, width: float) -> float:
-    """The order near `order` at which one line explains most, by three rounds of a nine-point search."""
-    window = np.hanning(rest.size + 2)[1:-1] * rest
-    for _ in range(3):
-        trial = order + np.linspace(-width, width, 9)
-        power = np.abs(np.exp(-1j * TURN * np.multiply.outer(trial, turns)) @ window)
-        order, width = float(trial[int(np.argmax(power))]), width / 4.0
-    return order
+    def columns(lo: int, hi: int) -> Array:
+        steady = plain(lo, hi)
+        return np.concatenate((steady, steady[1:] * (turns[lo:hi] / reach)))
+
+    c = fit(columns, values)
+    a, b, growth, turning = c[1 : k + 1], c[k + 1 : 2 * k + 1], c[2 * k + 1 : 3 * k + 1], c[3 * k + 1 :]
+    shift = (growth * b - turning * a) / np.maximum(a**2 + b**2, 1e-300) / (TURN * reach)
+    return without(columns, values, c), np.asarray(shift)
 
 
 def _local_median(x: Array) -> Array:
-    """Median of the neighbours of each value: half as many as its own number, 8 to NEIGHBOURS on either side.
+    """Median of the neighbours of each value: a third of its own number, 8 to NEIGHBOURS on either side.
 
     Friction and drift make noise that falls with frequency: near zero only close neighbours have the same noise.
     """
     out = np.empty_like(x)
-    i = 0
-    while i < x.size:
+    wide, hold = 3 * NEIGHBOURS, NEIGHBOURS // 4  # held for a quarter of the half width: the noise varies slowly
+    for i in range(0, min(wide, x.size), 2):
         half = min(max(i // 3, 8), NEIGHBOURS)
-        step = max(half // 4, 1)  # held for a quarter of the width: the noise varies slowly
-        out[i : i + step] = np.median(x[max(i - half, 0) : i + half + 1])
-        i += step
+        out[i : i + 2] = np.median(x[max(i - half, 0) : i + half + 1])
+    if x.size > wide:
+        ends = np.pad(x, (0, 2 * NEIGHBOURS + 1), mode="reflect")
+        views = np.lib.stride_tricks.sliding_window_view(ends[wide - NEIGHBOURS :], 2 * NEIGHBOURS + 1)[::hold]
+        out[wide:] = np.repeat(np.median(views, axis=1), hold)[: x.size - wide]
     return out

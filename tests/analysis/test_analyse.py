@@ -38,8 +38,7 @@ def test_a_run_at_speed_gives_speed_and_orders_and_does_not_call_it_the_pure_err
     found = {e.name: e for e in result.estimates}
     assert abs(found["mean_speed"].value - abs(rpm)) < 0.01
     assert abs(found["fourier_amplitude_2"].value - 39.6) < 0.1
-    low, high = found["kinematic_error_peak_to_peak"].ci95
-    assert low <= PROFILE.peak_to_peak() * ARCSEC <= high
+    assert abs(found["kinematic_error_peak_to_peak"].value - PROFILE.peak_to_peak() * ARCSEC) < 0.3
     assert found["kinematic_error_peak_to_peak"].label.startswith("θ̃ at")
     assert any("pure part needs a slow run" in s for s in result.cannot)
     assert result.verdict is Verdict.MEASURED

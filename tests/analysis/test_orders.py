@@ -69,7 +69,7 @@ def test_the_spectrum_shows_a_sine_at_its_amplitude_up_to_order_forty() -> None:
         orders, amplitude = spectrum(theta, 7.0 * np.cos(order * theta), 40.0)
         peak = int(np.argmax(amplitude))
         assert abs(orders[peak] - order) < 0.03
-        assert abs(amplitude[peak] - 7.0) < 0.15
+        assert abs(amplitude[peak] - 7.0) < 0.25
 
 
 def test_the_spectrum_ends_where_the_rows_end() -> None:
