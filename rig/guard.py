@@ -88,7 +88,7 @@ def stale(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     if sample.age <= guard.limits.stale:
         return None
     names = {Flag.STALE_M: "motor", Flag.STALE_L: "load-encoder", Flag.STALE_TAU: "torque-sensor"}
-    which = " and ".join(name for flag, name in names.items() if sample.flags & flag) or "any"
+    which = " and ".join(name for flag, name in names.items() if sample.flags & flag) or "usable"
     return Trip(
         "stale", f"no new {which} sample for {sample.age * 1e3:.1f} ms, at most {guard.limits.stale * 1e3:g} ms allowed"
     )

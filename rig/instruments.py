@@ -58,8 +58,10 @@ class Instruments:
         self._last = [NEVER, NEVER, NEVER]
         self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
 
-    def read(self) -> Sample:
-        """The newest of every channel; never waits. Age and staleness come from the devices' own latch times."""
+    def read(self, now: float) -> Sample:
+        """The newest of every channel; never waits. `now` is when the tick began [s]: age is counted from there, by the
+        devices' own latch times, so that a host that stalls within a tick does not pass for a silent device.
+        """
         last = self._last
         motor = self.drive.read()
         oldest = t_m = motor[0]
@@ -85,7 +87,7 @@ class Instruments:
             if t_tau < oldest:
                 oldest = t_tau
         t = t_m - self.started
-        age = self.clock.now() - oldest
+        age = now - oldest
         omega = self.speed_filter.step(t, motor[1])
         return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), motor[5])
 

@@ -87,14 +87,15 @@ class Loop:
         while True:
             k += 1
             deadline = start + k * period
-            lateness = clock.wait_until(deadline) - deadline
+            now = clock.wait_until(deadline)
+            lateness = now - deadline
             late(lateness if lateness > 0.0 else 0.0)
             skipped = 0
             if lateness > period:
                 skipped = int(lateness / period)
                 k += skipped
                 self.timing.skip(skipped)
-            sample = read()
+            sample = read(now)
             if skipped:
                 sample = sample._replace(flags=sample.flags | Flag.MISSED)
             trip = check(sample, asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,24 +25,33 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Every run is tried; the exit code is the worst."""
+    """Every run is tried; the exit code is that of the first that is not 0."""
     from rig.commands.folders import expand
 
+    folders = expand(args.runs)
     worst = Exit.PASS
-    for folder in expand(args.runs):
+    for folder, target in zip(folders, targets(folders, args.out), strict=True):
         try:
-            result = analyse_folder(folder, args.out)
+            result = analyse_folder(folder, target)
         except HdrigError as error:
             print(f"hdrig: {folder}: {error}", file=sys.stderr)
             worst = worst or Exit(error.exit)
             continue
-        print_result(result, folder if args.out is None else args.out / folder.name)
+        print_result(result, target, folder)
         worst = worst or exit_of(result)
     return int(worst)
 
 
-def analyse_folder(folder: Path, out: Path | None = None) -> Result:
-    """Analyse one run; write result.json and report.html beside it, or into `out`/NAME."""
+def targets(folders: list[Path], out: Path | None) -> list[Path]:
+    """Where the results of each run go: beside it, or below `out` as the runs lie below what they have in common."""
+    if out is None:
+        return folders
+    base = os.path.commonpath([folder.resolve().parent for folder in folders])
+    return [out / folder.resolve().relative_to(base) for folder in folders]
+
+
+def analyse_folder(folder: Path, target: Path) -> Result:
+    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself."""
     from rig.analysis import analyse
     from rig.report.page import write
     from rig.report.record import write_result
@@ -51,12 +61,11 @@ def analyse_folder(folder: Path, out: Path | None = None) -> Result:
 
     run = Run.open(folder)
     result = analyse(run)
-    target = folder if out is None else out / run.name
     try:
         target.mkdir(parents=True, exist_ok=True)
         made = [
             write_result(target, result),
-            write(target, run.manifest, dict(run.timing), read_events(folder), result),
+            write(target, run.manifest, dict(run.timing), read_events(folder), result, run=folder),
         ]
     except OSError as error:
         raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
@@ -70,11 +79,11 @@ def exit_of(result: Result) -> Exit:
     return {"FAIL": Exit.OUT_OF_LIMITS, "INCONCLUSIVE": Exit.INCOMPLETE}.get(result.verdict, Exit.PASS)
 
 
-def print_result(result: Result, folder: Path) -> None:
+def print_result(result: Result, target: Path, folder: Path) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
     from rig.report.numbers import estimate
 
-    print(f"{result.verdict}: {result.sentence}")
+    print(f"{folder.name}\n{result.verdict}: {result.sentence}")
     width = max((len(e.label) for e in result.estimates), default=0)
     for e in result.estimates:
         print(f"  {e.label:{width}s}  {estimate(e.value, e.ci95, e.unit)}")
@@ -83,4 +92,4 @@ def print_result(result: Result, folder: Path) -> None:
             print(f"  not met: {check.sentence}")
     for sentence in result.cannot:
         print(f"  cannot tell: {sentence}")
-    print(f"report {folder / 'report.html'}")
+    print(f"report {target / 'report.html'}")

@@ -26,9 +26,8 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
         done = _watched(session, procedure)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
     print(f"run {done.ending.status}: {done.ending.reason}", file=sys.stderr)
-    print(f"run folder {done.folder}", file=sys.stderr)
-    result = analyse_folder(done.folder)
-    print_result(result, done.folder)
+    result = analyse_folder(done.folder, done.folder)
+    print_result(result, done.folder, done.folder)
     return int(done.ending.exit or exit_of(result) or Exit.PASS)
 
 

@@ -22,16 +22,17 @@ class LivePeakToPeak:
         self.ratio = ratio
         self.value: float | None = None  # rad at the output
         self._turn: int | None = None
+        self._entered = 0  # which way this turn was entered: +1, -1; 0 for the first, which began somewhere inside
         self._low = self._high = 0.0
-        self._whole = False
 
     def add(self, sample: Sample) -> None:
-        """One more sample; the figure changes when a turn is complete."""
+        """One more sample. Only a turn passed through one way counts: a reversal adds its own offset."""
         error, turn = sample.theta_m / self.ratio - sample.theta_l, math.floor(sample.theta_m / TURN)
         if turn != self._turn:
-            if self._whole:
+            way = 0 if self._turn is None else (1 if turn > self._turn else -1)
+            if way and way == self._entered:
                 self.value = self._high - self._low
-            self._whole, self._turn = self._turn is not None, turn
+            self._entered, self._turn = way, turn
             self._low = self._high = error
         self._low, self._high = min(self._low, error), max(self._high, error)
 

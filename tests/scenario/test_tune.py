@@ -19,7 +19,7 @@ def test_default_gains_hunt_at_a_stribeck_speed_of_1_5_and_the_run_is_rejected_w
 ) -> None:
     assert main(["run", "kinematic-error", "--out", str(tmp_path), *STICKY, *SHORT]) == 1
     out = capsys.readouterr().out
-    assert out.startswith("FAIL: ")
+    assert "\nFAIL: " in out
     assert re.search(r"speed scatter \d+\.\d % of 9\.60 rpm \(limit 10 %\)", out)
     assert "hdrig tune" in out
     assert json.loads((run_of(tmp_path) / "manifest.json").read_text())["status"] == "completed"
