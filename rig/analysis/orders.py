@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.angle import TURN
 from rig.analysis.result import Array
-from rig.analysis.sums import fit, without
+from rig.analysis.sums import fit, harmonics, without
 
 FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere in the spectrum
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
@@ -78,11 +78,21 @@ def _bins(theta: Array, order_max: float) -> int:
 
 
 def _sinusoids(turns: Array, orders: Array) -> Callable[[int, int], Array]:
-    """Constant, cosines and sines of `orders` at the rows asked for."""
+    """Constant, cosines and sines of `orders` at the rows asked for; whole orders by products: much faster."""
+    whole = (orders == np.round(orders)) & (orders >= 1) & (orders <= 64)
+    most = int(orders[whole].max()) if whole.any() else 0
+    index = orders[whole].astype(np.int64) - 1
 
     def columns(lo: int, hi: int) -> Array:
-        angle = TURN * np.multiply.outer(orders, turns[lo:hi])
-        return np.concatenate((np.ones((1, hi - lo)), np.cos(angle), np.sin(angle)))
+        k = orders.size
+        out = np.empty((1 + 2 * k, hi - lo))
+        out[0] = 1.0
+        angle = TURN * np.multiply.outer(orders[~whole], turns[lo:hi])
+        out[1 : 1 + k][~whole], out[1 + k :][~whole] = np.cos(angle), np.sin(angle)
+        if most:
+            both = harmonics(TURN * turns[lo:hi], most)
+            out[1 : 1 + k][whole], out[1 + k :][whole] = both[index], both[most + index]
+        return out
 
     return columns
 
