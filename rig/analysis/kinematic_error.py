@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import RPM, measured_ratio
+from rig.analysis.angle import RPM, TURN, measured_ratio
 from rig.analysis.flexibility import added_share, declared
 from rig.analysis.profile import Profile, combine
 from rig.analysis.result import Array
@@ -28,6 +28,7 @@ class KinematicError:
     speed_rpm: float  # mean of the magnitude; NaN without time
     added: Array  # (k,) share of each amplitude that inertia may have added; zeros when J_l or K is unknown
     added_known: bool
+    u_zero: float  # rad, 1 σ of where the motor angle's zero is: one count wide; 0 when its counts are unknown
 
 
 def angles_disagree(motion: Motion) -> str:
@@ -62,7 +63,9 @@ def measure(run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> K
     known = slow and K is not None and J_l is not None and bool(np.isfinite(speed))
     added = added_share(orders, speed / RPM, K, J_l) if known and K and J_l else np.zeros(terms)
     trend = find_trend(results, motion.ratio, motion.t is not None)
-    return KinematicError(combine(results, added), trend, results, speed, added, known)
+    counts = declared(run.manifest.get("encoders") or {}, "motor_counts_per_rev")
+    u_zero = TURN / counts / np.sqrt(12.0) if counts else 0.0
+    return KinematicError(combine(results, added), trend, results, speed, added, known, float(u_zero))
 
 
 def pieces_of_one_speed(motion: Motion, stroke: Stroke) -> list[Stroke]:

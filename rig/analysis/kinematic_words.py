@@ -33,7 +33,7 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
     found.estimates.append(
         Estimate("kinematic_error_peak_to_peak", f"{what}, peak to peak", value, "arcsec", (low, high), how + ".")
     )
-    found.tables["coefficients"] = rows = coefficients(p)
+    found.tables["coefficients"] = rows = coefficients(p, ke.u_zero)
     for row in rows:
         n, resolved = int(row["order"]), float(row["C_lo"]) > 0
         if n == 2 or (resolved and n in SHOWN_ORDERS):
@@ -55,25 +55,29 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
         found.figure("mean_speed", "Mean motor speed", ke.speed_rpm, "rpm", half, "Mean over the revolutions used.")
 
 
-def coefficients(p: Profile) -> list[dict[str, float | str]]:
-    """One row an order, arcsec and deg. u_* are 1 σ; C_lo to C_hi the 95 % interval; phase NaN where not resolved."""
+def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
+    """One row an order, arcsec and deg. u_* are 1 σ; C_lo to C_hi the 95 % interval; phase NaN where not resolved.
+
+    `u_zero` [rad]: a count is as wide as it is, so the angle that phases are counted from is known to that; it turns
+    (a_n, b_n) by n·u_zero without changing C_n, and no repetition shows it.
+    """
     rows: list[dict[str, float | str]] = []
     for n in range(p.terms):
         a, b, size = float(p.cosine[n]), float(p.sine[n]), float(p.amplitude[n])
-        share = float(p.u_system[n]) / size if size else 0.0
+        share, turn = float(p.u_system[n]) / size if size else 0.0, (n + 1) * u_zero
         value, low, high = amplitude_interval(size, float(p.u_amplitude[n]), p.factor)
         across = float(np.hypot(b * p.u_cosine[n], a * p.u_sine[n])) / max(size, 1e-300) ** 2
         row: dict[str, float | str] = {
             "order": float(n + 1),
             "a_arcsec": a,
-            "u_a": float(np.hypot(p.u_cosine[n], share * a)),
+            "u_a": float(np.sqrt(p.u_cosine[n] ** 2 + (share * a) ** 2 + (turn * b) ** 2)),
             "b_arcsec": b,
-            "u_b": float(np.hypot(p.u_sine[n], share * b)),
+            "u_b": float(np.sqrt(p.u_sine[n] ** 2 + (share * b) ** 2 + (turn * a) ** 2)),
             "C_arcsec": value,
             "C_lo": low,
             "C_hi": high,
             "phase_deg": float(np.arctan2(b, a)) * DEG if low > 0 else float("nan"),
-            "u_phase": across * DEG if low > 0 else float("nan"),
+            "u_phase": float(np.hypot(across, turn)) * DEG if low > 0 else float("nan"),
         }
         rows.append(row)
     return rows

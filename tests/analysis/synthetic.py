@@ -128,5 +128,6 @@ def slow_run(
         "theta_l": count(theta_l, counts_l, rng.uniform(0, TURN / counts_l)),
         "theta_ref": reference,
     }
-    base = {"procedure": "kinematic_error", "status": "completed", "gear": {"ratio": ratio}}
+    encoders = {"motor_counts_per_rev": counts_m, "load_counts_per_rev": counts_l}
+    base = {"procedure": "kinematic_error", "status": "completed", "gear": {"ratio": ratio}, "encoders": encoders}
     return MadeRun(columns, {**base, **(manifest or {})})
