@@ -56,7 +56,8 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
 
 
 def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
-    """One row an order, arcsec and deg. u_* are 1 σ; C_lo to C_hi the 95 % interval; phase NaN where not resolved.
+    """One row an order, arcsec and deg. u_* are 1 σ and k95 their factor; *_lo to *_hi are 95 % intervals; the phase is
+    NaN where not resolved.
 
     `u_zero` [rad]: a count is as wide as it is, so the angle that phases are counted from is known to that; it turns
     (a_n, b_n) by n·u_zero without changing C_n, and no repetition shows it.
@@ -67,12 +68,19 @@ def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
         share, turn = float(p.u_system[n]) / size if size else 0.0, (n + 1) * u_zero
         value, low, high = amplitude_interval(size, float(p.u_amplitude[n]), p.factor)
         across = float(np.hypot(b * p.u_cosine[n], a * p.u_sine[n])) / max(size, 1e-300) ** 2
+        u_a = float(np.sqrt(p.u_cosine[n] ** 2 + (share * a) ** 2 + (turn * b) ** 2))
+        u_b = float(np.sqrt(p.u_sine[n] ** 2 + (share * b) ** 2 + (turn * a) ** 2))
         row: dict[str, float | str] = {
             "order": float(n + 1),
+            "k95": p.factor,
             "a_arcsec": a,
-            "u_a": float(np.sqrt(p.u_cosine[n] ** 2 + (share * a) ** 2 + (turn * b) ** 2)),
+            "u_a": u_a,
+            "a_lo": a - p.factor * u_a,
+            "a_hi": a + p.factor * u_a,
             "b_arcsec": b,
-            "u_b": float(np.sqrt(p.u_sine[n] ** 2 + (share * b) ** 2 + (turn * a) ** 2)),
+            "u_b": u_b,
+            "b_lo": b - p.factor * u_b,
+            "b_hi": b + p.factor * u_b,
             "C_arcsec": value,
             "C_lo": low,
             "C_hi": high,

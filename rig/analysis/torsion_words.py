@@ -35,6 +35,14 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
     how = f"rms of θ̃ after torque and {LOAD_HARMONICS} harmonics of the output angle, steady speed."
     found.exact("torsion_remainder_rms", label, r.remainder * ARCMIN, "arcmin", how)
     found.tables["torsion_lines"] = [_row(line) for line in r.lines]
+    for line in r.lines:
+        if line.resolved and line.order != round(line.order):
+            label = f"Line at order {line.order:.4f} (2 − 2/{motion.ratio:g} of the motor turn)"
+            if line.order > 2:
+                label = label.replace("−", "+")
+            how = "Least squares beside torque, output harmonics and the whole orders; told from order 2."
+            half = 1.96 * line.u * ARCMIN
+            found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * ARCMIN, "arcmin", half, how)
     _doubts(found, r)
     every = max(r.torque.size // DRAWN, 1)
     ends = np.array([r.torque.min(), r.torque.max()])

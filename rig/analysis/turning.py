@@ -8,6 +8,7 @@ from rig.analysis import kinematic_words as words
 from rig.analysis import smoothness as smooth
 from rig.analysis.angle import DEG, RPM, TURN
 from rig.analysis.findings import Findings
+from rig.analysis.intervals import amplitude_interval
 from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
 from rig.analysis.orders import Line, find_lines, fit_lines, spectrum
 from rig.analysis.result import Array, Check
@@ -40,7 +41,6 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     smoothness = smooth.smoothness(motion, strokes, motion.pick(run.column("theta_ref")), speed) if slow else None
     if smoothness is not None:
         found.checks += smooth.checks(smoothness)
-        found.estimates += smooth.estimates(smoothness)
         if not smoothness.passed:
             found.reject(smooth.sentence(smoothness))
     elif slow:
@@ -50,6 +50,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     if motion.theta_l is None:
         found.cannot.append(NO_LOAD)
         _speed_figures(found, motion, strokes)
+        if smoothness is not None:
+            found.estimates += smooth.estimates(smoothness)
         found.sentence = found.sentence or "The motor turned, the load angle is missing."
         return
     wrong = angles_disagree(motion)
@@ -62,6 +64,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     _orders(found, motion, max(main, key=lambda s: s.revolutions))
     if not slow:
         _speed_figures(found, motion, strokes)
+    if smoothness is not None:
+        found.estimates += smooth.estimates(smoothness)
     tau_l = motion.pick(run.column("tau_l"))
     if not add_torsion(found, motion, tau_l):
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
@@ -114,12 +118,13 @@ def headline(found: Findings, ke: KinematicError, slow: bool) -> str:
     value, (low, high) = p.peak_to_peak()
     what = "Kinematic error" if slow else "θ̃"
     at = f" at {ke.speed_rpm:.4g} rpm" if np.isfinite(ke.speed_rpm) else ""
-    text = (
-        f"{what} {value:.1f} arcsec ({value / 60:.2f} arcmin) peak to peak{at}, 95 % interval {low:.1f} to {high:.1f}"
+    text = f"{what} {value:.1f} arcsec ({value / 60:.2f} arcmin) peak to peak{at}, " + (
+        f"95 % interval {low:.1f} to {high:.1f}" if np.isfinite(low) else "too few revolutions for an interval"
     )
     text += f", from {p.forward} forward and {p.reverse} reverse revolutions"
     strongest = int(np.argmax(p.amplitude)) + 1
-    text += f"; order {strongest} is the largest with {p.amplitude[strongest - 1]:.2f} arcsec."
+    size = amplitude_interval(float(p.amplitude[strongest - 1]), float(p.u_amplitude[strongest - 1]), p.factor)[0]
+    text += f"; order {strongest} is the largest with {size:.2f} arcsec."
     slow_part = ke.trend.peak_to_peak
     if slow_part is not None and slow_part[0] > value:
         text += f" The slow change over the output angle is larger ({slow_part[0]:.0f} arcsec) and not in it."
