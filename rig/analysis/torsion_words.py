@@ -40,7 +40,11 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
             label = f"Line at order {line.order:.4f} (2 − 2/{motion.ratio:g} of the motor turn)"
             if line.order > 2:
                 label = label.replace("−", "+")
-            how = "Least squares beside torque, output harmonics and the whole orders; told from order 2."
+            # by itself: fitted together with order 2 the two share their amplitude, being hardly more than 1/span apart
+            how = (
+                f"Fitted by itself to what torque and output harmonics leave; {r.turns:.0f} turns tell orders "
+                f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
+            )
             half = 1.96 * line.u * ARCMIN
             found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * ARCMIN, "arcmin", half, how)
     _doubts(found, r)

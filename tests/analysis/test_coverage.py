@@ -23,7 +23,7 @@ def inside(seed: int, **conditions: Any) -> tuple[np.ndarray, bool]:
     high = np.array([r["a_hi"] for r in rows] + [r["b_hi"] for r in rows], float)
     peak = next(e for e in result.estimates if e.name == "kinematic_error_peak_to_peak")
     truth = PROFILE.peak_to_peak() * ARCSEC
-    return (low <= COEFFICIENTS) & (COEFFICIENTS <= high), peak.ci95[0] <= truth <= peak.ci95[1]
+    return (low <= COEFFICIENTS) & (high >= COEFFICIENTS), peak.ci95[0] <= truth <= peak.ci95[1]
 
 
 @pytest.mark.parametrize(
