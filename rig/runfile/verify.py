@@ -94,11 +94,11 @@ def _gaps(run: Run) -> Iterator[Finding]:
     if _every_tick_has_its_row(run):
         late = ~told  # nothing is gone: the machine woke late, less than the one period that the loop flags
     late |= ~told & (dt[gaps] < LOST * period)
-    level = "warning" if run.manifest.get("backend") == "imported" else "error"  # no loop of ours, no promise
+    unexplained = "warning" if run.manifest.get("backend") == "imported" else "error"  # no loop of ours, no promise
     for level, found, why in (
         ("warning", gaps[told], "flagged by the loop"),
         ("warning", gaps[late], "a tick came late, no row is gone"),
-        (level, gaps[~told & ~late], "unexplained"),
+        (unexplained, gaps[~told & ~late], "unexplained"),
     ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
