@@ -65,6 +65,7 @@ def test_the_largest_fourier_coefficients_are_those_of_the_plant(slow_run: Path)
     assert peak["ci95"][0] - 0.2 < truth < peak["ci95"][1] + 0.2
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_byte_identical_samples_and_another_does_not(slow_run: Path, tmp_path: Path) -> None:
     for name, seed in (("same", "1"), ("other", "2")):
         assert main(["run", "kinematic-error", "--out", str(tmp_path / name), "--seed", seed, *SHORT]) == 0
