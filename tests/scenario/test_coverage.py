@@ -1,4 +1,4 @@
-"""Do the 95 % intervals of the slow run hold the truth? 200 seeds of the twin, everything on, coefficients above 1 arcsec."""
+"""Do the 95 % intervals of the slow run hold the truth? 200 seeds of the twin, all on, coefficients above 1 arcsec."""
 
 from __future__ import annotations
 

@@ -1,0 +1,76 @@
+"""Every procedure of the catalogue on the twin: says what it will do, does no more, ends, can be stopped anywhere."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.bench import read
+from rig.core.channels import CHANNELS
+from rig.core.procedure import Procedure
+from rig.guard import Guard
+from rig.interrupts import Interrupts
+from rig.loop import Ending, Loop
+from rig.procedures import CATALOGUE, procedure_class
+from rig.supervisor import Act, Supervisor
+from rig.timing import LoopTiming
+from tests.fakes import ListSink
+
+MANIFEST_NAMES = {
+    "kinematic_error", "speed_convergence", "full_turn", "constant_torque", "constant_speed", "load_sweep",
+    "assembly_sweep", "stiffness_lock", "friction", "coast_down", "standstill", "sentinel", "other",
+}  # fmt: skip
+SHORTER: dict[str, dict[str, Any]] = {"kinematic-error": {"amplitude_deg": 360.0, "frequency": 0.04, "cycles": 1.0}}
+
+
+def made(name: str) -> Procedure:
+    return procedure_class(name)(**SHORTER.get(name, {}))
+
+
+def run(name: str, stop_at: int | None = None) -> tuple[Ending, ListSink, Procedure]:
+    bench, supervisor, interrupts, sink = read("twin"), Supervisor(), Interrupts(), ListSink()
+    rig, procedure, setting = bench.open("virtual"), made(name), bench.setting(lambda text: None)
+    rig.connect()
+    supervisor.act(Act.CONNECT)
+    supervisor.act(Act.CHECK)
+
+    def watch(sample: object) -> None:
+        if stop_at is not None and len(sink.rows) >= stop_at:
+            interrupts.count = max(interrupts.count, 1)
+
+    guard = Guard(bench.limits, procedure.envelope(setting), setting.ratio)
+    loop = Loop(rig, supervisor, guard, sink, interrupts, LoopTiming(setting.period, virtual=True), watch)
+    ending = loop.run(procedure, setting)
+    rig.close()
+    return ending, sink, procedure
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_its_names_and_needs_are_those_of_the_run_format(name: str) -> None:
+    procedure = made(name)
+    assert procedure.name in MANIFEST_NAMES
+    assert set(procedure.needs) <= {c.name for c in CHANNELS}
+    assert procedure.__class__.__doc__
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_it_completes_on_the_twin_within_what_it_announced(name: str) -> None:
+    ending, sink, procedure = run(name)
+    assert ending.status == "completed", ending
+    envelope = procedure.envelope(read("twin").setting(lambda text: None))
+    theta = np.array([row[0].theta_m for row in sink.rows])
+    asked = np.array([row[1] for row in sink.rows])
+    assert sink.rows[-1][0].t <= envelope.duration * 1.02 + 0.1
+    assert np.max(np.abs(theta - theta[0])) <= 1.02 * envelope.travel + 0.2
+    assert np.max(np.abs(asked)) <= envelope.torque + 1e-9
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("stop_at", [1, 700, 3000])
+def test_it_can_be_stopped_anywhere_and_leaves_no_torque(name: str, stop_at: int) -> None:
+    ending, sink, _ = run(name, stop_at)
+    assert ending.status in ("stopped", "completed")
+    assert sink.rows[-1][2] == 0.0
+    assert abs(sink.rows[-1][0].omega_m) < 1.0
