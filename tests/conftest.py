@@ -8,6 +8,11 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line sets it, before numpy is imported
 
 import pytest
+from hypothesis import settings
+
+# shared machines stall: no deadline per example. In CI the same examples every time, elsewhere new ones.
+settings.register_profile("hdrig", deadline=None, derandomize=os.environ.get("CI") == "true")
+settings.load_profile("hdrig")
 
 ROOT = Path(__file__).parents[1]
 

@@ -52,11 +52,13 @@ class Trapezoid:
     @property
     def duration(self) -> float:
         """s"""
-        return abs(self.distance) / self.peak + self.peak / self.acceleration if self.distance else 0.0
+        if self.peak == 0.0:  # nowhere to go, or so little that the square root of it vanishes
+            return 0.0
+        return abs(self.distance) / self.peak + self.peak / self.acceleration
 
     def at(self, t: float) -> tuple[float, float]:
         """Offset [rad] and speed [rad/s] at `t` s; at rest before and after."""
-        if t <= 0.0 or not self.distance:
+        if t <= 0.0:
             return 0.0, 0.0
         if t >= self.duration:
             return self.distance, 0.0
