@@ -57,7 +57,7 @@ class Profile:
         """1 σ of each amplitude: random part along the direction of (a, b), and the systematic part."""
         size = np.maximum(self.amplitude, 1e-300)
         random = ((self.cosine * self.u_cosine) ** 2 + (self.sine * self.u_sine) ** 2) / size**2
-        return np.sqrt(random + self.u_system**2)
+        return np.asarray(np.sqrt(random + self.u_system**2))
 
     def pure(self) -> Array:
         """The averaged curve itself: E where both directions were run, else the one there is, shape (G,)."""

@@ -112,12 +112,12 @@ class Ring:
     @property
     def head(self) -> int:
         """Rows put so far."""
-        return self._counters[_HEAD]
+        return int(self._counters[_HEAD])
 
     @property
     def oldest(self) -> int:
         """The first row that is surely still whole: what is not acked is never overwritten."""
-        return max(0, min(self._counters[_ACKED], self._counters[_HEAD] - self.capacity + 1))
+        return int(max(0, min(self._counters[_ACKED], self._counters[_HEAD] - self.capacity + 1)))
 
     @property
     def acked(self) -> int:

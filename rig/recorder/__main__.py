@@ -71,7 +71,7 @@ def _serve(ring: Ring, service: Service) -> bool:
     while True:
         orphan = os.getppid() != ring.producer_pid
         if orphan or ring.closed:
-            return orphan
+            return bool(orphan)
         service.step(time.monotonic())
         if not service.pressed:
             time.sleep(POLL)

@@ -27,7 +27,7 @@ class Service:
     @property
     def pressed(self) -> bool:
         """True when the ring fills faster than the clock asks for: then there is no time to sleep."""
-        return self._ring.head - self._ring.acked >= self._ring.capacity // SHARE
+        return bool(self._ring.head - self._ring.acked >= self._ring.capacity // SHARE)
 
     def step(self, now: float) -> None:
         """Do what is due at `now` [s]. Raises OSError when the journal cannot take it."""

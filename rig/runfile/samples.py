@@ -95,7 +95,7 @@ class Journal(Samples):
             return as_float(self._table.column(name))
 
     def empty(self, name: str) -> bool:
-        return self._table.column(name).null_count == self.rows
+        return bool(self._table.column(name).null_count == self.rows)
 
     def batches(self) -> Iterator[pa.RecordBatch]:
         yield from self._table.to_batches(max_chunksize=BATCH)

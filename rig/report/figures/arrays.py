@@ -52,7 +52,7 @@ def thin(values: Array, most: int) -> Array:
     """At most `most` rows of `values` (R, G), evenly picked from first to last."""
     if len(values) <= most:
         return values
-    return values[np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))]
+    return np.asarray(values[np.unique(np.linspace(0, len(values) - 1, most).round().astype(int))])
 
 
 def columns(x: Array, low: Array, high: Array, most: int) -> tuple[Array, Array, Array]:

@@ -42,7 +42,7 @@ class Section:
 
     def text(self, key: str, default: Any = _MISSING, choices: Collection[str] = (), blank: bool = False) -> str:
         """A text that is not blank (unless blanks are meant); one of `choices` when given."""
-        found = self._take(key, str, default)
+        found: str = self._take(key, str, default)
         if found is not default and not blank and not found.strip():
             self.refuse(key, found, "a text that says something")
         if found is not default and choices and found not in choices:
@@ -51,27 +51,26 @@ class Section:
 
     def number(self, key: str, default: Any = _MISSING, above: float = -math.inf) -> float:
         """A finite number greater than `above`."""
-        found = self._take(key, float, default)
-        if found is default:
-            return found
-        if not math.isfinite(found) or found <= above:
+        found: float = self._take(key, float, default)
+        if found is not default and (not math.isfinite(found) or found <= above):
             self.refuse(key, found, "a finite number" + (f" above {above:g}" if math.isfinite(above) else ""))
-        return float(found)
+        return found
 
     def whole(self, key: str, default: Any = _MISSING, least: int = 0, most: int = 2**63 - 1) -> int:
         """A whole number from `least` to `most`."""
-        found = self._take(key, int, default)
+        found: int = self._take(key, int, default)
         if found is not default and not least <= found <= most:
             self.refuse(key, found, f"a whole number from {least} to {most}")
         return found
 
     def flag(self, key: str, default: Any = _MISSING) -> bool:
         """true or false."""
-        return self._take(key, bool, default)
+        found: bool = self._take(key, bool, default)
+        return found
 
     def sign(self, key: str) -> int:
         """1 or -1; 1 when absent."""
-        found = self._take(key, int, 1)
+        found: int = self._take(key, int, 1)
         if found not in (1, -1):
             self.refuse(key, found, "1 or -1")
         return found
