@@ -54,7 +54,7 @@ class Section:
         found: float = self._take(key, float, default)
         if found is not default and (not math.isfinite(found) or found <= above):
             self.refuse(key, found, "a finite number" + (f" above {above:g}" if math.isfinite(above) else ""))
-        return found
+        return found if found is default else float(found)  # TOML's 2 is as good as 2.0
 
     def whole(self, key: str, default: Any = _MISSING, least: int = 0, most: int = 2**63 - 1) -> int:
         """A whole number from `least` to `most`."""
