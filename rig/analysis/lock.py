@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.angle import ARCMIN, ARCSEC, transmission_error
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import t95
-from rig.analysis.result import Array, Check, Estimate
+from rig.analysis.result import Array, Check
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import turning_points
 
@@ -69,13 +69,8 @@ def add_lock(found: Findings, run: Source, motion: Motion) -> None:
     load = motion.theta_l if motion.theta_l is not None else np.zeros_like(motion.theta_m)
     windup = transmission_error(motion.theta_m, load, motion.ratio)
     moved = float(np.ptp(load)) / max(float(np.ptp(windup)), 1e-300)
-    found.checks.append(
-        Check(
-            "output_locked",
-            moved < 0.05,
-            f"The output moved {100 * moved:.2f} % of the wind-up, limit 5 % (it is taken off).",
-        )
-    )
+    sentence = f"The output moved {100 * moved:.2f} % of the wind-up, limit 5 % (it is taken off)."
+    found.checks.append(Check("output_locked", moved < 0.05, sentence))
     if motion.theta_l is None:
         found.cannot.append("No load angle: whatever the lock gives way is counted as the gear's.")
     ramps = ramps_of(windup, tau)
@@ -83,12 +78,24 @@ def add_lock(found: Findings, run: Source, motion: Motion) -> None:
         found.sentence = "No ramp of torque long enough for a slope was found."
         found.cannot.append(found.sentence)
         return
+    K, half = _add_stiffness(found, ramps, tau, motion.ratio)
+    width = _add_loop_width(found, ramps)
+    found.cannot += [
+        "K1, K2, K3, hysteresis loss and creep: this is the secant of the whole loop, the full analysis comes later.",
+        "Gear alone: the figure is the whole path between motor encoder and lock, torque sensor and fixture included.",
+    ]
+    found.sentence = f"System torsional stiffness {K:.0f} N·m/rad ({K - half:.0f} to {K + half:.0f}){width}."
+    _add_curves(found, windup, tau, K)
+
+
+def _add_stiffness(found: Findings, ramps: list[Ramp], tau: Array, ratio: float) -> tuple[float, float]:
+    """Stiffness and the half width of its 95 % interval, N·m/rad."""
     used = [r for r in ramps if r.full] or ramps
     slopes = np.array([r.slope for r in used])
     K = float(slopes.mean())
     random = t95(slopes.size - 1) * float(slopes.std(ddof=1)) / np.sqrt(slopes.size) if slopes.size > 1 else 0.0
     # the motor turns over a piece of the kinematic error, whose slope N·θ̃_p′ looks like torsion: 2·C_2 + 4·C_4 at most
-    tilt = (2.0 + 4.0 / 4.0) * motion.ratio * ERROR
+    tilt = (2.0 + 4.0 / 4.0) * ratio * ERROR
     half = float(np.hypot(random, 1.96 * tilt / np.sqrt(3.0) * abs(K)))
     how = (
         f"Line through shaft torque against θ_m/N − θ_l, {slopes.size} ramps, {tau.min():.1f} to {tau.max():.1f} N·m; "
@@ -96,37 +103,35 @@ def add_lock(found: Findings, run: Source, motion: Motion) -> None:
         "is for the slope of the kinematic error at this motor angle, which this run does not know."
     )
     found.figure("torsional_stiffness", "System torsional stiffness, secant", K, "N·m/rad", half, how)
+    return K, half
+
+
+def _add_loop_width(found: Findings, ramps: list[Ramp]) -> str:
+    """Wind-up between falling and rising ramps at zero torque; what the headline says of it."""
     up = np.array([r.at_zero for r in ramps if r.direction > 0 and np.isfinite(r.at_zero)])
     down = np.array([r.at_zero for r in ramps if r.direction < 0 and np.isfinite(r.at_zero)])
-    text = ""
-    if up.size and down.size:
-        width = float(down.mean() - up.mean()) * ARCMIN
-        dof = up.size + down.size - 2
-        how = f"Wind-up at zero torque, {down.size} falling less {up.size} rising ramps; a sensor offset moves zero."
-        if dof > 0:
-            pooled = float(np.sqrt((np.sum((up - up.mean()) ** 2) + np.sum((down - down.mean()) ** 2)) / dof))
-            spread = t95(dof) * pooled * np.sqrt(1 / up.size + 1 / down.size) * ARCMIN
-            found.figure("loop_width", "Loop width at zero torque", width, "arcmin", spread, how)
-        else:
-            nan = float("nan")
-            how += " One ramp each way: no interval."
-            found.estimates.append(
-                Estimate("loop_width", "Loop width at zero torque", width, "arcmin", (nan, nan), how)
-            )
-        text = f", loop {width:.2f} arcmin wide at zero torque"
-    else:
+    if not (up.size and down.size):
         found.cannot.append("Zero torque was not crossed on the way up and on the way down: no loop width.")
-    found.cannot += [
-        "K1, K2, K3, hysteresis loss and creep: this is the secant of the whole loop, the full analysis comes later.",
-        "Gear alone: the figure is the whole path between motor encoder and lock, torque sensor and fixture included.",
-    ]
-    found.sentence = f"System torsional stiffness {K:.0f} N·m/rad ({K - half:.0f} to {K + half:.0f}){text}."
+        return ""
+    width = float(down.mean() - up.mean()) * ARCMIN
+    dof = up.size + down.size - 2
+    how = f"Wind-up at zero torque, {down.size} falling less {up.size} rising ramps; a sensor offset moves zero."
+    spread = float("nan")
+    if dof > 0:
+        pooled = float(np.sqrt((np.sum((up - up.mean()) ** 2) + np.sum((down - down.mean()) ** 2)) / dof))
+        spread = t95(dof) * pooled * float(np.sqrt(1 / up.size + 1 / down.size)) * ARCMIN
+    else:
+        how += " One ramp each way: no interval."
+    found.figure("loop_width", "Loop width at zero torque", width, "arcmin", spread, how)
+    return f", loop {width:.2f} arcmin wide at zero torque"
+
+
+def _add_curves(found: Findings, windup: Array, tau: Array, K: float) -> None:
     step = max(tau.size // MOST, 1)
-    middle_w, middle_t = float(windup.mean()), float(tau.mean())
     ends = np.array([tau.min(), tau.max()])
     found.curve(
         torsion__torque=tau[::step],
-        torsion__angle=(windup[::step] - middle_w) * ARCMIN,
+        torsion__angle=(windup[::step] - float(windup.mean())) * ARCMIN,
         torsion__fit_torque=ends,
-        torsion__fit_angle=(ends - middle_t) / K * ARCMIN,
+        torsion__fit_angle=(ends - float(tau.mean())) / K * ARCMIN,
     )

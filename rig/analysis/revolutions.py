@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -67,6 +68,20 @@ def _in_bins(theta: Array, y: Array) -> tuple[Array, Array, Array]:
     )
 
 
+def _curves(
+    motion: Motion, edges: list[int], cleaned: Callable[[Array, Array], Array]
+) -> tuple[Array, tuple[Array, Array, Array]]:
+    """Each revolution's profile (R, GRID), and the sums of all of them per bin; `cleaned` takes the trend off."""
+    curves = np.empty((len(edges) - 1, GRID))
+    total, position, rows = np.zeros(GRID), np.zeros(GRID), np.zeros(GRID)
+    for r, (a, b) in enumerate(pairwise(edges)):
+        theta = motion.theta_m[a:b]
+        one = _in_bins(theta, cleaned(theta, motion.error_arcsec(a, b)))
+        curves[r] = filled(*one)
+        total, position, rows = total + one[0], position + one[1], rows + one[2]
+    return curves, (total, position, rows)
+
+
 def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
     """Fourier coefficients of every whole revolution, by least squares over all its rows, with one trend per stroke.
 
@@ -114,14 +129,9 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
         residual_square += own.residual(coefficients[r])
 
     slow_mean = np.array([p.gram[0, 1 : degree + 1] @ trend[1:] / max(p.count, 1) for p in pieces])
-    curves = np.empty((stroke.revolutions, GRID))
-    total, position, rows = np.zeros(GRID), np.zeros(GRID), np.zeros(GRID)
-    for r, (a, b) in enumerate(pairwise(edges)):
-        theta = motion.theta_m[a:b]
-        y = motion.error_arcsec(a, b) - zero - trend @ slow_columns(theta)
-        one = _in_bins(theta, y)
-        curves[r] = filled(*one)
-        total, position, rows = total + one[0], position + one[1], rows + one[2]
+    curves, (total, position, rows) = _curves(
+        motion, edges, lambda theta, error: error - zero - trend @ slow_columns(theta)
+    )
 
     theta_l = motion.theta_l
     assert theta_l is not None
