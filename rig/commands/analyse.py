@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import Exit, HdrigError, UsageError
+from rig.commands.folders import expand, for_each, runs_argument
+from rig.core.errors import Exit, UsageError
 
 if TYPE_CHECKING:
     from rig.analysis.result import Result
@@ -16,30 +16,23 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig analyse`."""
+    runs_argument(parser)
     parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
-    )
-    parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="write results there (for runs that cannot be written to)"
+        "--out", type=Path, metavar="FOLDER", help="write results there instead of into the run folders"
     )
 
 
 def run(args: argparse.Namespace) -> int:
-    """Every run is tried; the exit code is that of the first that is not 0."""
-    from rig.commands.folders import expand
-
+    """Figures and report of every run."""
     folders = expand(args.runs)
-    worst = Exit.PASS
-    for folder, target in zip(folders, targets(folders, args.out), strict=True):
-        try:
-            result = analyse_folder(folder, target)
-        except HdrigError as error:
-            print(f"hdrig: {folder}: {error}", file=sys.stderr)
-            worst = worst or Exit(error.exit)
-            continue
-        print_result(result, target, folder)
-        worst = worst or exit_of(result)
-    return int(worst)
+    places = dict(zip(folders, targets(folders, args.out), strict=True))
+
+    def analyse_one(folder: Path) -> Exit:
+        result = analyse_folder(folder, places[folder])
+        print_result(result, places[folder], folder)
+        return exit_of(result)
+
+    return for_each(folders, analyse_one)
 
 
 def targets(folders: list[Path], out: Path | None) -> list[Path]:

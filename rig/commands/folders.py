@@ -2,9 +2,32 @@
 
 from __future__ import annotations
 
+import argparse
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
-from rig.core.errors import UsageError
+from rig.core.errors import Exit, HdrigError, UsageError
+
+
+def runs_argument(parser: argparse.ArgumentParser) -> None:
+    """RUN…"""
+    parser.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
+    )
+
+
+def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
+    """Every run is tried; a refusal is a sentence on stderr; the exit code is that of the first that is not 0."""
+    worst = Exit.PASS
+    for folder in folders:
+        try:
+            code = act(folder)
+        except HdrigError as error:
+            print(f"hdrig: {folder}: {error}", file=sys.stderr)
+            code = Exit(error.exit)
+        worst = worst or code
+    return int(worst)
 
 
 def expand(paths: list[Path]) -> list[Path]:

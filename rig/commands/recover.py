@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
-from rig.core.errors import Exit, HdrigError
+from rig.commands.folders import expand, for_each
+from rig.commands.folders import runs_argument as arguments
+from rig.core.errors import Exit
 
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Options of `hdrig recover`."""
-    parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
-    )
+__all__ = ["arguments", "run"]
 
 
 def run(args: argparse.Namespace) -> int:
-    """Every run is tried; one sentence each; the exit code is the first that is not 0."""
-    from rig.commands.folders import expand
+    """One sentence a run."""
+    return for_each(expand(args.runs), recover_one)
+
+
+def recover_one(folder: Path) -> Exit:
+    """Says what was found and made of it."""
     from rig.runfile.recover import recover
 
-    worst = Exit.PASS
-    for folder in expand(args.runs):
-        try:
-            print(recover(folder).sentence)
-        except HdrigError as error:
-            print(f"hdrig: {error}", file=sys.stderr)
-            worst = worst or Exit(error.exit)
-    return int(worst)
+    print(recover(folder).sentence)
+    return Exit.PASS

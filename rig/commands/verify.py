@@ -3,36 +3,27 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
-from rig.core.errors import Exit, HdrigError
+from rig.commands.folders import expand, for_each
+from rig.commands.folders import runs_argument as arguments
+from rig.core.errors import Exit
 
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """Options of `hdrig verify`."""
-    parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
-    )
+__all__ = ["arguments", "run"]
 
 
 def run(args: argparse.Namespace) -> int:
     """One line a finding; exit 6 when a promise is broken."""
-    from rig.commands.folders import expand
+    return for_each(expand(args.runs), verify_one)
+
+
+def verify_one(folder: Path) -> Exit:
+    """Says sound or BROKEN, and what was found."""
     from rig.runfile.verify import verify
 
-    worst = Exit.PASS
-    for folder in expand(args.runs):
-        try:
-            findings = verify(folder)
-        except HdrigError as error:
-            print(f"hdrig: {error}", file=sys.stderr)
-            worst = worst or Exit(error.exit)
-            continue
-        broken = [f for f in findings if f.level == "error"]
-        print(f"{folder.name}: {'BROKEN' if broken else 'sound'}")
-        for finding in findings:
-            print(f"  {finding.level:7s} {finding.sentence}")
-        if broken:
-            worst = worst or Exit.INCOMPLETE
-    return int(worst)
+    findings = verify(folder)
+    broken = any(finding.level == "error" for finding in findings)
+    print(f"{folder.name}: {'BROKEN' if broken else 'sound'}")
+    for finding in findings:
+        print(f"  {finding.level:7s} {finding.sentence}")
+    return Exit.INCOMPLETE if broken else Exit.PASS
