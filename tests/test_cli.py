@@ -104,3 +104,10 @@ def test_what_the_bench_does_not_allow_is_refused_before_anything_moves(
     assert main(["run", "kinematic-error", "--with", assignment]) == 3
     assert word in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_formats_offered_are_those_there_are() -> None:
+    from rig.commands.export import FORMATS as OFFERED
+    from rig.runfile.export import FORMATS
+
+    assert set(OFFERED) == set(FORMATS)

@@ -5,24 +5,26 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from rig.commands.folders import expand, for_each, runs_argument
+from rig.core.errors import Exit
+
 FORMATS = ("csv", "mdf4", "mcap", "hdf5")  # as in rig.runfile.export, which is too heavy for --help
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig export`."""
-    parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="run folder; a folder of runs means all in it"
-    )
+    runs_argument(parser)
     parser.add_argument("--as", dest="kind", choices=FORMATS, default="csv", help="default: csv, with a row of units")
     parser.add_argument("--to", type=Path, metavar="PATH", help="file or folder; default: in the run folder")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prints every file made; stops at the first that cannot be."""
-    from rig.commands.folders import expand
+    """Prints every file made."""
     from rig.runfile.export import export
     from rig.runfile.run import Run
 
-    for folder in expand(args.runs):
+    def export_one(folder: Path) -> Exit:
         print(export(Run.open(folder), args.kind, args.to))
-    return 0
+        return Exit.PASS
+
+    return for_each(expand(args.runs), export_one)
