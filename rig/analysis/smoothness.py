@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.angle import RPM, TURN
+from rig.analysis.fast_ripple import fast_ripple
 from rig.analysis.result import Array, Check, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.speed import Speed, motor_speed
@@ -17,6 +18,7 @@ STUCK_BELOW = 0.10  # of the nominal speed: below this the motor counts as stuck
 STUCK_LIMIT = 0.02  # share of the time
 SIGMA_LIMIT = 0.10  # of the nominal speed
 LOCKED_ORDERS = 30  # ripple up to this order follows the motor angle: gear and motor, not the loop
+HUNTING_SIGMA = 0.02  # speed scatter below which no frequency in it matters
 HUNTING_SHARE = 0.25  # of the variance: a weaker peak is not called hunting
 ADVICE = {
     "stuck": "it sticks and breaks loose: raise Kd (double it), then Kp",
@@ -43,7 +45,8 @@ class Smoothness:
 
     @property
     def hunts(self) -> bool:
-        return self.hunting_share >= HUNTING_SHARE and np.isfinite(self.hunting_hz)
+        loud = self.sigma >= HUNTING_SIGMA
+        return bool(loud and self.hunting_share >= HUNTING_SHARE and np.isfinite(self.hunting_hz))
 
 
 def _not_locked(theta: Array, deviation: Array) -> Array:
@@ -114,6 +117,12 @@ def smoothness(
         return None
     variance = float(np.mean(np.concatenate(deviations) ** 2))
     hunting_hz, share = _hunting(parts, speed.window / 4, variance)
+    fast = fast_ripple(motion.t, motion.theta_m, strokes, speed.window)
+    whole = variance + fast.variance * RPM**2
+    share *= variance / whole if whole else 0.0
+    if whole and fast.peak_variance * RPM**2 / whole > share:
+        hunting_hz, share = fast.peak_hz, fast.peak_variance * RPM**2 / whole
+    variance = whole
     return Smoothness(nominal, stuck / count, float(np.sqrt(variance)) / nominal, hunting_hz, share, speed.window)
 
 

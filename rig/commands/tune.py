@@ -1,8 +1,8 @@
 """hdrig tune: gains that turn the motor smoothly at the slow speed, found on the rig at hand.
 
-Method, step based: (1) torque steps give inertia and friction at the motor; (2) the three poles of the position loop
-are placed on one spot λ; (3) short slow triangles are tried with λ rising until the motor turns smoothly with margin.
-The lowest λ that does is kept: more would only make the torque noisier.
+Method, step based: (1) torque steps give inertia and friction at the motor; (2) the poles of the loop are placed,
+the speed pole at β and the others well below; (3) short slow triangles are tried with β rising until the motor turns
+smoothly with margin. The lowest β that does is kept: more would only make the torque noisier.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from rig.analysis.step_response import StepResponse
     from rig.control.pid import Gains
 
-BANDWIDTHS = (15.0, 25.0, 40.0, 60.0, 90.0, 130.0)  # rad/s, tried from the gentlest
+BANDWIDTHS = (60.0, 90.0, 130.0, 180.0, 250.0, 350.0)  # rad/s of the speed loop, tried from the gentlest
 MARGIN = 0.5  # of the limits of a good run: a trial is short, the real run is long
 TRIAL = KinematicError(amplitude_deg=540.0, frequency=4 / 150, cycles=1.0)  # 9.6 rpm like the slow run, 37.5 s
-BREAKAWAY = 2.0  # times the measured friction: what the proportional part must give within the following limit
+BREAKAWAY = 1.6  # times the measured friction: what the proportional part must give within the following limit
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -84,10 +84,11 @@ def _candidates(bench: Bench, step: StepResponse) -> list[Bench]:
     from rig.control.placement import place_poles, speed_filter
 
     limit, viscous = bench.gains.torque_limit, bench.file.control.feedforward
+    allowed = bench.limits.following + bench.limits.following_time * TRIAL.reference.speed
     found = []
     for bandwidth in BANDWIDTHS:
         gains = place_poles(step.inertia, bandwidth, limit, step.friction, viscous)
-        if gains.Kp * bench.limits.following >= BREAKAWAY * step.friction:
+        if gains.Kp * allowed >= BREAKAWAY * step.friction:
             found.append(with_gains(bench, gains, speed_filter(bandwidth)))
     if not found:
         raise NotReady(

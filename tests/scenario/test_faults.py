@@ -38,9 +38,6 @@ FAULTS: dict[str, tuple[Strike, str, float]] = {
     "motor encoder frozen": (lambda rig: setattr(rig.drive, "fault", Frozen()), "", 1.0),
 }
 UNSEEN = {("load encoder frozen", "coming to rest")}  # nothing moves any more
-    ("load encoder frozen", "coming to rest"),
-    ("motor encoder frozen", "coming to rest"),
-}  # nothing moves any more
 
 
 def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, Supervisor, float]:
