@@ -117,8 +117,8 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
     return bench
 
 
-def override(text: str, assignments: list[str], source: str) -> str:
-    """The TOML `text` with `a.b=value` assignments made; comments and provenance of the rest stay."""
+def override(text: str, assignments: list[str], source: str, origin: str = "declared") -> str:
+    """The TOML `text` with `a.b=value` assignments made, said to be from `origin`; comments and the rest stay."""
     if not assignments:
         return text
     import tomlkit
@@ -138,7 +138,7 @@ def override(text: str, assignments: list[str], source: str) -> str:
             raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {nearest(last, at)}")
         parsed = toml_value(value)
         if isinstance(at[last], dict) and "value" in at[last]:
-            at[last]["value"], at[last]["from"] = parsed, "declared"
+            at[last]["value"], at[last]["from"] = parsed, origin
         else:
             at[last] = parsed
     return tomlkit.dumps(document)

@@ -71,11 +71,8 @@ class Session:
         envelope = procedure.envelope(self.bench.setting(lambda text: None))
         missing = [c for c in procedure.needs if c not in self.instruments.channels]
         if missing:
-            raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.name} needs")
-        for what, asked, limit, unit, scale in margins(self.bench, procedure):
-            if asked > limit:
-                wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-                raise NotReady(f"{procedure.name} asks for {what} {wanted}, the bench allows {allowed}")
+            raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.title()} needs")
+        refuse_beyond_limits(self.bench, procedure)
         if not envelope.duration > 0:
             raise NotReady(f"{procedure.name} would last {envelope.duration:g} s, expected more than 0 s")
 
@@ -171,6 +168,7 @@ class Session:
         return {
             **manifest,
             "conditions": conditions,
+            "label": procedure.label or None,
             "devices": {name: identity._asdict() for name, identity in self.identities.items()},
             "proof": self._proof._asdict() if self._proof else None,
             "loop": {"rate": self.bench.file.loop.rate, "clock": self.clock},
@@ -186,6 +184,14 @@ class Ended(HdrigError):
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)
         self.exit = exit
+
+
+def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
+    """Raises NotReady when the procedure asks for more than the bench allows."""
+    for what, asked, limit, unit, scale in margins(bench, procedure):
+        if asked > limit:
+            wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
+            raise NotReady(f"{procedure.title()} asks for {what} {wanted}, the bench allows {allowed}")
 
 
 def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:

@@ -23,6 +23,7 @@ class Findings:
     curves: dict[str, Array] = field(default_factory=dict)
     sentence: str = ""  # the headline
     rejected: str = ""  # why the run must not be believed, "" when it may
+    inconclusive: str = ""  # why the run settles nothing, "" when it does
     believed: int = 0  # how many estimates were there when it was rejected: those are about the run, not the gear
 
     def reject(self, why: str) -> None:
@@ -34,8 +35,9 @@ class Findings:
         self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how))
 
     def exact(self, name: str, label: str, value: float, unit: str, how: str) -> None:
-        """Add a figure that describes this run completely: a count, a share, a span."""
-        self.estimates.append(Estimate(name, label, value, unit, (value, value), how))
+        """Add a figure without an interval: a count is exact, anything else has none that this run could show."""
+        ci95 = (value, value) if unit == "1" else (float("nan"), float("nan"))
+        self.estimates.append(Estimate(name, label, value, unit, ci95, how))
 
     def curve(self, **arrays: Array | None) -> None:
         """Add curves; `ke__fit` stands for "ke.fit". None is left out: an absent curve is an absent figure."""
@@ -89,7 +91,9 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         text = f"The run is {status}" + (f" ({reason})" if reason else "") + ": the figures are from what was recorded."
         found.checks.append(Check("run_complete", False, text))
         sentence = f"{text} {sentence}"
-        verdict = Verdict.INCONCLUSIVE if verdict is Verdict.PASS else verdict
+        found.inconclusive = found.inconclusive or text
+    if found.inconclusive and verdict in (Verdict.PASS, Verdict.MEASURED):
+        verdict = Verdict.INCONCLUSIVE
     if found.rejected:
         verdict, sentence = Verdict.FAIL, f"{found.rejected} Figures are shown but do not count: {sentence}"
         doubtful = estimates[found.believed :]

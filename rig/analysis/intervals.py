@@ -57,6 +57,8 @@ def amplitude_interval(amplitude: float, u: float, factor: float) -> tuple[float
     The value is freed of the bias that noise adds, √(C² − u²). Where pure noise would reach C in 1 case of 20, the
     amplitude is not resolved: the interval then starts at zero. `factor` is the 95 % factor of one part.
     """
+    if not np.isfinite(u):  # one revolution: a value, and nothing to say how sure it is
+        return amplitude, float("nan"), float("nan")
     value = float(np.sqrt(max(amplitude**2 - u**2, 0.0)))
     resolved = amplitude > RAYLEIGH95 / Z95 * factor * u
     low = max(amplitude - factor * u, 0.0) if resolved else 0.0

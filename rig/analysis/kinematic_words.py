@@ -23,10 +23,14 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
     parts = "even part of both directions" if p.odd_cosine is not None else "one direction only"
     basis = f"{p.forward} forward and {p.reverse} reverse revolutions, {parts}"
     value, (low, high) = p.peak_to_peak()
-    how = (
-        f"Peak to peak of the {p.terms}-order series over {basis}; interval by Monte Carlo from the scatter of the "
-        f"revolutions (Student t, {p.dof:.0f} degrees of freedom), upward bias by noise taken off"
-    )
+    how = f"Peak to peak of the {p.terms}-order series over {basis}"
+    if np.isfinite(low):
+        how += (
+            f"; interval by Monte Carlo from the scatter of the revolutions (Student t, {p.dof:.0f} degrees of freedom)"
+            ", upward bias by noise taken off"
+        )
+    else:
+        how += "; too few revolutions for an interval"
     if ke.added_known and pure:
         share = 100 * float(ke.added[min(1, p.terms - 1)])
         how += f"; what inertia adds ({share:.2g} % of order 2) is taken off, half of it is in the interval"
@@ -38,6 +42,7 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
         n, resolved = int(row["order"]), float(row["C_lo"]) > 0
         if n == 2 or (resolved and n in SHOWN_ORDERS):
             state = "" if resolved else "Not resolved from zero, only the upper end of the interval is a result. "
+            state = state if np.isfinite(float(row["C_lo"])) else "Too few revolutions for an interval. "
             how = f"{state}{basis}; least squares over exact turns, interval from the scatter of the revolutions."
             ci95 = (float(row["C_lo"]), float(row["C_hi"]))
             label = f"{what}, amplitude of order {n}"
@@ -167,8 +172,8 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, out
     p, tell = ke.profile, found.cannot.append
     if p.odd_cosine is None:
         tell(
-            "Only one direction was run: direction effects (friction, lag, lost motion) stay in the profile, and the "
-            "offset between directions is unknown."
+            "Whole turns of one direction only: direction effects (friction, lag, lost motion) stay in the profile, "
+            "and the offset between directions is unknown."
         )
     longest = max(s.mean.size for s in ke.strokes)
     if longest < ratio / 2:

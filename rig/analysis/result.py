@@ -28,7 +28,7 @@ class Estimate:
     label: str  # for people, e.g. "Kinematic error, peak to peak"
     value: float
     unit: str  # as shown: arcsec, rpm, N·m …
-    ci95: tuple[float, float]  # 95 % interval, same unit
+    ci95: tuple[float, float]  # 95 % interval, same unit; NaN where the run could not show one
     how: str  # one sentence: from what, over how many, by which estimator
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.angle import RPM, TURN
-from rig.analysis.fast_ripple import fast_ripple
+from rig.analysis.fast_ripple import TOP_HZ, fast_ripple
 from rig.analysis.result import Array, Check, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.speed import Speed, motor_speed
@@ -168,15 +168,17 @@ def checks(s: Smoothness) -> tuple[Check, Check]:
 
 
 def estimates(s: Smoothness) -> tuple[Estimate, ...]:
-    """The same as figures. They describe this run completely, so their interval is the value itself."""
-    how = f"speed over {1000 * s.window:.0f} ms windows, within the strokes, half a turn at each reversal left out"
+    """The same as figures. They describe this run and stand for no other: they carry no interval."""
+    nan = float("nan")
+    how = f"within the strokes, half a turn at each reversal left out; speed over {1000 * s.window:.0f} ms windows"
+    faster = f"what is faster, up to {TOP_HZ:.0f} Hz, from the angle's spectrum less its noise floor"
     stuck, sigma = 100 * s.stuck, 100 * s.sigma
     rows = [
-        Estimate("stuck_share", "Time stuck", stuck, "%", (stuck, stuck), f"Share below 10 % of nominal; {how}."),
-        Estimate("speed_scatter", "Speed scatter", sigma, "%", (sigma, sigma), f"1 σ over nominal; {how}."),
+        Estimate("stuck_share", "Time stuck", stuck, "%", (nan, nan), f"Share below 10 % of nominal; {how}."),
+        Estimate("speed_scatter", "Speed scatter", sigma, "%", (nan, nan), f"1 σ over nominal; {how}, {faster}."),
     ]
     if s.hunts:
         share = f"{100 * s.hunting_share:.0f} % of its variance"
         what = f"Strongest frequency of the speed that does not follow the motor angle, {share}."
-        rows.append(Estimate("hunting_frequency", "Hunting frequency", s.hunting_hz, "Hz", (s.hunting_hz,) * 2, what))
+        rows.append(Estimate("hunting_frequency", "Hunting frequency", s.hunting_hz, "Hz", (nan, nan), what))
     return tuple(rows)

@@ -23,6 +23,16 @@ class StepResponse(NamedTuple):
     friction_scatter: float
     steps: int
 
+    @property
+    def sentence(self) -> str:
+        """For the operator. The steps repeat better than the method is true: the load swings on the gear's spring."""
+        half = 1.96 * self.friction_scatter / self.steps**0.5
+        return (
+            f"inertia at the motor {self.inertia:.3g} kg·m² (within 5 %: the load hangs on the gear's spring), "
+            f"friction while coasting {self.friction:.3f} ± {half:.3f} N·m, viscous part included, "
+            f"{self.steps} torque steps"
+        )
+
 
 def step_response(t: Array, theta_m: Array, tau: Array) -> StepResponse:
     """J = τ/(ω̇_on − ω̇_off) and τ_f = −J·ω̇_off, each in the direction of the step.

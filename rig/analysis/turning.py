@@ -37,6 +37,7 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
             f"The motor made no whole turn in one direction once the reversals are cut (it moved {span:.2f} turns)."
         )
         found.cannot.append(found.sentence)
+        found.inconclusive = found.sentence if slow else ""
         return
     smoothness = smooth.smoothness(motion, strokes, motion.pick(run.column("theta_ref")), speed) if slow else None
     if smoothness is not None:
@@ -90,6 +91,8 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     output = str(run.manifest.get("gear", {}).get("output", ""))
     words.add_limits_of_the_run(found, ke, motion.ratio, output, slow)
     found.sentence = headline(found, ke, slow)
+    if slow and not np.isfinite(ke.profile.peak_to_peak()[1][0]):
+        found.inconclusive = "Too few revolutions for an interval."
     others = [(g, measure(run, motion, g, slow)) for g in worthy if g is not main]
     if others:
         found.tables["speeds"] = [_speed_row(k) for k in (ke, *(k for _, k in others)) if k is not None]

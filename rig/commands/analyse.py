@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
-from rig.core.errors import Exit, UsageError
+from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
     from rig.analysis.result import Result
@@ -28,8 +29,8 @@ def run(args: argparse.Namespace) -> int:
     places = dict(zip(folders, targets(folders, args.out), strict=True))
 
     def analyse_one(folder: Path) -> Exit:
-        result = analyse_folder(folder, places[folder])
-        print_result(result, places[folder], folder)
+        result, simulated = analyse_folder(folder, places[folder])
+        print_result(result, places[folder], folder, simulated)
         return exit_of(result)
 
     return for_each(folders, analyse_one)
@@ -43,8 +44,11 @@ def targets(folders: list[Path], out: Path | None) -> list[Path]:
     return [out / folder.resolve().relative_to(base) for folder in folders]
 
 
-def analyse_folder(folder: Path, target: Path) -> Result:
-    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself."""
+def analyse_folder(folder: Path, target: Path) -> tuple[Result, bool]:
+    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself.
+
+    Returns the result, and whether the run is simulated.
+    """
     from rig.analysis import analyse
     from rig.report.page import write
     from rig.report.record import write_result
@@ -53,6 +57,7 @@ def analyse_folder(folder: Path, target: Path) -> Result:
     from rig.runfile.run import Run
 
     run = Run.open(folder)
+    refuse_changed(folder, run.manifest)
     result = analyse(run)
     try:
         target.mkdir(parents=True, exist_ok=True)
@@ -64,7 +69,18 @@ def analyse_folder(folder: Path, target: Path) -> Result:
         raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
     if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
         add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
-    return result
+    return result, run.simulated
+
+
+def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Figures from samples that are not those that were closed would be worth nothing. Raises DataError."""
+    from rig.runfile.finalise import describe
+
+    said = manifest.get("files", {}).get("samples.parquet", {}).get("sha256")
+    if said and (folder / "samples.parquet").exists() and describe(folder / "samples.parquet")["sha256"] != said:
+        raise DataError(
+            "samples.parquet is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
+        )
 
 
 def exit_of(result: Result) -> Exit:
@@ -72,11 +88,12 @@ def exit_of(result: Result) -> Exit:
     return {"FAIL": Exit.OUT_OF_LIMITS, "INCONCLUSIVE": Exit.INCOMPLETE}.get(result.verdict, Exit.PASS)
 
 
-def print_result(result: Result, target: Path, folder: Path) -> None:
+def print_result(result: Result, target: Path, folder: Path, simulated: bool) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
     from rig.report.numbers import estimate
 
-    print(f"{folder.name}\n{result.verdict}: {result.sentence}")
+    said = {"MEASURED": "no limit set"}.get(result.verdict, str(result.verdict))
+    print(f"{'SIMULATED ' if simulated else ''}{folder.name}\n{said}: {result.sentence}")
     width = max((len(e.label) for e in result.estimates), default=0)
     for e in result.estimates:
         print(f"  {e.label:{width}s}  {estimate(e.value, e.ci95, e.unit)}")

@@ -86,11 +86,14 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     gear = bench.file.gear
     inertia = gear.J_m + gear.J_l / gear.N**2
     lines = [
-        f"procedure   {procedure.name} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
+        f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
         f"duration    {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
         f"energy      {0.5 * inertia * envelope.speed**2:.4f} J in motion, at the motor's speed",
     ]
     for what, asked, limit, unit, scale in margins(bench, procedure):
+        if what == "torque":  # the loop is clamped there: what it will need is known only once it runs
+            lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
+            continue
         lines.append(
             f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
         )

@@ -9,6 +9,7 @@ from rig.commands.perform import perform
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.procedures import CATALOGUE, procedure_class
+from rig.session import refuse_beyond_limits
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,11 +22,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Dry run, or proof, run, analysis, report."""
-    if args.procedure not in CATALOGUE:
-        raise UsageError(f"no procedure called '{args.procedure}'; {nearest(args.procedure, CATALOGUE)}")
+    name = args.procedure.replace("_", "-")  # manifests write it with underscores
+    if name not in CATALOGUE:
+        raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, CATALOGUE)}")
     bench, clock = open_bench(args)
-    procedure = make_procedure(procedure_class(args.procedure), args.parameters)
+    procedure = make_procedure(procedure_class(name), args.parameters)
     if args.dry_run:
         print("\n".join(plan_lines(bench, procedure)))
+        refuse_beyond_limits(bench, procedure)
         return 0
     return perform(bench, clock, procedure, args.out, args.note)

@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING
 
 from rig.bench import Bench, override
 from rig.commands.options import bench_arguments, open_bench
+from rig.commands.perform import response_of
 from rig.config import read_bench
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.interrupts import Interrupts
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.step_test import StepTest
-from rig.session import Done, Ended, Session
+from rig.session import Ended, Session
 
 if TYPE_CHECKING:
     from rig.analysis.smoothness import Smoothness
@@ -48,10 +49,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
         step = _step(session)  # open loop, so that gains too weak to move anything cannot stand in the way
-        print(
-            f"step test: inertia at the motor {step.inertia * 1e3:.3f} ± {step.inertia_scatter * 1e3:.3f} g·m², "
-            f"friction {step.friction:.3f} ± {step.friction_scatter:.3f} N·m (1 sigma of one step, {step.steps} steps)"
-        )
+        print(f"step test: {step.sentence}")
         candidates = _candidates(bench, step)
         session.rewire(candidates[0])
         print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
@@ -65,18 +63,16 @@ def run(args: argparse.Namespace) -> int:
     print(f"after:  {describe(*best)}")
     if args.write is not None:
         args.write.write_text(best[0].text, encoding="utf-8")
-        print(f"gains written to {args.write}: use them with --bench {args.write}")
+        changed = f", with the changes of --set ({', '.join(args.set)})" if args.set else ""
+        print(f"bench file with these gains written to {args.write}{changed}: use it with --bench {args.write}")
     return int(Exit.PASS)
 
 
 def _step(session: Session) -> StepResponse:
-    from rig.analysis.step_response import step_response
-    from rig.runfile.run import Run
-
     done = session.run(StepTest(torque=0.25 * session.bench.gains.torque_limit))
-    _expect_completed(done)
-    run = Run.open(done.folder)
-    return step_response(run.need("t"), run.need("theta_m"), run.need("tau_applied"))
+    if done.ending.exit is not Exit.PASS:
+        raise Ended(f"tuning was ended: {done.ending.reason}", done.ending.exit)
+    return response_of(done.folder)
 
 
 def _candidates(bench: Bench, step: StepResponse) -> list[Bench]:
@@ -122,13 +118,8 @@ def _trial(session: Session, bench: Bench) -> Smoothness | str:
     return smoothness_of(Run.open(done.folder)) or "the motor made no whole turn"
 
 
-def _expect_completed(done: Done) -> None:
-    if done.ending.exit is not Exit.PASS:
-        raise Ended(f"tuning was ended: {done.ending.reason}", done.ending.exit)
-
-
 def with_gains(bench: Bench, gains: Gains, filter_time: float) -> Bench:
-    """The bench with other gains, said to be declared by the operator."""
+    """The bench with other gains, said to be measured."""
     values = {
         "control.Kp": gains.Kp,
         "control.Ki": gains.Ki,
@@ -136,7 +127,9 @@ def with_gains(bench: Bench, gains: Gains, filter_time: float) -> Bench:
         "control.integrator_limit": gains.integrator_limit,
         "loop.speed_filter": filter_time,
     }
-    text = override(bench.text, [f"{key}={float(f'{value:.4g}')!r}" for key, value in values.items()], bench.source)
+    text = override(
+        bench.text, [f"{key}={float(f'{value:.4g}')!r}" for key, value in values.items()], bench.source, "measured"
+    )
     return replace(bench, text=text, file=read_bench(text, bench.source))
 
 

@@ -40,6 +40,8 @@ class Procedure(ABC):
     name: ClassVar[str]  # as in the manifest, with underscores
     needs: ClassVar[tuple[str, ...]]  # channels without which it is refused: a test against NaN is silently false
     output_locked: ClassVar[bool] = False  # what the output must be like
+    closes_loop: ClassVar[bool] = True  # needs the sign-and-scale proof first
+    label: ClassVar[str] = ""  # what people call it where `name` is "other"
 
     @abstractmethod
     def envelope(self, setting: Setting) -> Envelope:
@@ -48,6 +50,10 @@ class Procedure(ABC):
     @abstractmethod
     def steps(self, setting: Setting) -> Steps:
         """The experiment. Primed with `next`, then given one sample a tick."""
+
+    def title(self) -> str:
+        """What people call it, with hyphens, as on the command line."""
+        return self.label or self.name.replace("_", "-")
 
     def conditions(self) -> dict[str, Any]:
         """What goes into the manifest's `conditions`."""

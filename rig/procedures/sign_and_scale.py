@@ -49,6 +49,8 @@ class SignAndScale(Procedure):
     """
 
     name: ClassVar[str] = "other"
+    label: ClassVar[str] = "sign-and-scale"
+    closes_loop: ClassVar[bool] = False  # not before it is proven
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
 
     nudge_share: float = 0.4  # of the drive's torque limit, most the open-loop nudge may reach

@@ -18,6 +18,8 @@ class StepTest(Procedure):
     """
 
     name: ClassVar[str] = "other"
+    label: ClassVar[str] = "step-test"
+    closes_loop: ClassVar[bool] = False
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 
     torque: float = 1.25  # N·m, well above breakaway

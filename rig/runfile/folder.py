@@ -49,7 +49,7 @@ def _new_folder(root: Path, procedure: str, manifest: Manifest) -> Path:
     """The folder, empty and surely ours: two runs in one minute differ in their uid."""
     began = datetime.fromisoformat(manifest["started_utc"]).astimezone(UTC)
     serial = re.sub(r"[^A-Za-z0-9._-]+", "-", str(manifest.get("gear", {}).get("serial") or "no-serial"))
-    name = f"{began:%H%M}-{procedure.replace('_', '-')}-{serial}-{manifest['uid'][:4]}"
+    name = f"{began:%H%M}-{manifest.get('label') or procedure.replace('_', '-')}-{serial}-{manifest['uid'][:4]}"
     day = root / f"{began:%Y-%m-%d}"
     day.mkdir(parents=True, exist_ok=True)
     folder = day / name

@@ -60,9 +60,18 @@ def _load(kind: str, form: Format) -> Callable[[Run, Path], None]:
 
 
 def _target(run: Run, form: Format, target: Path | None) -> Path:
-    if target is None or target.is_dir():
-        return (target or run.path) / f"{run.name}{form.suffix}"
-    return target
+    name = f"{run.name}{form.suffix}"
+    if target is None:
+        return run.path / name
+    if target.suffix == form.suffix and not target.is_dir():
+        return target
+    if target.suffix and not target.is_dir():
+        raise UsageError(f"{target} ends in {target.suffix}, this format in {form.suffix}; give that, or a folder")
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DataError(f"{target} cannot be made: {error.strerror}") from error
+    return target / name
 
 
 @contextlib.contextmanager
