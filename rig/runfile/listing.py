@@ -62,7 +62,7 @@ def _row_of(folder: Path, about: Mapping[str, Any]) -> Row:
         status = "interrupted"
     return Row(
         started_utc=str(about.get("started_utc", "")),
-        procedure=str(about.get("procedure", "")),
+        procedure=str(about.get("label") or about.get("procedure", "")),
         gear=str((about.get("gear") or {}).get("serial", "")),
         status=status,
         duration=about.get("duration"),

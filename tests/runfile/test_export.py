@@ -132,8 +132,21 @@ def test_it_goes_where_it_is_told(run: Run, kind: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_place_that_cannot_be_written_is_a_sentence_and_leaves_nothing(run: Run, kind: str, tmp_path: Path) -> None:
-    with pytest.raises(DataError, match=r"gone/x cannot be written: No such file or directory"):
-        export(run, kind, tmp_path / "gone" / "x")
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(DataError, match=r"file/x cannot be made: Not a directory"):
+        export(run, kind, tmp_path / "file" / "x")
+    with pytest.raises(DataError, match=r"cannot be written: No such file or directory"):
+        export(run, kind, tmp_path / "gone" / f"x{FORMATS[kind].suffix}")
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_a_name_without_a_suffix_is_a_folder_and_a_wrong_suffix_is_refused(run: Run, kind: str, tmp_path: Path) -> None:
+    assert (
+        export(run, kind, tmp_path / "new" / "place")
+        == tmp_path / "new" / "place" / f"{run.name}{FORMATS[kind].suffix}"
+    )
+    with pytest.raises(UsageError, match=r"x\.xls ends in \.xls, this format in"):
+        export(run, kind, tmp_path / "x.xls")
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -146,7 +159,7 @@ def test_a_writer_that_fails_leaves_nothing_behind(
 
     monkeypatch.setattr(importlib.import_module(FORMATS[kind].module), "write", full)
     with pytest.raises(DataError, match="cannot be written: No space left on device"):
-        export(run, kind, tmp_path / "x")
+        export(run, kind, tmp_path / f"x{FORMATS[kind].suffix}")
     assert not [p for p in tmp_path.iterdir() if p.is_file()]
 
 
