@@ -48,7 +48,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     top.add_argument("verb", metavar="VERB", choices=list(CATALOGUE), help=argparse.SUPPRESS)
     verb = top.parse_args(args[:1] or ["--help"]).verb
     module = importlib.import_module(CATALOGUE[verb][0])
-    parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1])
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1], formatter_class=raw)
     module.arguments(parser)
     try:
         return int(module.run(parser.parse_args(args[1:])))

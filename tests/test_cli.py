@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -111,3 +112,18 @@ def test_the_formats_offered_are_those_there_are() -> None:
     from rig.runfile.export import FORMATS
 
     assert set(OFFERED) == set(FORMATS)
+
+
+def test_the_mapping_shown_by_import_help_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from rig.commands.import_ import EXAMPLE
+
+    lines = [line[2:] for line in EXAMPLE.splitlines() if line.startswith("  ")]
+    (tmp_path / "map.toml").write_text("\n".join(lines), encoding="utf-8")
+    rows = ["Time,motor,load"]
+    for k in range(2000):
+        theta_m = 0.02 * k
+        theta_l = theta_m / 50 - 1e-4 * math.sin(2 * theta_m)
+        rows.append(f"{4.0 * k},{int(theta_m / (2 * math.pi) * 10000)},{-math.degrees(theta_l):.6f}")
+    (tmp_path / "own.csv").write_text("\n".join(rows))
+    assert main(["import", str(tmp_path / "own.csv"), "--map", str(tmp_path / "map.toml"), "--out", str(tmp_path)]) == 0
+    assert "SN0042" in capsys.readouterr().out

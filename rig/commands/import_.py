@@ -5,9 +5,34 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+MAPPINGS = Path(__file__).parents[1] / "runfile" / "importing" / "mappings"
+EXAMPLE = """
+a mapping file says which column is what, for example:
+
+  schema = "hdrig.import/1"
+  procedure = "kinematic_error"
+  [gear]
+  ratio = 50
+  serial = "SN0042"
+  [channels.t]
+  column = "Time"
+  unit = "ms"
+  [channels.theta_m]
+  column = "motor"
+  unit = "counts"
+  counts_per_turn = 10000
+  [channels.theta_l]
+  column = "load"
+  unit = "deg"
+  sign = -1
+
+mappings that ship, to use by name or to copy from:
+"""
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig import`."""
+    parser.epilog = EXAMPLE + "\n".join(f"  {path.stem:16s} {path}" for path in sorted(MAPPINGS.glob("*.toml")))
     parser.add_argument("file", type=Path, metavar="FILE", help="CSV, Parquet, MAT, HDF5, MDF4 or TDMS")
     parser.add_argument(
         "--map", required=True, metavar="MAPPING", help="mapping file (TOML), or the name of one that ships"

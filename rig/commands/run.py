@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import fields
 
 from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments
 from rig.commands.perform import perform
@@ -17,7 +18,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join(CATALOGUE))
     bench_arguments(parser)
     procedure_arguments(parser)
+    parser.epilog = parameters_text()
     parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
+
+
+def parameters_text() -> str:
+    """Every procedure with its parameters and their defaults, for --help."""
+    lines = ["procedures and their parameters (--with NAME=VALUE, defaults shown):"]
+    for name in CATALOGUE:
+        kind = procedure_class(name)
+        shown = ", ".join(f"{f.name}={f.default}" for f in fields(kind))  # type: ignore[arg-type]
+        summary = (kind.__doc__ or "").strip().partition("\n")[0].split("      [")[0]
+        lines.append(f"  {name}\n      {summary}\n      {shown}")
+    return "\n".join(lines)
 
 
 def run(args: argparse.Namespace) -> int:
