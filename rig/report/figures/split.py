@@ -44,7 +44,7 @@ DRAWING = Drawing(
     "Direction split",
     "E is half the sum of both directions and is taken as the pure kinematic error. O is half their "
     "difference: wind-up under friction, lost motion, delay between the two encoders. "
-    "A constant part of O is the direction offset.",
+    "The constant part of O, the direction offset, is a figure of its own and is taken out here.",
     draw,
     say,
 )
