@@ -47,6 +47,9 @@ class Guard:
         self.ratio = ratio
         self.travel = min(limits.travel, 1.02 * envelope.travel + limits.following)
         self.twist = limits.twist if envelope.coupled else None
+        # not yet known to follow, or which way: still, the load must not go much farther than the motor may take it
+        self.load_travel = None if limits.twist is None else LOAD_MARGIN * self.travel / ratio
+        self.torque = min(limits.torque, envelope.torque)
         self.start: Sample | None = None
 
     def check(self, sample: Sample, asked: Torque) -> Trip | None:
@@ -63,11 +66,22 @@ class Guard:
             and -self.travel <= sample.theta_m - start.theta_m <= self.travel
             and (lim.shaft_torque is None or -lim.shaft_torque <= sample.tau_l <= lim.shaft_torque)
             and (self.twist is None or abs(self.twist_of(sample)) <= self.twist)
+            and (self.load_travel is None or abs(sample.theta_l - start.theta_l) <= self.load_travel)
+            and abs(asked.tau) < math.inf
             and not abs(asked.theta_ref - sample.theta_m)
             > lim.following + lim.following_time * abs(asked.omega_ref)  # NaN: no reference, nothing to follow
         ):
             return None
         return next(trip for rule in RULES if (trip := rule(self, sample, asked)) is not None)
+
+    def allowed(self, asked: Torque) -> Torque:
+        """The setpoint clipped to what bench and procedure allow: the one place every command passes. NaN becomes zero,
+        and the next check trips on it.
+        """
+        tau, limit = asked.tau, self.torque
+        if -limit <= tau <= limit:
+            return asked
+        return asked._replace(tau=math.copysign(limit, tau) if tau == tau else 0.0)
 
     def twist_of(self, sample: Sample) -> float:
         """θ_m/N − θ_l since the start [rad at the output]: what the gear has twisted, slipped, or an encoder lost."""
@@ -75,6 +89,7 @@ class Guard:
         return (sample.theta_m - start.theta_m) / self.ratio - (sample.theta_l - start.theta_l)
 
 
+LOAD_MARGIN = 2.0  # a wrong scale or sign is for the proof to find; a motor encoder that died is for the guard
 TORQUE_MARGIN = 1.1  # the drive's torque reading overshoots and is noisy; the command itself is clipped at the limit
 
 
@@ -138,6 +153,23 @@ def twist(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     )
 
 
+def load_travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """What the load encoder says of the travel, when the motor's may be dead."""
+    limit = guard.load_travel
+    moved = sample.theta_l - guard.start.theta_l if guard.start else 0.0
+    if limit is None or abs(moved) <= limit:
+        return None
+    sentence = f"load {moved / DEG:.2f}° from the start, limit ±{limit / DEG:.2f}°: does the motor encoder count?"
+    return Trip("load_travel", sentence)
+
+
+def asked_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+    """A procedure must ask for a number."""
+    if abs(asked.tau) < math.inf:
+        return None
+    return Trip("asked", f"the procedure asked for {asked.tau} N·m, expected a finite torque")
+
+
 def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     """The motor must stay near its reference; the allowance grows with the reference's speed."""
     error = asked.theta_ref - sample.theta_m
@@ -152,4 +184,15 @@ def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
 
 
 Rule = Callable[[Guard, Sample, Torque], Trip | None]
-RULES: tuple[Rule, ...] = (drive_fault, stale, speed, torque, shaft_torque, travel, twist, following)
+RULES: tuple[Rule, ...] = (
+    drive_fault,
+    stale,
+    speed,
+    torque,
+    shaft_torque,
+    travel,
+    load_travel,
+    twist,
+    asked_torque,
+    following,
+)

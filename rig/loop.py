@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from rig.control.brake import brake
 from rig.core.channels import Flag
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.guard import Guard
@@ -60,20 +60,26 @@ class Loop:
         self.interrupts = interrupts
         self.timing = timing
         self.watch = watch
+        self.running = False
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
         """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure, a recorder that failed)
         only after the drive was made safe.
         """
+        if self.interrupts.count:
+            code = Exit.STOPPED if self.interrupts.count == 1 else Exit.HALTED
+            return Ending("stopped", "stopped by the operator before anything was energised", code)
         try:
             self.instruments.start()
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable()
             self.supervisor.act(Act.RUN, procedure.name)
+            self.running = True
             ending = self._tick(procedure.steps(setting), setting)
-        except HdrigError as error:
+        except BaseException as error:
             self.instruments.safe()
-            self.supervisor.act(Act.TRIP, str(error))
+            refused = isinstance(error, NotReady)
+            self.supervisor.act(Act.FINISH if refused and self.running else Act.TRIP, str(error) or repr(error))
             raise
         finally:
             confirmed = self.instruments.safe()
@@ -81,7 +87,7 @@ class Loop:
 
     def _tick(self, steps: Steps, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
-        check, put, late = self.guard.check, self.sink.put, self.timing.add
+        check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
         period, start, k, stopping = setting.period, clock.now(), 0, False
         asked: Torque = next(steps)
         while True:
@@ -113,13 +119,17 @@ class Loop:
                 return Ending("stopped", "halted by the operator: torque off at once", Exit.HALTED)
             try:
                 asked = steps.send(sample)
+            except NotReady:
+                self.instruments.safe()
+                put(sample, 0.0, 0.0, asked.theta_ref)  # the sample it refused on is part of the run
+                raise
             except StopIteration as end:
                 self.instruments.safe()
                 put(sample, 0.0, 0.0, asked.theta_ref)
                 if stopping:
                     return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
                 return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
-            put(sample, asked.tau, write(asked), asked.theta_ref)
+            put(sample, asked.tau, write(allowed(asked)), asked.theta_ref)
             if k % WATCH_TICKS == 0:
                 self.sink.check()
                 self.watch(sample)

@@ -92,6 +92,9 @@ class Session:
     def run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
         """Run one procedure into a folder of its own. The folder is closed, with its status, on every way out."""
         self.check(procedure)
+        if self.interrupts.count:
+            code = Exit.STOPPED if self.interrupts.count == 1 else Exit.HALTED
+            raise Ended("stopped by the operator; nothing more was started", code)
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
         folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)

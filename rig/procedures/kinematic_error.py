@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from rig.control.pid import Pid
 from rig.control.profile import Triangle
+from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 
@@ -28,6 +29,12 @@ class KinematicError(Procedure):
     frequency: float = 0.01  # Hz
     cycles: float = 2.0
     settle: float = 0.5  # s at rest before and after: the loop takes hold of the measured position
+
+    def __post_init__(self) -> None:
+        if self.cycles * 2 % 1 != 0:
+            raise UsageError(
+                f"cycles = {self.cycles:g}: expected a multiple of 0.5, so that the reference ends where it began"
+            )
 
     @property
     def reference(self) -> Triangle:

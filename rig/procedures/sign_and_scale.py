@@ -18,6 +18,7 @@ DEG = math.pi / 180
 TURN = 2 * math.pi
 RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
 BLOCKS = 8  # stretches of the turn whose mean shaft torques tell how sure their mean is
+DEAD = 5.0  # times the motion looked for, by the load encoder: then the motor encoder should have shown it
 STEADY = 0.1  # of the nominal speed: a motor that nearly stops leaves any torque in the shaft
 SIGMAS = 5.0  # a torque difference counts as seen beyond this many standard errors
 
@@ -85,6 +86,7 @@ class SignAndScale(Procedure):
         """Ramp the torque until the motor moves; the right way, or not at all."""
         sample = yield Torque(0.0)
         home, limit, tau = sample.theta_m, self.nudge_share * setting.control.torque_limit, 0.0
+        load, dead = sample.theta_l, DEAD * self.nudge_deg * DEG / setting.ratio
         while abs(moved := sample.theta_m - home) < self.nudge_deg * DEG:
             tau += self.nudge_rate * setting.period
             if tau > limit:
@@ -93,6 +95,11 @@ class SignAndScale(Procedure):
                     "is it blocked, is the drive's torque scale right, is its encoder read?"
                 )
             sample = yield Torque(tau)
+            if abs(sample.theta_l - load) > dead:
+                raise NotReady(
+                    f"the load turned by {(sample.theta_l - load) / DEG:+.2f}° while the motor encoder shows "
+                    f"{(sample.theta_m - home) / DEG:+.2f}°: is the motor encoder read at all?"
+                )
         if moved < 0:
             raise NotReady(
                 f"{tau:.2f} N·m of positive torque turned the motor by {moved / DEG:+.1f}°, expected a positive angle: "
