@@ -15,7 +15,7 @@ from rig.config import BenchFile, load_text, nearest, read_bench
 from rig.control.filter import SpeedFilter
 from rig.control.pid import Gains
 from rig.core.clock import Clock, WallClock
-from rig.core.devices import Device
+from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
 from rig.core.procedure import Setting
 from rig.guard import DEG, RPM, Limits
@@ -23,6 +23,7 @@ from rig.instruments import Instruments
 
 BENCHES = Path(__file__).parent / "benches"  # benches that ship with hdrig
 ClockName = Literal["virtual", "wall"]
+ROLES: dict[str, Any] = {"drive": Drive, "load_encoder": Encoder, "torque_sensor": TorqueSensor}
 
 
 @dataclass(frozen=True)
@@ -95,11 +96,21 @@ class Bench:
         return self.file.twin.seed if self.file.twin else 0
 
     def _device(self, role: str, world: Any) -> Any:
+        make = self.device(role)
+        if make is None:
+            return None
+        return make(world) if world is not None else make(self.file)
+
+    def device(self, role: str) -> Callable[[Any], Device] | None:
+        """The class that fills a role, or None where the bench has none. Raises UsageError when it cannot."""
         section = getattr(self.file.devices, role)
         if section is None:
             return None
-        make = device_class(section.type, f"{self.source}: devices.{role}.type")
-        return make(world) if world is not None else make(self.file)
+        where = f"{self.source}: devices.{role}.type"
+        made = device_class(section.type, where)
+        if not (isinstance(made, type) and issubclass(made, ROLES[role])):
+            raise UsageError(f"{where} = '{section.type}': that device is no {role.replace('_', ' ')}")
+        return made
 
 
 def read(source: str, overrides: Iterable[str] = ()) -> Bench:
@@ -108,12 +119,18 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
     Raises UsageError: no such bench, an override that fits nothing, a key or value that is wrong.
     """
     path = Path(source) if source.endswith(".toml") or "/" in source else BENCHES / f"{source}.toml"
-    if not path.is_file() and path.parent == BENCHES:
+    if path.parent == BENCHES and source not in {p.stem for p in BENCHES.glob("*.toml")}:
         known = [p.stem for p in BENCHES.glob("*.toml")]
         raise UsageError(f"no bench called '{source}'; {nearest(source, known)}; or give the path of a .toml file")
-    text = override(load_text(path), list(overrides), str(path))
+    text = load_text(path)
+    assignments = list(overrides)
+    if assignments:
+        read_bench(text, str(path))  # what is wrong in the file itself is said first
+        text = override(text, assignments, str(path))
     bench = Bench(read_bench(text, str(path)), text, str(path))
     _check_together(bench)
+    for role in ROLES:
+        bench.device(role)
     return bench
 
 
@@ -124,6 +141,10 @@ def override(text: str, assignments: list[str], source: str, origin: str = "decl
     import tomlkit
 
     document = tomlkit.parse(text)
+
+    def keys(at: Any) -> list[str]:
+        return [str(key) for key in at] if isinstance(at, dict) else []
+
     for assignment in assignments:
         key, equals, value = assignment.partition("=")
         if not equals:
@@ -132,10 +153,10 @@ def override(text: str, assignments: list[str], source: str, origin: str = "decl
         *path, last = key.strip().split(".")
         for part in path:
             if not isinstance(at, dict) or part not in at:
-                raise UsageError(f"--set {assignment}: no section '{part}' in {source}; {nearest(part, at)}")
+                raise UsageError(f"--set {assignment}: no section '{part}' in {source}; {nearest(part, keys(at))}")
             at = at[part]
         if not isinstance(at, dict) or last not in at:
-            raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {nearest(last, at)}")
+            raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {nearest(last, keys(at))}")
         parsed = toml_value(value)
         if isinstance(at[last], dict) and "value" in at[last]:
             at[last]["value"], at[last]["from"] = parsed, origin
@@ -148,7 +169,7 @@ def toml_value(text: str) -> Any:
     """A value as TOML writes it; what is no TOML value is taken as a string."""
     try:
         return tomllib.loads(f"x = {text}")["x"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text.strip()
 
 
@@ -177,6 +198,11 @@ def _check_together(bench: Bench) -> None:
     for role in ("load_encoder", "torque_sensor"):
         if getattr(f.devices, role) and getattr(f, role) is None:
             raise UsageError(f"{bench.source}: devices.{role} needs a [{role}] section")
+    if f.twin and f.twin.watchdog * f.loop.rate < 3:
+        raise UsageError(
+            f"{bench.source}: the drive's watchdog of {f.twin.watchdog:g} s is under three periods of the loop "
+            f"({3 / f.loop.rate:g} s at {f.loop.rate:g} Hz)"
+        )
     if f.torque_sensor and f.limits.shaft_torque > f.torque_sensor.range:
         raise UsageError(
             f"{bench.source}: limits.shaft_torque = {f.limits.shaft_torque:g} N·m is beyond the torque sensor's "

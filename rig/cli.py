@@ -7,10 +7,12 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from typing import TextIO, cast
 
 from rig import __version__
 from rig.commands import CATALOGUE
 from rig.core.errors import Exit, HdrigError
+from rig.streams import Tolerant
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
@@ -33,10 +35,29 @@ def overview() -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one verb; the exit code."""
+    """Run one verb; the exit code. Output that vanishes does not change it."""
     # our matrices are small: a second BLAS thread only spins beside the loop and the recorder
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    args = list(sys.argv[1:] if argv is None else argv)
+    out, err = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = cast(TextIO, Tolerant(out)), cast(TextIO, Tolerant(err))
+    try:
+        return _verb(list(sys.argv[1:] if argv is None else argv))
+    except HdrigError as error:
+        print(f"hdrig: {error}", file=sys.stderr)
+        return int(error.exit)
+    except KeyboardInterrupt:
+        print("hdrig: interrupted", file=sys.stderr)
+        return int(Exit.HALTED)
+    except Exception as error:  # noqa: BLE001 - the way out: the drive is safe by now, the person gets a sentence
+        print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
+        return int(Exit.INTERNAL)
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        sys.stdout, sys.stderr = out, err
+
+
+def _verb(args: list[str]) -> int:
     top = Parser(
         prog="hdrig",
         usage="hdrig VERB …",
@@ -51,16 +72,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     raw = argparse.RawDescriptionHelpFormatter
     parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1], formatter_class=raw)
     module.arguments(parser)
-    try:
-        return int(module.run(parser.parse_args(args[1:])))
-    except HdrigError as error:
-        print(f"hdrig: {error}", file=sys.stderr)
-        return int(error.exit)
-    except KeyboardInterrupt:
-        print("hdrig: interrupted", file=sys.stderr)
-        return int(Exit.HALTED)
-    except BrokenPipeError:
-        return int(Exit.PASS)  # the reader of our output left: `hdrig list | head`
+    return int(module.run(parser.parse_args(args[1:])))
+
+
+def _where(error: Exception) -> str:
+    """Kind, text and place of an error nobody foresaw, on one line."""
+    at = error.__traceback__
+    while at is not None and at.tb_next is not None:
+        at = at.tb_next
+    place = f" in {at.tb_frame.f_code.co_filename}, line {at.tb_lineno}" if at is not None else ""
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text[:200]}{place}"
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from rig.core.errors import UsageError
 
 PROVENANCE = ("paper", "catalogue", "assumed", "measured", "declared")
 QUANTITY_KEYS = {"value", "unit", "from", "note"}
+LARGEST = 10**300  # an integer beyond this is no measurement
 PLAIN_UNITS = {"N.m": "N·m", "Nm": "N·m", "kg.m2": "kg·m²", "kg m^2": "kg·m²"}  # spellings of the same unit
 
 
@@ -52,12 +53,14 @@ class Strict(BaseModel):
             if "value" not in raw:
                 raise ValueError(f'{key} has no value; expected {{ value = …, unit = "{wanted}", from = … }}')
             unit = raw.get("unit", wanted)
-            if PLAIN_UNITS.get(unit, unit) != wanted:
+            if not isinstance(unit, str) or PLAIN_UNITS.get(unit, unit) != wanted:
                 raise ValueError(f"{key} = {raw['value']} {unit}: expected the unit {wanted}")
             if raw.get("from", "declared") not in PROVENANCE:
                 raise ValueError(f"{key} is from '{raw['from']}'; expected one of {', '.join(PROVENANCE)}")
             value = raw["value"]
         if field is not None and field.annotation is float and isinstance(value, int) and not isinstance(value, bool):
+            if abs(value) > LARGEST:
+                raise ValueError(f"{key} has {len(str(abs(value)))} digits; expected a number in {wanted}")
             return float(value)
         return value
 
@@ -104,13 +107,13 @@ class MotorSection(Strict):
 
     torque_rated: Annotated[float, _quantity("N·m", **Positive)]
     torque_limit: Annotated[float, _quantity("N·m", **Positive)]
-    counts_per_turn: Annotated[int, _quantity("counts", gt=0)]
+    counts_per_turn: Annotated[int, _quantity("counts", gt=0, le=2**40)]
 
 
 class EncoderSection(Strict):
     """[load_encoder]"""
 
-    counts_per_turn: Annotated[int, _quantity("counts", gt=0)]
+    counts_per_turn: Annotated[int, _quantity("counts", gt=0, le=2**40)]
 
 
 class TorqueSensorSection(Strict):
@@ -147,14 +150,17 @@ class TwinKinematicError(Strict):
 
     provenance: str = Field(alias="from", default="declared")
     note: str = ""
-    C_deg: list[float] = Field(min_length=1)
-    psi_deg: list[float] = Field(min_length=1)
+    C_deg: list[Annotated[float, Field(allow_inf_nan=False)]] = Field(min_length=1)
+    psi_deg: list[Annotated[float, Field(allow_inf_nan=False)]] = Field(min_length=1)
 
     @model_validator(mode="before")
     @classmethod
-    def _floats(cls, raw: dict[str, Any]) -> dict[str, Any]:
-        lists = {k: [float(x) for x in raw[k]] for k in ("C_deg", "psi_deg") if isinstance(raw.get(k), list)}
-        return {**raw, **lists}
+    def _floats(cls, raw: Any) -> Any:
+        """Whole numbers will do; what is no number is left for the field to refuse."""
+        if not isinstance(raw, dict):
+            return raw
+        lists = {k: raw[k] for k in ("C_deg", "psi_deg") if isinstance(raw.get(k), list)}
+        return {**raw, **{k: [float(x) if type(x) is int else x for x in xs] for k, xs in lists.items()}}
 
     @model_validator(mode="after")
     def _same_length(self) -> TwinKinematicError:
@@ -174,7 +180,7 @@ class TwinSection(Strict):
     omega_s: Annotated[float, _quantity("rad/s", **Positive)]
     F_cl: Annotated[float, _quantity("N·m", **NotNegative)]
     friction_noise: Annotated[float, _quantity("1", ge=0, le=0.3)]
-    friction_noise_s: Annotated[float, _quantity("s", **Positive)]
+    friction_noise_s: Annotated[float, _quantity("s", ge=0.001, le=1e6)]
     tau_drive: Annotated[float, _quantity("s", **NotNegative)]
     torque_resolution: Annotated[float, _quantity("N·m", **NotNegative)]
     torque_noise: Annotated[float, _quantity("N·m", **NotNegative)]
@@ -209,8 +215,8 @@ def read_bench(text: str, source: str) -> BenchFile:
     """The bench file in `text`; `source` is what errors call it. Raises UsageError, one sentence."""
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UsageError(f"{source} is not valid TOML: {error}") from None
+    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, and endless nesting
+        raise UsageError(f"{source} is not valid TOML: {str(error).splitlines()[0]}") from None
     try:
         return BenchFile.model_validate(raw)
     except ValidationError as error:
@@ -250,7 +256,9 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             return f"{'.'.join(path)}: {first['ctx']['error']}" if path else str(first["ctx"]["error"])
         case _:
             expected = first["msg"].removeprefix("Input should be ")
-            return f"{key} = {first['input']!r}{_unit_note(model, path)}: expected {expected}"
+            shown = repr(first["input"])
+            shown = shown if len(shown) <= 60 else shown[:57] + "..."
+            return f"{key} = {shown}{_unit_note(model, path)}: expected {expected}"
 
 
 def _model_at(model: type[BaseModel], path: list[str]) -> type[BaseModel]:

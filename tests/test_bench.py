@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
+import drivers
 from rig.bench import read
 from rig.core.clock import WallClock
 from rig.core.errors import UsageError
@@ -33,6 +35,11 @@ def test_an_override_changes_one_number_says_so_and_keeps_the_rest() -> None:
         (["devices.load_encoder.type=cia406"], ["real and simulated devices on one bench"]),
         (["limits.shaft_torque=60"], ["60 N·m", "range of 50 N·m"]),
         (["nothing.here=1"], ["no section 'nothing'"]),
+        (["devices.load_encoder.type=twin.drive"], ["that device is no load encoder"]),
+        (["loop.rate=20"], ["watchdog", "three periods"]),
+        (["control.Kp.value.x=5"], ["no key"]),
+        (["control.Kp=1" + "0" * 400], ["digits"]),
+        (["twin.friction_noise_s=1e-30"], ["friction_noise_s", "0.001"]),
     ],
 )
 def test_what_cannot_be_is_refused(assignments: list[str], words: list[str]) -> None:
@@ -42,9 +49,15 @@ def test_what_cannot_be_is_refused(assignments: list[str], words: list[str]) -> 
         assert word in str(refusal.value)
 
 
-def test_the_clock_is_the_world_or_the_wall_and_never_virtual_on_real_devices() -> None:
+def test_the_clock_is_the_world_or_the_wall_and_never_virtual_on_real_devices(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert isinstance(read("twin").open("virtual").clock, World)
     assert isinstance(read("twin").open("wall").clock, WallClock)
-    real = ["devices.drive.type=x", "devices.load_encoder.type=x", "devices.torque_sensor.type=x"]
+    monkeypatch.setattr(drivers, "CATALOGUE", {"real.drive": "sim.drive:TwinDrive"})
+    text = read("twin").text.replace('"twin.drive"', '"real.drive"')
+    text = text.replace('[devices.load_encoder]\ntype = "twin.load_encoder"\n', "")
+    text = text.replace('[devices.torque_sensor]\ntype = "twin.torque_sensor"\n', "")
+    (tmp_path / "real.toml").write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match="only on the twin"):
-        read("twin", real).open("virtual")
+        read(str(tmp_path / "real.toml")).open("virtual")

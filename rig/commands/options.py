@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ from rig.bench import Bench, ClockName, read, toml_value
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
+
+LONGEST = 31 * 86400.0  # s
 
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +68,10 @@ def make_procedure(kind: type[Procedure], assignments: list[str]) -> Procedure:
         if isinstance(value, float | int) and not isinstance(value, bool) and value <= 0:
             raise UsageError(f"{name} = {text}: expected more than 0, for example {default}")
         values[name] = value
-    return kind(**values)
+    try:
+        return kind(**values)
+    except (OverflowError, ZeroDivisionError):
+        raise UsageError(f"{kind.name}: the parameters {', '.join(assignments)} cannot be meant") from None
 
 
 def a_word(kind: type) -> str:
@@ -73,6 +79,17 @@ def a_word(kind: type) -> str:
     return {float: "a finite number", int: "a whole number", str: "text", bool: "true or false"}.get(
         kind, kind.__name__
     )
+
+
+def sensible(bench: Bench, procedure: Procedure) -> None:
+    """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
+    try:
+        envelope = procedure.envelope(bench.setting(lambda text: None))
+        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
+    except (OverflowError, ZeroDivisionError):
+        finite = False
+    if not finite or not 0 < envelope.duration < LONGEST:
+        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
 
 
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:

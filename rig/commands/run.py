@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 
-from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments
+from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments, sensible
 from rig.commands.perform import perform
 from rig.config import nearest
 from rig.core.errors import UsageError
@@ -40,8 +40,9 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, CATALOGUE)}")
     bench, clock = open_bench(args)
     procedure = make_procedure(procedure_class(name), args.parameters)
+    sensible(bench, procedure)
     if args.dry_run:
         print("\n".join(plan_lines(bench, procedure)))
         refuse_beyond_limits(bench, procedure)
         return 0
-    return perform(bench, clock, procedure, args.out, args.note)
+    return perform(bench, clock, procedure, args.out, args.note.encode("utf-8", "replace").decode())

@@ -45,6 +45,8 @@ def run(args: argparse.Namespace) -> int:
     bench, clock = open_bench(args)
     if args.write is not None and args.write.exists():
         raise UsageError(f"{args.write} exists already; give the name of a new file")
+    if args.write is not None and not args.write.parent.is_dir():
+        raise UsageError(f"{args.write.parent} is no folder; the bench file could not be written there")
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
@@ -55,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
         best = _search(session, candidates)
         # the gains there were come last: if they trip the guard, nothing is left to do that a trip would prevent
-        before = _trial(session, bench)
+        before = _trial(session, bench, last=True)
     print(f"before: {describe(bench, before)}")
     if best is None:
         print(f"FAIL: no bandwidth up to {BANDWIDTHS[-1]:g} rad/s turned the motor smoothly")
@@ -104,8 +106,10 @@ def _search(session: Session, candidates: list[Bench]) -> tuple[Bench, Smoothnes
     return None
 
 
-def _trial(session: Session, bench: Bench) -> Smoothness | str:
-    """A short slow triangle with these gains; a sentence where it tells nothing of smoothness."""
+def _trial(session: Session, bench: Bench, last: bool = False) -> Smoothness | str:
+    """A short slow triangle with these gains; a sentence where it tells nothing of smoothness. Raises Ended when it
+    was stopped, or tripped and is not the `last`: nothing enables a tripped drive again by itself.
+    """
     from rig.analysis.trial import smoothness_of
     from rig.runfile.run import Run
 
@@ -113,6 +117,8 @@ def _trial(session: Session, bench: Bench) -> Smoothness | str:
     done = session.run(TRIAL)
     if done.ending.exit in (Exit.STOPPED, Exit.HALTED):
         raise Ended(f"tuning was ended: {done.ending.reason}", done.ending.exit)
+    if done.ending.exit is not Exit.PASS and not last:
+        raise Ended(f"a trial tripped: {done.ending.reason}", done.ending.exit)
     if done.ending.exit is not Exit.PASS:
         return done.ending.reason
     return smoothness_of(Run.open(done.folder)) or "the motor made no whole turn"
