@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Any
 
 from rig.core.errors import RecorderError
-from rig.runfile.manifest import told, utc_now
+from rig.runfile.manifest import parse, told, utc_now
 
 NAME = "events.jsonl"
 
@@ -28,7 +28,7 @@ class EventLog:
         """One event. `kind` is state, trip, operator, note …; `t` is run time [s] if known. Raises RecorderError."""
         line = json.dumps({"t": t, "utc": self._utc(), "kind": kind, "text": text, **more}, ensure_ascii=False)
         with told(RecorderError, f"events of the run cannot be written to {self.path}"):
-            self._file.write(line.encode() + b"\n")
+            self._file.write(line.encode(errors="replace") + b"\n")
 
     def close(self) -> None:
         """Idempotent."""
@@ -42,7 +42,7 @@ class EventLog:
 
 
 def read_events(folder: Path) -> list[dict[str, Any]]:
-    """The events of a run in order; none where there is no file. A line torn by a kill is left out."""
+    """The events of a run in order; none where there is no file. A line torn by a kill, or no object, is left out."""
     try:
         lines = (folder / NAME).read_bytes().split(b"\n")
     except FileNotFoundError:
@@ -50,9 +50,11 @@ def read_events(folder: Path) -> list[dict[str, Any]]:
     found = []
     for line in lines:
         try:
-            found.append(json.loads(line))
+            event = parse(line)
         except ValueError:
             continue
+        if isinstance(event, dict):
+            found.append(event)
     return found
 
 

@@ -9,6 +9,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from rig.core.errors import DataError, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
@@ -18,6 +21,7 @@ from rig.runfile.process import sole_writer, this_process
 
 STEPS = ("claim", "drain", "archive", "timing", "hash", "protect", "status")
 READ_ONLY = 0o444
+NOWHERE = "/nonexistent"  # the ring of a run that has none
 PATIENCE = 5.0  # s for a killed recorder to be gone altogether
 
 StepHook = Callable[[str], None]
@@ -32,6 +36,7 @@ class Closed(NamedTuple):
     from_ring: int  # rows that were still in shared memory
     torn_bytes: int  # of the journal, half written when it was killed
     missing: int  # rows that should lie between two batches and do not
+    lost: int = 0  # rows the loop made that are nowhere
 
 
 def finalise(
@@ -40,13 +45,17 @@ def finalise(
     reason: str,
     *,
     timing: Mapping[str, Any] | None = None,
+    expected_rows: int | None = None,
     step: StepHook = lambda name: None,
     **facts: Any,
 ) -> Closed:
     """Make a run that has ended readable, checked and read-only.
 
     `status` is completed, stopped, tripped or interrupted, `reason` a sentence; `timing` goes to timing.json, `facts`
-    are further keys of the manifest. Raises UsageError when the run is closed already, DataError when a file cannot be
+    are further keys of the manifest. `expected_rows` is how many the loop put: where fewer are found the run ends as
+    interrupted, whatever `status` says, and the reason gives both numbers.
+
+    Raises UsageError when the run is closed already, DataError when a file cannot be
     written; it can then be called again, or `recover` later.
     """
     about = manifest.read(folder)
@@ -54,13 +63,17 @@ def finalise(
         raise UsageError(f"{folder} is closed already, as {about['status']}: {about.get('exit_reason', '')}")
     if status not in manifest.ENDINGS:
         raise UsageError(f"a run cannot end as {status!r}, expected one of {', '.join(manifest.ENDINGS)}")
+    if not Path(about.get("ring") or NOWHERE).exists():
+        _refuse_fewer_rows(folder)
+    if expected_rows is not None:
+        facts["rows_expected"] = expected_rows
     with manifest.told(DataError, f"{folder} cannot be closed"), sole_writer(folder, PATIENCE):
         return _close(folder, status, reason, timing, facts, step)
 
 
 def is_closed(about: Mapping[str, Any]) -> bool:
     """True when every step was done."""
-    return about.get("status") != "running" and archive.NAME in about.get("files", {}) and "closing" not in about
+    return about.get("status") != "running" and archive.NAME in (about.get("files") or {}) and "closing" not in about
 
 
 def _close(
@@ -74,12 +87,20 @@ def _close(
     step("claim")
     ended = manifest.utc_now()
     _remove_parts(folder)
-    about = manifest.update(folder, process=this_process(), closing={"status": status, "reason": reason})
+    closing = {"status": status, "reason": reason}
+    told = {key: facts[key] for key in ("rows_expected",) if key in facts}  # needed by whoever closes it if we die
+    about = manifest.update(folder, **told, process=this_process(), closing=closing)
     step("drain")
     from_ring = drain(folder, about)
     step("archive")
+    _refuse_fewer_rows(folder)
     reader = JournalReader(folder)
     held = archive.write_archive(folder, archive.row_groups(reader), schema(about.get("backend", "")))
+    lost = lost_rows(about, held.rows)
+    if lost:
+        status = "interrupted"
+        expected = about["rows_expected"]
+        reason = f"{reason}; but of the {expected} rows the loop made {held.rows} are here and {lost} are lost"
     step("timing")
     if timing is not None:
         manifest.write_atomic(folder / "timing.json", json.dumps(timing, indent=1).encode() + b"\n")
@@ -93,7 +114,27 @@ def _close(
     step("status")
     done = {"ring": None, "process": None, "closing": None}
     manifest.update(folder, status=status, exit_reason=reason, ended_utc=about.get("ended_utc", ended), **done)
-    return Closed(held.rows, held.seconds, from_ring, reader.torn_bytes, reader.missing)
+    return Closed(held.rows, held.seconds, from_ring, reader.torn_bytes, reader.missing, lost)
+
+
+def lost_rows(about: Mapping[str, Any], rows: int) -> int:
+    """Of the rows the loop said it put, how many are not among those found; 0 where it said nothing."""
+    expected = about.get("rows_expected")
+    return max(0, expected - rows) if isinstance(expected, int) else 0
+
+
+def _refuse_fewer_rows(folder: Path) -> None:
+    """Raises DataError when the journal cannot stand in for the archive that is there: it would be lost."""
+    path = folder / archive.NAME
+    if not path.exists():
+        return
+    try:
+        held = pq.read_metadata(path).num_rows
+    except (OSError, pa.ArrowException) as error:
+        raise DataError(f"{path} cannot be read, and is not overwritten; move it away and try again") from error
+    rows = sum(batch.num_rows for batch in JournalReader(folder))
+    if rows < held or not journal_files(folder):
+        raise DataError(f"{path} holds {held} rows, the journal {rows}: it is not overwritten")
 
 
 def drain(folder: Path, about: Mapping[str, Any]) -> int:
@@ -101,7 +142,7 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
 
     The ring goes only when they are on disk, so this can be done again.
     """
-    path = Path(about.get("ring") or "/nonexistent")
+    path = Path(about.get("ring") or NOWHERE)
     if not path.exists():
         return 0
     ring = Ring.attach(path)

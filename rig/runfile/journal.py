@@ -7,6 +7,7 @@ missing. What a kill tore off at the end is not read and not removed: nothing is
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import os
 from collections.abc import Iterator
@@ -44,7 +45,7 @@ class JournalWriter:
             sync_folder(folder)
         except OSError:
             os.close(self._file)
-            self.path.unlink()
+            self.path.unlink(missing_ok=True)
             raise
 
     def append(self, batch: pa.RecordBatch) -> None:
@@ -54,8 +55,11 @@ class JournalWriter:
         self.rows += batch.num_rows
 
     def sync(self) -> None:
-        """Wait until everything appended is on disk. Raises OSError."""
+        """Wait until everything appended is on disk. Raises OSError, also when the file was removed or cut."""
         os.fdatasync(self._file)
+        state = os.fstat(self._file)
+        if not state.st_nlink or state.st_size < self._end:
+            raise FileNotFoundError(errno.ENOENT, "somebody removed or cut it while it was written", str(self.path))
 
     def close(self) -> None:
         """Write the stream's end and make it safe. Raises OSError; the file is closed either way."""

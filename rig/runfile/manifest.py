@@ -16,14 +16,23 @@ SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
 ENDINGS = ("completed", "stopped", "tripped", "interrupted")
 
+DEPTH = 64  # of lists and objects in one another; ours have 5, and what recurses over a hundred times more fails
+OBJECTS = (
+    "gear", "declared", "conditions", "encoders", "software", "clock", "files", "process", "closing",
+)  # fmt: skip
+STRINGS = ("backend", "status", "exit_reason", "started_utc", "ring", "uid")
+
 Manifest = dict[str, Any]
 
 
 def read(folder: Path) -> Manifest:
-    """The manifest of `folder`. Raises UsageError when there is none, or it is not JSON of this schema."""
+    """The manifest of `folder`; a null is as good as an absent key.
+
+    Raises UsageError when there is none, it is not JSON of this schema, or a key holds what it cannot.
+    """
     path = folder / NAME
     try:
-        found = json.loads(path.read_bytes())
+        found = parse(path.read_bytes())
     except FileNotFoundError:
         raise UsageError(f"{folder} is not a run folder: it has no {NAME}") from None
     except OSError as error:
@@ -33,7 +42,46 @@ def read(folder: Path) -> Manifest:
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
         got = found.get("schema") if isinstance(found, dict) else type(found).__name__
         raise UsageError(f'{path} has schema {json.dumps(got)}, expected "{SCHEMA}"')
+    found = {key: value for key, value in found.items() if value is not None}
+    _refuse_other_kinds(path, found)
     return found
+
+
+def parse(data: bytes) -> Any:
+    """JSON as files hold it, in strings that can be written again. Raises ValueError, also when nested too deeply."""
+    try:
+        found = json.loads(data)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+    _refuse_depth(found)
+    if b"\\ud" in data.lower() or b"\xed" in data:  # perhaps half a surrogate pair, which no file can hold
+        found = json.loads(json.dumps(found, ensure_ascii=False).encode(errors="replace"))
+    return found
+
+
+def _refuse_depth(found: Any) -> None:
+    level = [found]
+    for _ in range(DEPTH):
+        inner = [v.values() if isinstance(v, dict) else v for v in level if isinstance(v, dict | list)]
+        level = [value for values in inner for value in values]
+        if not level:
+            return
+    raise ValueError("nested too deeply")
+
+
+def _refuse_other_kinds(path: Path, found: Manifest) -> None:
+    for names, kind, word in ((OBJECTS, dict, "an object"), (STRINGS, str, "text")):
+        for name in names:
+            if name in found and not isinstance(found[name], kind):
+                raise UsageError(f"{path}: {name} is {_short(found[name])}, expected {word}")
+    for name, entry in found.get("files", {}).items():
+        if not isinstance(entry, dict):
+            raise UsageError(f"{path}: files.{name} is {_short(entry)}, expected an object")
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def write(folder: Path, manifest: Mapping[str, Any]) -> None:

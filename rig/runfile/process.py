@@ -9,7 +9,7 @@ import platform
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any, TypedDict, cast
 
 from rig.core.errors import NotReady
 
@@ -39,7 +39,9 @@ def this_process() -> Process:
 def lives(process: Process) -> bool:
     """True when `process` runs on this machine now. One of another host cannot be seen and counts as dead."""
     pid, since = process.get("pid", 0), process.get("started", 0)
-    if pid <= 0 or process.get("host") != platform.node():
+    if not isinstance(pid, int) or not isinstance(since, int) or not 0 < pid < 2**31:
+        return False  # what somebody else wrote
+    if process.get("host") != platform.node():
         return False
     if since or Path("/proc/self/stat").exists():
         return since != 0 and started(pid) == since
@@ -48,7 +50,8 @@ def lives(process: Process) -> bool:
 
 def is_being_made(about: Mapping[str, Any]) -> bool:
     """True when the program that writes the run of this manifest, or closes it, lives."""
-    return bool(about.get("process")) and lives(about["process"])
+    process = about.get("process")
+    return isinstance(process, dict) and lives(cast(Process, process))
 
 
 def _answers(pid: int) -> bool:

@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rig.core.errors import DataError, NotReady
+from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.ring import Ring
-from rig.runfile import manifest
+from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events
-from rig.runfile.finalise import Closed, StepHook, finalise, is_closed
+from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed
+from rig.runfile.journal import journal_files
 from rig.runfile.process import Process, lives
+from rig.runfile.run import ratio_of
 
 
 class Recovery(NamedTuple):
@@ -31,10 +33,15 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     UsageError when it is no run folder; DataError when it cannot be written.
     """
     about = manifest.read(folder)
+    rows, seconds = about.get("rows", 0), about.get("duration", 0.0)
     if is_closed(about):
-        rows, seconds = about.get("rows", 0), about.get("duration", 0.0)
-        done = f"{folder.name} is closed already, as {about['status']}, with {rows} rows: nothing to recover"
+        done = f"{folder.name} is closed already, as {about.get('status')}, with {rows} rows: nothing to recover"
         return Recovery(rows, seconds, False, done)
+    if _is_whole(folder, about):
+        done = f"{folder.name} has its {archive.NAME}, and neither a journal nor a ring: nothing to recover"
+        return Recovery(rows, seconds, False, done)
+    ratio_of(folder, about)
+    _refuse_empty(folder, about)
     _refuse_living(folder, about)
     reason = _reason(about)
     with manifest.told(DataError, f"{folder} cannot be recovered"):
@@ -46,11 +53,27 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     return Recovery(closed.rows, closed.seconds, True, _told(folder, closed))
 
 
+def _is_whole(folder: Path, about: Mapping[str, Any]) -> bool:
+    """Samples and nothing they could be made of again: a folder of somebody else, or imported."""
+    return (folder / archive.NAME).exists() and not journal_files(folder) and not _ring(about).exists()
+
+
+def _refuse_empty(folder: Path, about: Mapping[str, Any]) -> None:
+    """Raises UsageError when nothing is there to be recovered. A run of ours killed before its first row is closed."""
+    ours = about.get("status") == "running" and "uid" in about and "process" in about
+    if not ours and not journal_files(folder) and not _ring(about).exists():
+        raise UsageError(f"{folder} has no samples: neither {archive.NAME} nor a journal; nothing to recover")
+
+
+def _ring(about: Mapping[str, Any]) -> Path:
+    return Path(about.get("ring") or NOWHERE)
+
+
 def _refuse_living(folder: Path, about: Mapping[str, Any]) -> None:
     loop = about.get("process")
-    if loop and loop["pid"] != os.getpid() and lives(loop):  # our own try to close it may have failed
+    if loop and loop.get("pid") != os.getpid() and lives(loop):  # our own try to close it may have failed
         raise NotReady(f"{folder.name} is still being made by process {loop['pid']}; stop that first")
-    ring = Path(about.get("ring") or "/nonexistent")
+    ring = _ring(about)
     if ring.exists():
         recorder = _recorder_of(ring, loop)
         if lives(recorder):
@@ -63,7 +86,7 @@ def _recorder_of(path: Path, loop: Process | None) -> Process:
     ring = Ring.attach(path)
     pid, started = ring.reader
     ring.close()
-    return Process(pid=pid, started=started, host=loop["host"] if loop else "")
+    return Process(pid=pid, started=started, host=str(loop.get("host", "")) if loop else "")
 
 
 def _reason(about: Mapping[str, Any]) -> str:
@@ -71,10 +94,11 @@ def _reason(about: Mapping[str, Any]) -> str:
     closing, said = about.get("closing"), about.get("exit_reason")
     if about.get("status") != "running" and said:
         return str(said)  # the recorder outlived the loop and said so
-    if closing and closing["status"] != "interrupted":
-        return f"killed while its files were being closed; the run itself was {closing['status']}: {closing['reason']}"
+    if closing and closing.get("status") != "interrupted":
+        was = f"{closing.get('status')}: {closing.get('reason')}"
+        return f"killed while its files were being closed; the run itself was {was}"
     if closing:
-        return str(closing["reason"])
+        return str(closing.get("reason"))
     return f"the program was killed or the power failed; found dead and recovered {manifest.utc_now()}"
 
 
@@ -86,4 +110,6 @@ def _told(folder: Path, closed: Closed) -> str:
         parts.append(f"the last {closed.torn_bytes} bytes of the journal were half a batch and are left out")
     if closed.missing:
         parts.append(f"{closed.missing} rows are missing in between")
+    if closed.lost:
+        parts.append(f"{closed.lost} of the {closed.rows + closed.lost} rows the loop made are lost")
     return "; ".join(parts)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
 import numpy as np
 import pyarrow as pa
@@ -17,6 +17,7 @@ from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
 from rig.runfile.samples import Samples, open_samples
 
+LARGEST: Final = 2**1023  # a larger whole number is no float64
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
 
 
@@ -27,7 +28,7 @@ class Run:
         self.path = path
         self.manifest = manifest
         self.samples = samples
-        self.ratio = _ratio(path, manifest)
+        self.ratio = ratio_of(path, manifest)
         self.procedure = _procedure(path, manifest)
 
     @classmethod
@@ -79,9 +80,10 @@ class Run:
     def timing(self) -> Mapping[str, Any]:
         """Loop statistics of timing.json; empty when there are none."""
         try:
-            return dict(json.loads((self.path / "timing.json").read_bytes()))
+            found = manifests.parse((self.path / "timing.json").read_bytes())
         except (OSError, ValueError):
             return {}
+        return found if isinstance(found, dict) else {}
 
     def has(self, name: str) -> bool:
         """True when the channel is there and was measured at least once."""
@@ -117,18 +119,27 @@ class Run:
         return str((field.metadata or {}).get(key, b"").decode(errors="replace"))
 
 
-def _ratio(path: Path, about: Mapping[str, Any]) -> float:
+def ratio_of(path: Path, about: Mapping[str, Any]) -> float:
+    """gear.ratio of the manifest `about` of the run at `path`. Raises UsageError when it is none."""
     gear = about.get("gear")
     ratio = gear.get("ratio") if isinstance(gear, dict) else None
-    if not isinstance(ratio, int | float) or isinstance(ratio, bool) or not math.isfinite(ratio) or ratio <= 0:
-        raise UsageError(f"{path / manifests.NAME}: gear.ratio is {json.dumps(ratio)}, expected a number above 0")
-    return float(ratio)
+    number = float(ratio) if _is_number(ratio) else math.nan
+    if not math.isfinite(number) or number <= 0:
+        said = json.dumps(ratio)[:60]
+        raise UsageError(f"{path / manifests.NAME}: gear.ratio is {said}, expected a number above 0")
+    return number
+
+
+def _is_number(value: Any) -> TypeGuard[int | float]:
+    if isinstance(value, int):
+        return not isinstance(value, bool) and abs(value) <= LARGEST
+    return isinstance(value, float)
 
 
 def _procedure(path: Path, about: Mapping[str, Any]) -> str:
     procedure = about.get("procedure")
     if not isinstance(procedure, str) or not procedure:
-        raise UsageError(f"{path / manifests.NAME}: procedure is {json.dumps(procedure)}, expected its name")
+        raise UsageError(f"{path / manifests.NAME}: procedure is {json.dumps(procedure)[:60]}, expected its name")
     return procedure.replace("-", "_")
 
 

@@ -48,8 +48,8 @@ class Archive(Samples):
         self.path = path
         with _read(path):
             file = pq.ParquetFile(path)
+            self.layout = file.schema_arrow
         self._about = file.metadata
-        self.layout = file.schema_arrow
         self.rows = self._about.num_rows
 
     def column(self, name: str) -> Array:
@@ -109,6 +109,10 @@ def open_samples(folder: Path) -> Samples:
         found = Journal(folder)
     else:
         raise UsageError(f"{folder} has no samples: neither {NAME} nor a journal")
+    names = found.layout.names
+    for name in names:
+        if names.count(name) > 1:
+            raise UsageError(f"{found.path} has {names.count(name)} columns named {name}, expected one")
     for field in found.layout:
         _refuse_other_units(found.path, field)
     return found
@@ -132,4 +136,4 @@ def _read(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, pa.ArrowException) as error:
-        raise DataError(f"{path} cannot be read: {str(error).splitlines()[0]}") from error
+        raise DataError(f"{path} cannot be read: {(str(error) or type(error).__name__).splitlines()[0]}") from error

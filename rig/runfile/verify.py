@@ -12,7 +12,7 @@ from rig.core.channels import Flag
 from rig.core.errors import HdrigError
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
-from rig.runfile.finalise import describe, is_closed, raw_files
+from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.journal import JournalReader, journal_files
 from rig.runfile.process import is_being_made
 from rig.runfile.run import Run
@@ -20,6 +20,7 @@ from rig.runfile.samples import Archive
 
 GAP = 1.5  # periods between two rows that are still neighbours
 LOST = 1.9  # periods from which a row may really be gone: a late tick alone stays below two
+REFUSED = 1  # ticks without a row: the one in which a procedure refused to go on
 MAKE_UP = 5  # rows within which a late tick has been made up for: the loop counts deadlines, not delays
 
 
@@ -63,6 +64,8 @@ def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
         path = folder / name
         if not path.exists():
             yield Finding("error", "hashes", f"{name} is in the manifest and not in the folder")
+        elif not path.is_file():
+            yield Finding("error", "hashes", f"{name} is no file")
         elif describe(path)["sha256"] != said.get("sha256"):
             yield Finding("error", "hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's")
 
@@ -79,6 +82,12 @@ def _rows(run: Run) -> Iterator[Finding]:
     said = run.manifest.get("files", {}).get(archive.NAME, {}).get("rows")
     if said is not None and said != run.rows:
         yield Finding("error", "rows", f"{run.rows} rows, the manifest says {said}")
+    lost, made = lost_rows(run.manifest, run.rows), run.manifest.get("rows_expected")
+    ticks = run.timing.get("ticks")
+    if not lost and isinstance(ticks, int) and ticks - run.rows > REFUSED:
+        lost, made = ticks - run.rows, ticks
+    if lost:
+        yield Finding("error", "rows", f"{lost} of {made} rows the loop made are missing")
 
 
 def _gaps(run: Run) -> Iterator[Finding]:

@@ -10,6 +10,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from rig.core.errors import DataError, NotReady, UsageError
@@ -301,3 +303,82 @@ def test_a_copy_of_a_dead_run_can_be_recovered_elsewhere(tmp_path: Path) -> None
     folder = copy_of(dead_run(tmp_path), tmp_path / "copy")
     manifest.update(folder, process={"pid": 1, "started": 1, "host": "the rig's own computer"})
     assert recover(folder).rows == 500
+
+
+LEAST = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
+
+
+def whole(folder: Path) -> dict[str, tuple[bytes, int]]:
+    """Every file, and when it was changed."""
+    return {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.iterdir()}
+
+
+@pytest.mark.parametrize(
+    "about", [{}, {"backend": "imported", "status": "completed"}, {"status": "completed"}, {"status": "running"}]
+)
+def test_samples_without_a_journal_are_never_replaced(tmp_path: Path, about: dict[str, str]) -> None:
+    (tmp_path / "manifest.json").write_text(json.dumps(LEAST | about))
+    pq.write_table(pa.table({"theta_m": [1.0, 2.0, 3.0]}), tmp_path / "samples.parquet")
+    before = whole(tmp_path)
+    told = recover(tmp_path)
+    assert not told.changed
+    assert "nothing to recover" in told.sentence
+    with pytest.raises(DataError, match="holds 3 rows, the journal 0: it is not overwritten"):
+        finalise(tmp_path, "completed", "end")
+    assert whole(tmp_path) == before
+
+
+def test_a_journal_with_fewer_rows_does_not_replace_the_samples(tmp_path: Path) -> None:
+    folder = ended_run(tmp_path)
+    with pytest.raises(Killed):
+        finalise(folder, "completed", "end", step=killer("timing"))
+    (folder / "journal-0001.arrows").unlink()
+    write_journal(folder, 0, 499)
+    before = whole(folder)["samples.parquet"]
+    with pytest.raises(DataError, match="holds 500 rows, the journal 499"):
+        recover(folder)
+    assert whole(folder)["samples.parquet"] == before
+
+
+@pytest.mark.parametrize(
+    ("about", "sentence"),
+    [({"gear": {}}, "gear.ratio is null"), ({}, "has no samples: neither samples.parquet nor a journal")],
+)
+def test_a_folder_with_nothing_to_recover_is_left_as_it_is(
+    tmp_path: Path, about: dict[str, object], sentence: str
+) -> None:
+    (tmp_path / "manifest.json").write_text(json.dumps(LEAST | about))
+    with pytest.raises(UsageError, match=sentence):
+        recover(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["manifest.json"]
+
+
+def test_rows_the_loop_made_and_nobody_has_make_the_run_interrupted(tmp_path: Path) -> None:
+    folder = ended_run(tmp_path)
+    assert finalise(folder, "completed", "end", expected_rows=520).lost == 20
+    about = manifest_of(folder)
+    assert (about["status"], about["rows_expected"]) == ("interrupted", 520)
+    assert "of the 520 rows the loop made 500 are here and 20 are lost" in about["exit_reason"]
+    assert errors(folder) == ["20 of 520 rows the loop made are missing"]
+
+
+def test_every_row_the_loop_made_leaves_the_run_as_it_ended(tmp_path: Path) -> None:
+    folder = ended_run(tmp_path)
+    assert finalise(folder, "completed", "end", expected_rows=500).lost == 0
+    assert manifest_of(folder)["status"] == "completed"
+    assert errors(folder) == []
+
+
+def test_lost_rows_are_told_by_whoever_closes_the_run_in_the_end(tmp_path: Path) -> None:
+    folder = ended_run(tmp_path)
+    with pytest.raises(Killed):
+        finalise(folder, "completed", "end", expected_rows=520, step=killer("drain"))
+    assert "20 of the 520 rows the loop made are lost" in recover(folder).sentence
+    assert errors(folder) == ["20 of 520 rows the loop made are missing"]
+
+
+@pytest.mark.parametrize(("ticks", "said"), [(501, []), (503, ["3 of 503 rows the loop made are missing"])])
+def test_rows_are_compared_with_the_ticks_of_the_loop(tmp_path: Path, ticks: int, said: list[str]) -> None:
+    folder = ended_run(tmp_path)
+    finalise(folder, "completed", "end", timing={"ticks": ticks})
+    assert errors(folder) == said

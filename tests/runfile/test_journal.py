@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import random
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from hypothesis import strategies as st
 from rig.core.channels import CHANNEL
 from rig.runfile.archive import row_groups, write_archive
 from rig.runfile.columns import batch_of_rows, checksum, schema
-from rig.runfile.journal import JournalReader, journal_files
+from rig.runfile.journal import JournalReader, JournalWriter, journal_files
 from tests.runfile.rows import expected, new_folder, ring_of, write_journal
 
 OURS = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=40)
@@ -197,3 +198,13 @@ def test_the_extent_is_rows_and_seconds(tmp_path: Path) -> None:
     assert write_archive(tmp_path, row_groups([slow_rows(130)]), schema("sim")) == (130, 129.0)
     assert write_archive(tmp_path, row_groups([]), schema("sim")) == (0, 0.0)
     assert not journal_files(tmp_path)
+
+
+@pytest.mark.parametrize("harm", [lambda path: path.unlink(), lambda path: os.truncate(path, 10)])
+def test_a_journal_removed_or_cut_while_it_is_written_is_noticed(tmp_path: Path, harm: Callable[[Path], None]) -> None:
+    journal = JournalWriter(tmp_path, schema("sim"), 0)
+    harm(journal.path)
+    with pytest.raises(OSError, match="removed or cut it"):
+        journal.sync()
+    with pytest.raises(OSError, match="removed or cut it"):
+        journal.close()
