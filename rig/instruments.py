@@ -11,6 +11,7 @@ from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
 from rig.core.errors import HdrigError
 from rig.core.sample import NAN, Sample, Setpoint
 
+FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
 NEVER = -1e9  # s, a latch time older than any
 
 
@@ -27,6 +28,7 @@ class Instruments:
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
+        self._tau, self._tau_since = NAN, 0.0  # the torque sensor's last value, and when it was first that [s]
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -56,6 +58,7 @@ class Instruments:
         """From here time counts from zero, and nothing read before is news."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock
         self._last = [NEVER, NEVER, NEVER]
+        self._tau = NAN
         self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
 
     def read(self, now: float) -> Sample:
@@ -83,6 +86,10 @@ class Instruments:
             flags |= more
             if t_tau == last[2]:
                 flags |= Flag.STALE_TAU
+            if tau_l != self._tau:
+                self._tau, self._tau_since = tau_l, t_tau
+            elif t_tau - self._tau_since > FROZEN:
+                flags |= Flag.FROZEN_TAU
             last[2] = t_tau
             if t_tau < oldest:
                 oldest = t_tau

@@ -48,6 +48,25 @@ def test_a_missing_number_trips(channel: str) -> None:
     assert guard().check(GOOD._replace(**{channel: NAN}), Torque(0.0)) is not None
 
 
+def test_every_command_is_clipped_to_bench_and_procedure_and_nan_becomes_zero_and_trips() -> None:
+    g = Guard(LIMITS, Envelope(10.0, 26.0, 1.0, torque=1.0), 50.0)
+    g.check(GOOD, Torque(0.0))
+    for asked, given in ((0.5, 0.5), (-50.0, -1.0), (math.inf, 1.0), (NAN, 0.0)):
+        assert g.allowed(Torque(asked, 1.0, 2.0)) == Torque(given, 1.0, 2.0)
+    for asked in (NAN, math.inf):
+        trip = g.check(GOOD, Torque(asked))
+        assert trip is not None
+        assert trip.name == "asked"
+
+
+def test_a_load_that_runs_away_trips_even_where_it_need_not_follow() -> None:
+    free = Guard(LIMITS, Envelope(1.0, 6.0, 1.0, 5.0, coupled=False), 50.0)
+    free.check(GOOD, Torque(0.0))
+    trip = free.check(GOOD._replace(theta_l=0.02 + 2.2 * free.travel / 50), Torque(0.0))
+    assert trip is not None
+    assert "does the motor encoder count" in trip.sentence
+
+
 def test_no_reference_means_nothing_to_follow() -> None:
     assert guard().check(GOOD, Torque(0.0, theta_ref=NAN)) is None
 

@@ -149,6 +149,21 @@ def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
     assert bench.torque_free()
 
 
+def test_a_stop_asked_before_the_start_energises_nothing() -> None:
+    bench = Bench()
+    bench.interrupts.request()
+    assert bench.run().exit is Exit.STOPPED
+    assert "enable" not in bench.world.history
+    assert bench.sink.rows == []
+
+
+def test_a_torque_beyond_the_limit_is_recorded_as_asked_and_given_clipped() -> None:
+    bench = Bench()
+    bench.run(tau=50.0)
+    asked, applied = bench.sink.rows[0][1:3]
+    assert (asked, applied) == (50.0, 5.0)
+
+
 def test_missed_cycles_are_counted_flagged_and_not_replayed() -> None:
     bench = Bench()
     bench.world.clock.late[100] = 0.0035

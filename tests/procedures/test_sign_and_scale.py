@@ -62,6 +62,24 @@ def test_a_rig_that_is_something_else_is_refused_with_what_was_measured(
         assert word in str(refusal.value)
 
 
+def test_a_dead_motor_encoder_is_refused_before_the_motor_gets_fast() -> None:
+    seen: list[float] = []
+
+    def dead(world: FakeWorld) -> None:
+        world.motor_sign = 0.0
+        advance = world.advance
+
+        def watched(dt: float) -> None:
+            advance(dt)
+            seen.append(abs(world.omega))
+
+        world.advance = watched  # type: ignore[method-assign]
+
+    with pytest.raises(NotReady, match="is the motor encoder read at all"):
+        prove(dead)
+    assert max(seen) < 30.0  # rad/s, 286 rpm
+
+
 def test_an_uneven_motor_proves_nothing_about_the_torque_sensor() -> None:
     forward = Leg(6.28, 6.28 / 50, (-0.4,) * 7 + (-0.39,), slowest=0.02)
     reverse = Leg(-6.28, -6.28 / 50, (0.4,) * 7 + (0.39,), slowest=0.5)

@@ -40,6 +40,13 @@ FAULTS: dict[str, tuple[Strike, str, float]] = {
 UNSEEN = {("load encoder frozen", "coming to rest")}  # nothing moves any more
 
 
+def test_a_torque_sensor_that_repeats_itself_is_flagged_and_does_not_stop_the_run() -> None:
+    ending, sink, _, _, struck = run_with(lambda rig: setattr(rig.torque_sensor, "fault", Frozen()), 3.0)
+    assert ending.status == "completed"
+    flagged = [row[0].t for row in sink.rows if row[0].flags & Flag.FROZEN_TAU]
+    assert flagged[0] == pytest.approx(struck + 1.0, abs=0.01)
+
+
 def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, Supervisor, float]:
     bench, supervisor, sink = read("twin"), Supervisor(), ListSink()
     rig, setting = bench.open("virtual"), bench.setting(lambda text: None)
