@@ -51,8 +51,8 @@ def test_a_missing_number_trips(channel: str) -> None:
 def test_every_command_is_clipped_to_bench_and_procedure_and_nan_becomes_zero_and_trips() -> None:
     g = Guard(LIMITS, Envelope(10.0, 26.0, 1.0, torque=1.0), 50.0)
     g.check(GOOD, Torque(0.0))
-    for asked, given in ((0.5, 0.5), (-50.0, -1.0), (math.inf, 1.0), (NAN, 0.0)):
-        assert g.allowed(Torque(asked, 1.0, 2.0)) == Torque(given, 1.0, 2.0)
+    for asked, carried in ((0.5, 0.5), (-50.0, -1.0), (math.inf, 1.0), (NAN, 0.0)):
+        assert g.allowed(Torque(asked, 1.0, 2.0)) == Torque(carried, 1.0, 2.0)
     for asked in (NAN, math.inf):
         trip = g.check(GOOD, Torque(asked))
         assert trip is not None

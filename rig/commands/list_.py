@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from rig.core.errors import UsageError
@@ -23,12 +24,19 @@ def run(args: argparse.Namespace) -> int:
     if not rows:
         print(f"no runs in {args.root}")
         return 0
-    print(f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run")
+    _say(f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run")
     for row in rows:
         duration = "–" if row.duration is None else f"{row.duration:.1f} s"
         mark = " SIMULATED" if row.simulated else ""
-        print(
+        _say(
             f"{row.started_utc[:19]:19s} {row.procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
             f"{row.verdict or '–':12s} {row.path}{mark}"
         )
     return 0
+
+
+def _say(line: str) -> None:
+    """Print what a terminal can take: names of folders and words of manifests may be anything."""
+    shown = "".join(c if c.isprintable() else "\ufffd" for c in line)
+    encoding = sys.stdout.encoding or "utf-8"
+    print(shown.encode(encoding, "replace").decode(encoding))

@@ -35,7 +35,11 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
     if done.ending.exit is Exit.PASS and (told := finding(procedure, done)):
         print(f"{told}\nrun folder {done.folder}")
         return int(Exit.PASS)
-    result, simulated = analyse_folder(done.folder, done.folder)
+    try:
+        result, simulated = analyse_folder(done.folder, done.folder)
+    except KeyboardInterrupt:
+        print(f"the run is complete in {done.folder}; hdrig analyse makes its report", file=sys.stderr)
+        raise
     print_result(result, done.folder, done.folder, simulated)
     return int(done.ending.exit or exit_of(result) or Exit.PASS)
 
