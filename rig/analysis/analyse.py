@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -14,7 +15,20 @@ from rig.analysis.result import Result
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.standstill import add_standstill
+from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
+
+UNFORESEEN = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    LookupError,
+    MemoryError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)
+"""What arithmetic on a damaged run can raise; a run must end in a sentence, whatever it holds."""
 
 Part = Callable[[Findings, Source, Motion, Speed | None], None]
 
@@ -68,19 +82,43 @@ PROCEDURES: Mapping[str, Part] = {
 def analyse(run: Source) -> Result:
     """All that `run` says on its own: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
-    `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks:
-    the Result says it. Limits and verdict: see `rig.analysis.findings.conclude`.
+    `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
+    holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
+    `rig.analysis.findings.conclude`.
     """
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # numpy's remarks on empty and constant pieces say nothing to an operator
+        tame = Tame(run)
+        try:
+            return _analyse(tame)
+        except UNFORESEEN as why:
+            return _nothing(tame, f"The analysis broke off on what this run holds ({type(why).__name__}: {why}).")
+
+
+def _nothing(run: Tame, why: str) -> Result:
+    """A Result without figures."""
+    found = Findings(sentence=why, inconclusive=why, cannot=[why, *run.notes])
+    return conclude(found, run.procedure, {**run.manifest, "limits": {}})
+
+
+def _analyse(run: Tame) -> Result:
+    if not RATIOS[0] <= run.ratio <= RATIOS[1]:
+        return _nothing(run, f"The manifest says a gear ratio of {run.ratio:g}: no gear has it, nothing was computed.")
     found = Findings()
     motion = motion_of(run)
     if motion is None or motion.theta_m.size < 16:
-        found.sentence = "The run has no motor angle: nothing can be said about the gear."
+        why = "The run has no motor angle: nothing can be said about the gear."
         if motion is not None:
-            found.sentence = f"The run has {motion.theta_m.size} usable rows: nothing can be said about the gear."
-        found.cannot.append(found.sentence)
-        return conclude(found, run.procedure, run.manifest)
+            why = f"The run has {motion.theta_m.size} usable rows: nothing can be said about the gear."
+        return _nothing(run, why)
+    turns = float(np.ptp(motion.theta_m)) / TURN
+    if turns > motion.theta_m.size:
+        return _nothing(
+            run, f"The motor angle moves {turns:.4g} turns in {motion.theta_m.size} rows: not an angle in rad."
+        )
     found.cannot += motion.notes
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
     PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
+    found.cannot += run.notes
     return conclude(found, run.procedure, run.manifest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -10,6 +11,13 @@ import numpy as np
 
 from rig.analysis.intervals import against_limit
 from rig.analysis.result import Array, Check, Estimate, Result, Verdict
+
+WHY_REJECTED = ("stuck_share", "speed_scatter", "hunting_frequency")  # they describe the run and do count
+
+
+def true_minus(text: str) -> str:
+    """`text` with the hyphens before numbers made minus signs."""
+    return re.sub(r"(?<![\w.\-])-(?=\d)", "−", text)
 
 
 @dataclass
@@ -92,19 +100,23 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         found.checks.append(Check("run_complete", False, text))
         sentence = f"{text} {sentence}"
         found.inconclusive = found.inconclusive or text
+    if not any(np.isfinite(e.value) for e in estimates):
+        found.inconclusive = found.inconclusive or "Nothing could be measured."
     if found.inconclusive and verdict in (Verdict.PASS, Verdict.MEASURED):
         verdict = Verdict.INCONCLUSIVE
     if found.rejected:
         verdict, sentence = Verdict.FAIL, f"{found.rejected} Figures are shown but do not count: {sentence}"
         doubtful = estimates[found.believed :]
-        estimates = estimates[: found.believed] + [replace(e, how=f"Rejected run. {e.how}") for e in doubtful]
+        estimates = estimates[: found.believed] + [
+            e if e.name in WHY_REJECTED else replace(e, how=f"Rejected run. {e.how}") for e in doubtful
+        ]
     return Result(
         procedure=procedure,
         verdict=verdict,
-        sentence=sentence,
-        estimates=tuple(estimates),
-        checks=tuple(found.checks),
-        cannot=tuple(found.cannot),
+        sentence=true_minus(sentence),
+        estimates=tuple(replace(e, how=true_minus(e.how)) for e in estimates),
+        checks=tuple(replace(c, sentence=true_minus(c.sentence)) for c in found.checks),
+        cannot=tuple(true_minus(s) for s in found.cannot),
         tables=found.tables,
         curves=found.curves,
     )

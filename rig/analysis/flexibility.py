@@ -17,7 +17,7 @@ def declared(values: Mapping[str, Any], key: str) -> float | None:
         value = value.get("value")
     try:
         number = float(value) if value is not None else float("nan")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return None
     return number if np.isfinite(number) and number > 0 else None
 

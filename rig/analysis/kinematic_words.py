@@ -72,7 +72,7 @@ def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
         a, b, size = float(p.cosine[n]), float(p.sine[n]), float(p.amplitude[n])
         share, turn = float(p.u_system[n]) / size if size else 0.0, (n + 1) * u_zero
         value, low, high = amplitude_interval(size, float(p.u_amplitude[n]), p.factor)
-        across = float(np.hypot(b * p.u_cosine[n], a * p.u_sine[n])) / max(size, 1e-300) ** 2
+        across = float(np.hypot(b * p.u_cosine[n], a * p.u_sine[n])) / max(size, 1e-150) ** 2
         u_a = float(np.sqrt(p.u_cosine[n] ** 2 + (share * a) ** 2 + (turn * b) ** 2))
         u_b = float(np.sqrt(p.u_sine[n] ** 2 + (share * b) ** 2 + (turn * a) ** 2))
         row: dict[str, float | str] = {
@@ -96,11 +96,11 @@ def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
     return rows
 
 
-def add_series(found: Findings, ke: KinematicError) -> None:
+def add_series(found: Findings, ke: KinematicError, pure: bool) -> None:
     """How many orders are worth keeping, and the curves of the profile over one motor turn."""
     p = ke.profile
-    pure = p.pure()
-    mse = truncation(pure, p.terms)
+    curve = p.pure()
+    mse = truncation(curve, p.terms)
     k = chosen_terms(mse, p.floor)
     how = (
         f"Smallest k with MSE(k) ≤ 1.1·MSE({p.terms}) = {1.1 * mse[-1]:.3g} arcsec², or below the noise floor of the "
@@ -113,7 +113,8 @@ def add_series(found: Findings, ke: KinematicError) -> None:
         ke__revolutions_reverse=_drawn(ke, -1),
         ke__mean_forward=p.curve_forward,
         ke__mean_reverse=p.curve_reverse,
-        ke__pure=pure,
+        ke__pure=curve,
+        ke__at_speed=None if pure else np.array([ke.speed_rpm]),
         ke__direction=p.direction(),
         ke__fit=p.fit(),
         mse__k=np.arange(mse.size, dtype=np.float64),

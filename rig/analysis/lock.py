@@ -97,9 +97,11 @@ def _add_stiffness(found: Findings, ramps: list[Ramp], tau: Array, ratio: float)
     # the motor turns over a piece of the kinematic error, whose slope N·θ̃_p′ looks like torsion: 2·C_2 + 4·C_4 at most
     tilt = (2.0 + 4.0 / 4.0) * ratio * ERROR
     half = float(np.hypot(random, 1.96 * tilt / np.sqrt(3.0) * abs(K)))
+    ramp_count = f"{slopes.size} {'ramp' if slopes.size == 1 else 'ramps'}"
+    repeat = f"the ramps repeat to ±{100 * random / abs(K):.2g} %" if slopes.size > 1 else "one ramp does not repeat"
     how = (
-        f"Line through shaft torque against θ_m/N − θ_l, {slopes.size} ramps, {tau.min():.1f} to {tau.max():.1f} N·m; "
-        f"the ramps repeat to ±{100 * random / abs(K):.2g} %, the rest of the interval (±{100 * tilt:.1f} % at most) "
+        f"Line through shaft torque against θ_m/N − θ_l, {ramp_count}, {tau.min():.1f} to {tau.max():.1f} N·m; "
+        f"{repeat}, the rest of the interval (±{100 * tilt:.1f} % at most) "
         "is for the slope of the kinematic error at this motor angle, which this run does not know."
     )
     found.figure("torsional_stiffness", "System torsional stiffness, secant", K, "N·m/rad", half, how)

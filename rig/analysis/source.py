@@ -13,6 +13,9 @@ from rig.analysis.angle import ARCSEC, RPM, TURN, is_wrapped, transmission_error
 from rig.analysis.result import Array
 from rig.core.channels import Flag
 
+FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
+SLOWEST = 60.0  # s between rows: nothing that turns is recorded more slowly
+
 UNTRUSTED = Flag.STALE_M | Flag.STALE_L | Flag.FROZEN_M | Flag.FROZEN_L | Flag.TRIPPED
 """Rows in which the two angles do not belong together, or the drive had let go."""
 
@@ -120,5 +123,8 @@ def motion_of(run: Source) -> Motion | None:
         t = None if t is None else t[rows]
     if t is not None and t.size > 1 and not np.all(np.diff(t) > 0):
         notes.append("The time column does not increase everywhere; it was not used.")
+        t = None
+    if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
+        notes.append(f"The time column says {(t[-1] - t[0]) / (t.size - 1):.3g} s between rows; it was not used.")
         t = None
     return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))

@@ -34,6 +34,8 @@ def motor_speed(t: Array, theta_m: Array, step: float = STEP) -> Speed:
         return Speed(np.empty(0), np.empty(0), np.empty(0), 0.0)
     period = float(t[-1] - t[0]) / (t.size - 1)
     size = max(round(step / period), FEWEST)
+    if t.size < 5 * size:  # not one window of four steps
+        return Speed(np.empty(0), np.empty(0), np.empty(0), 0.0)
     starts = np.arange(0, t.size - size + 1, size)
     # sums are taken from the middle of the run: the rounding error of long sums stays below a count
     time = np.add.reduceat(t[: starts[-1] + size] - t[t.size // 2], starts) / size

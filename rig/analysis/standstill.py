@@ -8,6 +8,7 @@ import numpy as np
 
 from rig.analysis.angle import ARCSEC, TURN
 from rig.analysis.findings import Findings
+from rig.analysis.flexibility import declared
 from rig.analysis.intervals import t95
 from rig.analysis.orders import Line, find_lines
 from rig.analysis.result import Array, Check
@@ -68,8 +69,12 @@ def settled_from(columns: list[Array]) -> int:
     return worst * size
 
 
-def floor_of(x: Array, t: Array | None) -> Floor:
-    """Mean, drift and rms about it; intervals from twenty pieces, since neighbouring rows need not be independent."""
+def floor_of(x: Array, t: Array | None, count: float = 0.0) -> Floor:
+    """Mean, drift and rms about it; intervals from twenty pieces, since neighbouring rows need not be independent.
+
+    `count` is one step of the channel, in the unit of `x`. Where the noise is smaller than it, rounding does not
+    average out: a line through values each wrong by up to half a count can be wrong by 1.5 counts over its length.
+    """
     minutes = np.arange(x.size) / x.size if t is None else (t - t[0]) / 60.0
     pieces = 20 if x.size >= 200 else 4
     size = x.size // pieces
@@ -83,6 +88,8 @@ def floor_of(x: Array, t: Array | None) -> Floor:
     u_mean = factor * float(means.std(ddof=2)) / np.sqrt(pieces)
     u_rms = factor * float(squares.std(ddof=1)) / np.sqrt(pieces) / (2.0 * rms) if rms > 0 else 0.0
     u_drift = u_mean * np.sqrt(12.0) / max(float(minutes[-1] - minutes[0]), 1e-300)
+    reach = 1.5 if rms < count else 0.5
+    u_drift += reach * count / max(float(minutes[-1] - minutes[0]), 1e-300)
     if t is None:
         slope = u_drift = float("nan")
     return Floor(float(x.mean()), u_mean, rms, u_rms, slope, u_drift)
@@ -114,7 +121,8 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
             found.cannot.append(f"{label}: not recorded.")
             continue
         x = known[name][first:] * scale
-        f = floor_of(x - x[0], t)
+        count = _count(run, name, known[name]) * scale
+        f = floor_of(x - x[0], t, count)
         how = f"rms about the line of its drift, {since}; interval from the scatter of twenty pieces."
         if f.rms == 0.0:
             how = f"It never left one count ({since}): its noise is below the resolution."
@@ -125,7 +133,12 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
         said.append(f"{label.lower()} {f.rms:.3g} {unit}")
         if t is not None:
             found.figure(
-                f"drift_{name}", f"{label}, drift", f.drift, f"{unit}/min", f.u_drift, f"Line through {since}."
+                f"drift_{name}",
+                f"{label}, drift",
+                f.drift,
+                f"{unit}/min",
+                f.u_drift,
+                f"Line through {since}; half a count of quantisation at least is in the interval.",
             )
             duration = float(t[-1] - t[0])
             rate = (rows - 1) / duration
@@ -147,6 +160,17 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
             f" Something shakes at {float(row['frequency_hz']):.3f} Hz: {row['channel']} with an amplitude of "
             f"{float(row['amplitude']):.3g} {row['unit']}."
         )
+
+
+def _count(run: Source, name: str, x: Array) -> float:
+    """One step of a channel: from the encoder's counts, else the smallest step it made; 0 when it made none."""
+    side = {"theta_m": "motor", "theta_l": "load"}.get(name)
+    per_turn = declared(run.manifest.get("encoders") or {}, f"{side}_counts_per_rev") if side else None
+    if per_turn:
+        return TURN / per_turn
+    steps = np.abs(np.diff(x))
+    steps = steps[steps > 1e-9 * float(np.ptp(x))]  # less is rounding
+    return float(steps.min()) if steps.size else 0.0
 
 
 def _row(channel: str, line: Line, unit: str, rms: float) -> dict[str, float | str]:

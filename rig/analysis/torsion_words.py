@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN
+from rig.analysis.angle import ARCMIN, ARCSEC
 from rig.analysis.findings import Findings
 from rig.analysis.orders import Line
 from rig.analysis.result import Array, Estimate
@@ -45,8 +45,9 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
                 f"Fitted by itself to what torque and output harmonics leave; {r.turns:.0f} turns tell orders "
                 f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
             )
-            half = 1.96 * line.u * ARCMIN
-            found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * ARCMIN, "arcmin", half, how)
+            unit, scale = ("arcsec", ARCSEC) if line.amplitude * ARCMIN < 1.0 else ("arcmin", ARCMIN)
+            half = 1.96 * line.u * scale
+            found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * scale, unit, half, how)
     _doubts(found, r)
     every = max(r.torque.size // DRAWN, 1)
     ends = np.array([r.torque.min(), r.torque.max()])

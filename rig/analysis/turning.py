@@ -37,7 +37,7 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
             f"The motor made no whole turn in one direction once the reversals are cut (it moved {span:.2f} turns)."
         )
         found.cannot.append(found.sentence)
-        found.inconclusive = found.sentence if slow else ""
+        found.inconclusive = found.sentence
         return
     smoothness = smooth.smoothness(motion, strokes, motion.pick(run.column("theta_ref")), speed) if slow else None
     if smoothness is not None:
@@ -84,9 +84,10 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     if ke is None:
         found.cannot.append("The rows are too few per motor turn for a single order.")
         found.sentence = "The motor turned too fast for the row rate."
+        found.inconclusive = found.sentence
         return main
     words.add_profile(found, ke, slow)
-    words.add_series(found, ke)
+    words.add_series(found, ke, slow)
     words.add_trend(found, ke)
     output = str(run.manifest.get("gear", {}).get("output", ""))
     words.add_limits_of_the_run(found, ke, motion.ratio, output, slow)

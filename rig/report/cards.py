@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rig.analysis.result import Estimate
 from rig.report.numbers import companion, estimate
-from rig.report.words import HEADLINES, definition
+from rig.report.words import HEADLINES, REJECTED, definition
 
 
 class Line(NamedTuple):
@@ -27,6 +27,7 @@ class Card(NamedTuple):
     lines: list[Line]
     definition: str
     how: str
+    void: bool = False  # of a rejected run: shown, and does not count
 
 
 def in_order(estimates: Sequence[Estimate]) -> list[Estimate]:
@@ -56,7 +57,7 @@ def _stem(estimates: Sequence[Estimate]) -> str:
 def _card(estimates: Sequence[Estimate], headline: bool = False) -> Card:
     stem, (first, *_) = _stem(estimates), estimates
     lines = [_line(e, e.label[len(stem) :].strip() if stem else "", headline) for e in estimates]
-    return Card(stem or first.label, lines, definition(first.name), first.how)
+    return Card(stem or first.label, lines, definition(first.name), first.how, first.how.startswith(REJECTED))
 
 
 def _line(found: Estimate, name: str, headline: bool) -> Line:

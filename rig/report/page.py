@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,13 +11,13 @@ from typing import Any
 
 import jinja2
 import numpy as np
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from rig.analysis.result import Array, Result
 from rig.report import rows, words
 from rig.report.cards import cards
 from rig.report.figures import CATALOGUE, Drawing, Frame, svg
-from rig.report.numbers import duration
+from rig.report.numbers import duration, number_of
 from rig.report.palette import DARK, LIGHT, variables
 from rig.report.provenance import provenance
 from rig.report.tables import Table, number, tables
@@ -29,8 +31,8 @@ WIDE, NARROW = 760.0, 360.0  # px; each figure is drawn twice, so that its text 
 def write(
     folder: Path,
     manifest: dict[str, Any],
-    timing: dict[str, Any] | None,
-    events: list[dict[str, Any]],
+    timing: object,
+    events: object,
     result: Result,
     *,
     run: Path | None = None,
@@ -41,7 +43,7 @@ def write(
     """
     source = folder if run is None else run
     text = render(manifest, timing, events, result, source.name, bench(source))
-    write_atomic(folder / NAME, text.encode())
+    write_atomic(folder / NAME, text.encode(errors="replace"))
     return folder / NAME
 
 
@@ -49,19 +51,20 @@ def bench(folder: Path) -> dict[str, Any]:
     """The resolved bench of the run; empty where there is none that can be read."""
     try:
         return tomllib.loads((folder / "bench.toml").read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
         return {}
 
 
 def render(
     manifest: Mapping[str, Any],
-    timing: Mapping[str, Any] | None,
-    events: list[dict[str, Any]],
+    timing: object,
+    events: object,
     result: Result,
     run: str,
     numbers: Mapping[str, Any],
 ) -> str:
     """The page as text. The same arguments give the same text: no clock and no random number is asked."""
+    manifest, timing, events = rows.cut(dict(manifest)), rows.cut(timing), rows.cut(events)
     origin = words.origin(manifest.get("backend"))
     gear = rows.table(manifest.get("gear"))
     timing_rows, timing_said = rows.timing(timing)
@@ -69,7 +72,7 @@ def render(
     view = {
         "run": run,
         "origin": origin,
-        "heading": words.PROCEDURES.get(result.procedure, words.humanise(result.procedure)),
+        "heading": words.heading(result.procedure, manifest),
         "serial": rows.show(gear["serial"]) if gear.get("serial") else "",
         "facts": _facts(manifest, gear, result.curves, run),
         "ruling": words.RULINGS[result.verdict],
@@ -96,6 +99,7 @@ def render(
     environment = jinja2.Environment(
         loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
+    environment.filters["code"] = code
     return environment.get_template("page.html").render(view)
 
 
@@ -120,8 +124,9 @@ def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, An
     narrow = svg(drawing, curves, Frame(NARROW, mark), prefix=f"{drawing.name}-n-")
     if wide is None or narrow is None:
         return None
+    title, note = drawing.named(curves) if drawing.named else (drawing.title, drawing.note)
     pictures = {"wide": Markup(wide), "narrow": Markup(narrow)}  # ours, and escaped by the XML writer
-    return {"anchor": drawing.name, "title": drawing.title, "note": drawing.note, "full": drawing.full, **pictures}
+    return {"anchor": drawing.name, "title": title, "note": note, "full": drawing.full, **pictures}
 
 
 def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[str, Array], run: str) -> list[str]:
@@ -130,8 +135,8 @@ def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[st
     found += [rows.utc(manifest["started_utc"])] if manifest.get("started_utc") else []
     length = manifest.get("duration")
     t = np.asarray(curves.get("time.t", ()), dtype=np.float64)
-    if isinstance(length, int | float):
-        found.append(duration(length))
+    if math.isfinite(number_of(length)):
+        found.append(duration(number_of(length)))
     elif t.size > 1 and np.isfinite(t).any():
         found.append(duration(float(np.nanmax(t) - np.nanmin(t))))
     return [*found, run]
@@ -142,7 +147,10 @@ def _checks_said(result: Result) -> str:
     total = len(result.checks)
     if failed == 0:
         return f"All {total} conditions were met." if total > 1 else "The condition was met."
-    return f"{failed} of {total} conditions were not met: read the figures with that in mind."
+    were = f"{failed} of {total} conditions {'was' if failed == 1 else 'were'} not met"
+    if words.rejected(result):
+        return f"{were}: the run is rejected and its figures do not count."
+    return f"{were}: read the figures with that in mind."
 
 
 def _contents(view: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -173,6 +181,11 @@ def _css(run: str, mark: str) -> Markup:
     ):
         text = text.replace(name, value)
     return Markup(text)
+
+
+def code(text: str) -> Markup:
+    """`text` escaped, with what stands between backticks set in the typewriter face."""
+    return Markup(re.sub(r"`([^`]+)`", r'<code class="code">\1</code>', str(escape(text))))
 
 
 def css_string(text: str) -> str:

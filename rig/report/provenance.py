@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
-from rig.report.numbers import duration
+from rig.report.numbers import duration, number_of, quantity
 from rig.report.rows import Row, flat, measured, show, table, utc
 from rig.report.words import PROCEDURES, humanise, origin, status
 
@@ -62,13 +63,19 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
     known_software = ("version", "commit", "dirty")
     rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
     rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
-    return known + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
+    proof = dict(table(rest.get("proof")))
+    difference, error = number_of(proof.get("shaft_torque_difference")), number_of(proof.get("shaft_torque_error"))
+    apart_rows = []
+    if math.isfinite(difference) and math.isfinite(error):  # one row: the error stands behind the difference
+        rest["proof"] = {k: v for k, v in proof.items() if k not in ("shaft_torque_difference", "shaft_torque_error")}
+        apart_rows = [Row("proof.shaft_torque_difference", quantity(difference, 2 * error, "N·m"))]
+    return known + apart_rows + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
 
 
 def _length(manifest: Mapping[str, Any]) -> list[Row]:
     """How long the run took; on a virtual clock that is not what lies between its start and its end."""
     seconds = manifest.get("duration")
-    if not isinstance(seconds, int | float):
+    if not math.isfinite(number_of(seconds)):
         return []
     virtual = table(manifest.get("loop")).get("clock") == "virtual"
-    return [Row("Duration", duration(seconds) + (" on a virtual clock" if virtual else ""))]
+    return [Row("Duration", duration(number_of(seconds)) + (" on a virtual clock" if virtual else ""))]

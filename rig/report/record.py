@@ -46,5 +46,8 @@ def finite(value: Any) -> Any:
 def write_result(folder: Path, result: Result) -> Path:
     """Put `result.json` into `folder`, in place of an older one; its path."""
     path = folder / NAME
-    write_atomic(path, json.dumps(as_json(result), indent=1, ensure_ascii=False, allow_nan=False).encode() + b"\n")
+    write_atomic(
+        path,
+        json.dumps(as_json(result), indent=1, ensure_ascii=False, allow_nan=False).encode(errors="replace") + b"\n",
+    )
     return path

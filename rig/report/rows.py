@@ -4,14 +4,16 @@ any of it or nothing; what is absent is left out, what is unknown is shown as it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from rig.report.numbers import fixed, join, plain
-from rig.report.words import humanise, named
+from rig.report.numbers import fixed, join, number_of, plain
+from rig.report.words import UNITS, humanise, named
 
 BYTES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1, "B"))
+DEEPEST = 8  # levels of nested tables
 LONGEST = 600  # characters of one value; what is longer is a file of its own, not a line of a report
 
 
@@ -32,23 +34,36 @@ class Number(NamedTuple):
     note: str
 
 
-def show(value: Any) -> str:
-    """Any value of a manifest as text."""
+def show(value: Any, depth: int = 0) -> str:
+    """Any value of a manifest as text; what is nested deeper than people read is cut."""
+    if depth > DEEPEST:
+        return "…"
     match value:
         case None:
             return "unknown"
         case bool():
             return "yes" if value else "no"
         case int():
-            return fixed(value, 0)
+            return fixed(value, 0) if abs(value) < 2**63 else f"an integer of {value.bit_length()} bits"
         case float():
             return plain(value, 6)
         case list() | tuple():
-            return ", ".join(show(v) for v in value)
+            return ", ".join(show(v, depth + 1) for v in value)
         case dict():
-            return ", ".join(f"{k} {show(v)}" for k, v in value.items())
+            return ", ".join(f"{k} {show(v, depth + 1)}" for k, v in value.items())
     text = str(value)
     return text if len(text) <= LONGEST else text[:LONGEST] + " …"
+
+
+def cut(value: Any, depth: int = 0) -> Any:
+    """`value` without what is nested deeper than people read; text of it is then safe to make."""
+    if isinstance(value, Mapping):
+        return {k: cut(v, depth + 1) for k, v in value.items()} if depth <= DEEPEST else "…"
+    if isinstance(value, list | tuple):
+        return [cut(v, depth + 1) for v in value] if depth <= DEEPEST else "…"
+    if isinstance(value, int) and abs(value) >= 2**63:
+        return show(value)
+    return value
 
 
 def measured(key: str, value: Any) -> Row:
@@ -78,19 +93,19 @@ def utc(text: Any) -> str:
     """An ISO time as "2026-11-20 01:47:12 UTC"; as it stands when it is none, or says no zone."""
     try:
         moment = datetime.fromisoformat(str(text).replace("Z", "+00:00"))
-    except ValueError:
+        return f"{moment.astimezone(UTC):%Y-%m-%d %H:%M:%S} UTC" if moment.tzinfo else show(text)
+    except (ValueError, OverflowError):
         return show(text)
-    return f"{moment.astimezone(UTC):%Y-%m-%d %H:%M:%S} UTC" if moment.tzinfo else show(text)
 
 
-def flat(tree: Mapping[str, Any], stem: str = "") -> Iterator[tuple[str, str]]:
+def flat(tree: Mapping[str, Any], stem: str = "", depth: int = 0) -> Iterator[tuple[str, str]]:
     """Leaves of nested tables as (dotted key, text)."""
     for key, value in tree.items():
         name = f"{stem}{key}"
-        if isinstance(value, Mapping):
-            yield from flat(value, f"{name}.")
+        if isinstance(value, Mapping) and depth < DEEPEST:
+            yield from flat(value, f"{name}.", depth + 1)
         elif value is not None and value != "":
-            yield name, show(value)
+            yield name, join(show(value), UNITS.get(name, "") if math.isfinite(number_of(value)) else "")
 
 
 def files(manifest: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
@@ -107,12 +122,12 @@ def files(manifest: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
 
 def size(count: Any) -> str:
     """A number of bytes for people."""
-    if not isinstance(count, int) or isinstance(count, bool):
+    if not isinstance(count, int) or not math.isfinite(number_of(count)):
         return ""
     return next(join(plain(count / n, 3), unit) for n, unit in BYTES if count >= n or n == 1)
 
 
-def bench_numbers(bench: Mapping[str, Any], stem: str = "") -> Iterator[Number]:
+def bench_numbers(bench: Mapping[str, Any], stem: str = "", depth: int = 0) -> Iterator[Number]:
     """Every number of a bench file with its provenance, in the file's order."""
     for key, entry in bench.items():
         name = f"{stem}{key}"
@@ -120,32 +135,41 @@ def bench_numbers(bench: Mapping[str, Any], stem: str = "") -> Iterator[Number]:
             text = join(show(entry["value"]), show(entry.get("unit", "")))
             yield Number(name, text, show(entry.get("from", "declared")), show(entry.get("note", "")))
         elif isinstance(entry, Mapping):
-            yield from bench_numbers(entry, f"{name}.")
+            if depth < DEEPEST:
+                yield from bench_numbers(entry, f"{name}.", depth + 1)
         elif isinstance(entry, int | float | list) and not isinstance(entry, bool):
             yield Number(name, show(entry), show(bench.get("from", "declared")), "")
 
 
-def events(found: list[dict[str, Any]]) -> list[tuple[str, str, str]]:
+def events(found: object) -> list[tuple[str, str, str]]:
     """(time, kind, text) of every event, the time in s of the run or, where that is unknown, in UTC. Keys that are
     neither are added to the text.
     """
     out = []
-    for event in found:
-        rest = dict(event)
+    for event in found if isinstance(found, list | tuple) else ():
+        if not isinstance(event, Mapping):
+            continue
+        rest: dict[Any, Any] = dict(event)
         clock = rest.pop("utc", None)
         moment = next((rest.pop(k) for k in ("t", "time", "t_s") if k in rest), None)
         moment = clock if moment is None else moment
         kind = next((rest.pop(k) for k in ("kind", "event", "act", "type") if k in rest), "")
         text = [show(rest.pop(k)) for k in ("text", "sentence", "why", "reason", "message", "note") if rest.get(k)]
         text += [f"{k} {show(v)}" for k, v in rest.items() if v not in (None, "")]
-        when = join(fixed(float(moment), 3), "s") if isinstance(moment, int | float) else utc(moment) if moment else ""
+        when = (
+            join(fixed(number_of(moment), 3), "s")
+            if math.isfinite(number_of(moment))
+            else utc(moment)
+            if moment
+            else ""
+        )
         out.append((when, humanise(show(kind)), "; ".join(text)))
     return out
 
 
 def micro(seconds: Any) -> str:
     """Lateness for people: µs below a millisecond, ms above."""
-    if not isinstance(seconds, int | float):
+    if not math.isfinite(number_of(seconds)):
         return show(seconds)
     return join(plain(seconds * 1e6, 3), "µs") if seconds < 1e-3 else join(plain(seconds * 1e3, 3), "ms")
 
@@ -161,14 +185,15 @@ TIMING = (
 )
 
 
-def timing(found: Mapping[str, Any] | None) -> tuple[list[Row], list[str]]:
+def timing(found: object) -> tuple[list[Row], list[str]]:
     """Rows and sentences on the loop. On a virtual clock lateness is left out, and it is said why."""
-    if not found:
+    if not isinstance(found, Mapping) or not found:
         return [], []
     virtual = found.get("clock") == "virtual"
-    rows, period = [], found.get("period")
-    if isinstance(period, int | float) and period > 0:
-        rows.append(Row("Rate", join(plain(1 / period, 5), "Hz")))
+    rows: list[Row] = []
+    period = found.get("period")
+    if number_of(period) > 1e-12:
+        rows.append(Row("Rate", join(plain(1 / number_of(period), 5), "Hz")))
     for key, name, say in TIMING:
         if key in found and not (virtual and key.startswith("lateness")):
             rows.append(Row(name, say(found[key])))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from rig.analysis.result import Verdict
+from rig.analysis.result import Result, Verdict
 
 
 class Origin(NamedTuple):
@@ -46,6 +46,22 @@ def origin(backend: str | None) -> Origin:
     return Origin("ORIGIN UNKNOWN", sentence, "Run of unknown origin", "warn")
 
 
+REJECTED = "Rejected run."  # begins how a figure was found when it does not count
+
+
+def rejected(found: Result) -> bool:
+    """Whether the run was rejected: its figures are shown and do not count."""
+    return found.verdict is Verdict.FAIL and "do not count" in found.sentence
+
+
+def heading(procedure: str, manifest: Mapping[str, Any]) -> str:
+    """Title of the page; a run of no known procedure by its own label."""
+    label = manifest.get("label")
+    if procedure == "other" and isinstance(label, str) and label.strip():
+        return label.strip()
+    return PROCEDURES.get(procedure, humanise(procedure))
+
+
 RULINGS = {
     Verdict.PASS: Ruling("✓", "Pass", "good"),
     Verdict.FAIL: Ruling("✗", "Fail", "bad"),
@@ -66,7 +82,7 @@ PROCEDURES = {
     "coast_down": "Coast-down",
     "standstill": "Standstill",
     "sentinel": "Sentinel run",
-    "other": "Run",
+    "other": "Measured motion",
 }
 
 STATUS = {
@@ -76,6 +92,13 @@ STATUS = {
     "interrupted": "Interrupted: found without an end",
     "running": "Still running when this was written",
     "imported": "Imported",
+}
+
+UNITS = {  # of rows of the provenance, by their dotted key
+    "proof.breakaway": "N·m",
+    "proof.shaft_torque_difference": "N·m",
+    "proof.shaft_torque_error": "N·m",
+    "loop.rate": "Hz",
 }
 
 ENTRIES = {  # conditions and declared values by key: name for people, unit

@@ -81,3 +81,13 @@ def test_a_motor_that_moved_was_not_at_rest() -> None:
     t = np.arange(0, 10, 1e-3)
     result = analyse(MadeRun({"t": t, "theta_m": 0.05 * t}, {"procedure": "standstill", "gear": {"ratio": 50}}))
     assert not next(c for c in result.checks if c.name == "still").passed
+
+
+def test_the_drift_of_an_angle_that_flips_by_single_counts_is_not_told_from_zero() -> None:
+    count_arcsec = 1_296_000 / 65_536
+    t = np.arange(0, 10, 1e-3)
+    for flips in (t > 5, (t > 3) & (t < 3.2) | (t > 6)):
+        theta = np.where(flips, count_arcsec, 0.0) / ARCSEC
+        result = analyse(MadeRun({"t": t, "theta_m": theta}, {"procedure": "standstill", "gear": {"ratio": 50}}))
+        low, high = figures(result)["drift_theta_m"].ci95
+        assert low <= 0.0 <= high

@@ -143,7 +143,7 @@ def test_every_verdict_has_a_sign_and_a_word(verdict: Verdict) -> None:
 def test_a_check_is_said_to_be_met_or_not_in_words_too() -> None:
     assert "✓ Met: Stuck" in READ.words
     assert "✗ Not met: 28 whole" in READ.words
-    assert "1 of 3 conditions were not met" in READ.words
+    assert "1 of 3 conditions was not met" in READ.words
 
 
 def test_a_run_that_did_not_come_to_its_end_says_so() -> None:

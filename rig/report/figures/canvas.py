@@ -67,6 +67,7 @@ class Drawing:
     note: str  # definition and reading, printed beside it
     draw: Callable[[Curves, Frame], Figure | None]
     say: Callable[[Curves], str]  # what a screen reader says
+    named: Callable[[Curves], tuple[str, str]] | None = None  # title and note, where they depend on what is drawn
     full: bool = False  # takes the whole width of a printed page; else two stand side by side
 
 

@@ -70,7 +70,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
             {"ls": FIT_DASH, "label": "Fourier fit"} if fit is not None else {"label": "mean of both"}
         )
         handles += panels[0].plot(*closed(theta, best), color=LIGHT["fit"], lw=2.0, zorder=4, **style)
-    title(panels[0], "Kinematic error", "arcsec", keys=keys)
+    title(panels[0], what(curves), "arcsec", keys=keys)
     key(panels[0], handles, columns)
     shown = best if best is not None else next((s.mean for s in both if s.mean is not None), None)
     if shown is not None and not frame.narrow:
@@ -78,8 +78,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     strips = [_apart(panel, frame, theta, side, best) for panel, side in zip(panels[1:], apart, strict=True)]
     for panel, side in zip(panels[1:], apart, strict=True):
         panel.set_ylim(*_limits(strips))  # one scale, so that the directions can be compared
-        what = "the fit" if fit is not None else "the mean of both"
-        title(panel, f"{side.direction.name.capitalize()} less {what}", "arcsec")
+        less = "the fit" if fit is not None else "the mean of both"
+        title(panel, f"{side.direction.name.capitalize()} less {less}", "arcsec")
     angle_axis(panels, frame)
     return figure
 
@@ -170,17 +170,40 @@ def say(curves: Curves) -> str:
     fit = line(curves, "ke.fit", length)
     if fit is not None:
         parts.append(f"Fourier fit with {plain(float(np.nanmax(fit) - np.nanmin(fit)), 3)} arcsec peak to peak")
-    return "Kinematic error in arcsec over one turn of the wave generator: " + "; ".join(parts) + "."
+    return f"{what(curves)} in arcsec over one turn of the wave generator: " + "; ".join(parts) + "."
 
 
+def what(curves: Curves) -> str:
+    """Only a slow run shows the kinematic error; at speed θ̃ has what inertia and friction add in it."""
+    speed = curves.get("ke.at_speed")
+    if speed is None:
+        return "Kinematic error"
+    rpm = float(speed[0]) if np.size(speed) else float("nan")
+    return f"θ̃ at {plain(rpm, 4)} rpm" if np.isfinite(rpm) else "θ̃ at speed"
+
+
+def named(curves: Curves) -> tuple[str, str]:
+    """Title and caption."""
+    term = what(curves)
+    first = "Kinematic error is the" if term == "Kinematic error" else "θ̃ is the"
+    at_speed = "" if term == "Kinematic error" else "At this speed inertia and friction are in it. "
+    return f"{term} over one turn of the wave generator", f"{first} {NOTE_MIDDLE} {at_speed}{NOTE_END}"
+
+
+NOTE_MIDDLE = (
+    "motor angle divided by the gear ratio, less the load angle: positive when the "
+    "load lags. It is referred to the output; its constant part and its slow trend are taken out."
+)
+NOTE_END = (
+    "The bracket is the peak to peak of the fitted series, not of the drawn mean curves. Peak to "
+    "peak is per wave-generator turn, as in the paper; the maker’s transmission accuracy is over one output "
+    "turn and is not the same. Below, each direction less the fit, on a scale of its own."
+)
 DRAWING = Drawing(
     "kinematic-error",
-    "Kinematic error over one turn of the wave generator",
-    "Kinematic error is the motor angle divided by the gear ratio, less the load angle: positive when the "
-    "load lags. It is referred to the output; its constant part and its slow trend are taken out. Peak to "
-    "peak is per wave-generator turn, as in the paper; the maker’s transmission accuracy is over one output "
-    "turn and is not the same. Below, each direction less the fit, on a scale of its own.",
+    *named({}),
     draw,
     say,
+    named,
     full=True,
 )

@@ -73,8 +73,8 @@ DRAWING = Drawing(
     "Torsion against torque",
     "Torsion is the motor angle divided by the gear ratio, less the load angle; the kinematic error at these "
     "motor angles is still in it. The slope is the compliance of the whole path between the encoders: gear, "
-    "torque sensor, couplings and fixture together. The height of the loop at zero torque is the hysteresis "
-    "loss.",
+    "torque sensor, couplings and fixture together. The loop width is the distance between its branches at zero "
+    "torque, along the torsion axis.",
     draw,
     say,
 )

@@ -1,0 +1,93 @@
+"""Folders made by other hands, or damaged: always a sentence, never an exception, nothing on stderr."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis import Result, Verdict, analyse
+from tests.analysis.synthetic import MadeRun
+from tests.analysis.test_analyse import PROCEDURES, at_speed
+
+ODD: tuple[Any, ...] = ("word", ["a", 1], None, float("nan"), float("inf"), 10**400, {"x": {"y": [1]}}, -1, True, {})
+
+
+class OddRun(MadeRun):
+    """A run whose manifest is no help: ratio and procedure stand for themselves."""
+
+    @property
+    def ratio(self) -> float:
+        return float(self.manifest.get("odd_ratio", 50.0))
+
+
+def told(columns: Any, manifest: dict[str, Any], procedure: str) -> Result:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = analyse(OddRun(columns, {"procedure": procedure, **manifest}))
+    assert result.sentence
+    assert "broke off" not in result.sentence, result.sentence
+    return result
+
+
+@pytest.mark.parametrize("key", ["declared", "encoders", "limits", "conditions", "gear", "files", "status"])
+@pytest.mark.parametrize("value", ODD, ids=lambda v: str(type(v).__name__))
+def test_any_table_of_the_manifest_may_be_anything(key: str, value: Any) -> None:
+    short = at_speed(seconds=4.0).columns
+    for procedure in ("kinematic_error", "standstill"):
+        told(short, {key: value}, procedure)
+        told(short, {key: {"K": value, "motor_counts_per_rev": value, "mean_speed": value}}, procedure)
+        told(short, {key: {"mean_speed": {"upper": value}, "ratio": value}}, procedure)
+
+
+@pytest.mark.parametrize("procedure", PROCEDURES)
+def test_any_column_may_hold_anything(procedure: str) -> None:
+    whole = dict(at_speed(seconds=4.0, tau_l=np.zeros(4000), flags=np.zeros(4000)).columns)
+    for name in whole:
+        for factor in (1e300, 1e-300, 1e-15, 1e15, 1e6, 0.0, -1.0, np.inf, np.nan, 2.0**63):
+            if name == "t" and factor == -1.0:
+                continue
+            with np.errstate(all="ignore"):
+                told({**whole, name: whole[name] * factor}, {}, procedure)
+        holes = whole[name].copy()
+        holes[100::7] = np.inf
+        told({**whole, name: holes}, {}, procedure)
+
+
+@pytest.mark.parametrize("ratio", [1e300, 1e-300, 1e7])
+def test_a_ratio_no_gear_has_settles_nothing(ratio: float) -> None:
+    result = told(at_speed(seconds=2.0).columns, {"odd_ratio": ratio}, "kinematic_error")
+    assert result.verdict is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize("procedure", PROCEDURES)
+@pytest.mark.parametrize("rate", [1e3, 1e4, 1e6])
+@pytest.mark.parametrize("rows", [16, 17, 40, 200])
+def test_a_short_run_at_any_rate_ends_in_a_sentence(procedure: str, rate: float, rows: int) -> None:
+    t = np.arange(rows) / rate
+    theta = np.linspace(0.0, 20.0, rows)
+    told({"t": t, "theta_m": theta, "theta_l": theta / 50}, {}, procedure)
+
+
+@pytest.mark.parametrize("procedure", PROCEDURES)
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_run_of_which_nothing_could_be_measured_is_inconclusive(procedure: str, rows: int) -> None:
+    columns = {n: c[:rows] for n, c in at_speed().columns.items()}
+    assert told(columns, {}, procedure).verdict is Verdict.INCONCLUSIVE
+    nothing = {**at_speed().columns, "theta_m": np.full(10_000, np.nan)}
+    assert told(nothing, {}, procedure).verdict is Verdict.INCONCLUSIVE
+    assert told({"t": np.arange(100.0)}, {}, procedure).verdict is Verdict.INCONCLUSIVE
+
+
+@pytest.mark.parametrize("procedure", ["kinematic_error", "constant_torque", "constant_speed"])
+def test_a_run_meant_to_turn_that_made_no_whole_turn_is_inconclusive(procedure: str) -> None:
+    t = np.arange(0, 2, 1e-3)
+    assert told({"t": t, "theta_m": t, "theta_l": t / 50}, {}, procedure).verdict is Verdict.INCONCLUSIVE
+
+
+def test_a_hyphen_before_a_number_is_a_minus_and_no_other_is() -> None:
+    from rig.analysis.findings import true_minus
+
+    assert true_minus("-5 to -3.2, 1e-5, 2026-11-20, open-1 (-1)") == "−5 to −3.2, 1e-5, 2026-11-20, open-1 (−1)"
