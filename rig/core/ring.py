@@ -35,6 +35,7 @@ _HEAD, _CLOSED = 0, 1  # stored by the producer
 _ACKED, _WRITTEN, _ERROR, _READER_PID, _READER_STARTED = 8, 9, 10, 11, 12  # stored by the recorder
 _TEXT, _TEXT_MAX = 256, 1022  # the recorder's error: u16 length, then UTF-8
 _TABLE = 1280  # the columns: u32 length, then JSON
+_OWNER, _OWNER_MAX = 2304, 1790  # whose rows these are: u16 length, then JSON
 _CODE = {"float64": "d", "int64": "q", "uint32": "q"}  # one 8-byte field each
 _ROW = struct.Struct("".join(_CODE[c.dtype] for c in CHANNELS))  # native, aligned: the columns in the table's order
 _DTYPE = {"d": "f8", "q": "i8"}
@@ -57,15 +58,18 @@ class Ring:
         self._limit: int = self._counters[_ACKED] + self.capacity  # the producer looks again when it gets here
 
     @classmethod
-    def create(cls, capacity: int = CAPACITY, started: int = 0) -> Ring:
+    def create(cls, capacity: int = CAPACITY, started: int = 0, folder: Path | None = None) -> Ring:
         """A new ring of `capacity` rows, allocated and touched, so that no later store can fail or fault.
 
-        `started` is when this process started, in clock ticks since boot (0 unknown). Raises RecorderError.
+        `started` is when this process started, in clock ticks since boot (0 unknown), `folder` that of the run whose
+        rows these are. Raises RecorderError.
         """
         path, mapped = _allocate(HEADER + capacity * _ROW.size)
         _FIXED.pack_into(mapped, 0, _MAGIC, _VERSION, _ROW.size, capacity, os.getpid(), started)
         table = json.dumps([(c.name, c.dtype) for c in CHANNELS]).encode()
         struct.pack_into(f"<I{len(table)}s", mapped, _TABLE, len(table), table)
+        owner = _owner(folder) if folder else b""
+        struct.pack_into(f"<H{len(owner)}s", mapped, _OWNER, len(owner), owner)
         return cls(path, mapped)
 
     @classmethod
@@ -108,6 +112,23 @@ class Ring:
         at, n = start % self.capacity, max(stop - start, 0)
         copy = np.concatenate((self._rows[at : at + n], self._rows[: max(at + n - self.capacity, 0)]))
         return copy[max(self.oldest - start, 0) :]
+
+    @property
+    def owner(self) -> str:
+        """The folder of the run whose rows these are, as it was called at the start; "" when not said."""
+        return str(self._said_owner().get("path", ""))
+
+    def belongs_to(self, folder: Path) -> bool:
+        """False when these are the rows of another folder, `folder` being a copy; one that was moved is the same."""
+        said, here = self._said_owner(), json.loads(_owner(folder))
+        return not said or any(said.get(key) == here[key] for key in said if key in here)
+
+    def _said_owner(self) -> dict[str, Any]:
+        (length,) = struct.unpack_from("<H", self._mapped, _OWNER)
+        try:
+            return dict(json.loads(self._mapped[_OWNER + 2 : _OWNER + 2 + length]))
+        except ValueError:  # nothing was said
+            return {}
 
     @property
     def head(self) -> int:
@@ -180,6 +201,16 @@ class Ring:
         """Remove the file. Whoever has it mapped keeps what is in it."""
         with contextlib.suppress(FileNotFoundError):
             self.path.unlink()
+
+
+def _owner(folder: Path) -> bytes:
+    """A folder told apart from its copies, as JSON: by its path and, where it is moved later, by its inode."""
+    said: dict[str, str | list[int]] = {}
+    with contextlib.suppress(OSError):
+        state = folder.stat()
+        said["inode"] = [state.st_dev, state.st_ino]
+    with_path = json.dumps(said | {"path": str(folder.absolute())}).encode()
+    return with_path if len(with_path) <= _OWNER_MAX else json.dumps(said).encode()
 
 
 def _allocate(size: int) -> tuple[Path, mmap.mmap]:

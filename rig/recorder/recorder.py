@@ -6,6 +6,7 @@ import contextlib
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from rig.core.clock import Clock
@@ -13,20 +14,32 @@ from rig.core.errors import HdrigError, RecorderError
 from rig.core.ring import CAPACITY, Ring
 from rig.core.sample import Sample
 from rig.runfile import manifest
+from rig.runfile.journal import rows_missing
 from rig.runfile.process import this_process
 
 READY_WITHIN = 20.0  # s of wall time for a process to start; 0.15 s on a quiet machine
+STUCK = 30.0  # s of wall time for a full ring to be given any room: a disk that takes longer will not come back
+STUCK_WHEN_ASKED = 2.0  # s of it when somebody asked the program to end: ten times what lies between two batches
 DONE_WITHIN = 60.0  # s for what is left in the ring, at most 7 MB, to reach the disk
 
 
 class Recorder:
     """Keeps the rows of one run in `folder`. `start`, then `put` every tick and `check` now and then, then `close`."""
 
-    def __init__(self, folder: Path, clock: Clock, capacity: int = CAPACITY) -> None:
-        """`capacity` is how many rows may wait for the disk. Raises RecorderError when shared memory has no room."""
+    def __init__(
+        self,
+        folder: Path,
+        clock: Clock,
+        capacity: int = CAPACITY,
+        interrupted: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """`capacity` is how many rows may wait for the disk; `interrupted` says whether somebody asked for an end, and
+        is looked at while `put` waits. Raises RecorderError when shared memory has no room.
+        """
         self.folder = folder
         self._clock = clock
-        self._ring = Ring.create(capacity, this_process()["started"])
+        self._interrupted = interrupted
+        self._ring = Ring.create(capacity, this_process()["started"], folder)
         self._process: subprocess.Popen[bytes] | None = None
         self._kept: int | None = None  # rows, once closed
 
@@ -51,13 +64,24 @@ class Recorder:
             raise
 
     def put(self, sample: Sample, tau_ask: float, tau_applied: float, theta_ref: float) -> None:
-        """Keep one row. On a virtual clock it waits for room; on a wall clock no room raises RecorderError."""
+        """Keep one row. On a virtual clock it waits for room, while there is hope; on a wall clock no room raises
+        RecorderError.
+        """
         while not self._ring.put(sample, tau_ask, tau_applied, theta_ref):
+            self._await_room()
+
+    def _await_room(self) -> None:
+        began = time.monotonic()
+        while self._ring.head - self._ring.acked >= self._ring.capacity:
             self.check()
+            behind = f"the recorder is {self._ring.capacity} rows behind, as many as can wait"
             if not self._clock.relax():
+                raise RecorderError(f"{behind}; the disk of {self.folder} is too slow or stuck")
+            waited = time.monotonic() - began
+            if waited > STUCK or (waited > STUCK_WHEN_ASKED and self._interrupted()):
                 raise RecorderError(
-                    f"the recorder is {self._ring.capacity} rows behind, as many as can wait; "
-                    f"the disk of {self.folder} is too slow or stuck"
+                    f"{behind}, and has kept none for {waited:.0f} s; the disk of {self.folder} is stuck, or the "
+                    "recorder's process was stopped"
                 )
 
     def check(self) -> None:
@@ -65,27 +89,34 @@ class Recorder:
         if self._ring.error:
             raise RecorderError(f"{self._ring.error} ({self._ring.written} rows are in the journal)")
         if self._process is not None and self._process.poll() is not None:
+            left = self._ring.head - self._ring.written
+            fate = "are in memory and will be kept" if self._ring.path.exists() else f"are lost: {self._gone()}"
             raise RecorderError(
                 f"the recorder died ({_cause(self._process.returncode)}) with {self._ring.written} rows in the "
-                f"journal; {self._ring.head - self._ring.written} more are in memory and will be kept"
+                f"journal; {left} more {fate}"
             )
 
     def close(self) -> int:
         """Wait until every row is on disk; returns how many. Idempotent.
 
         A recorder that died or failed is started once more, from where the journal ends. If that fails too, the rows
-        stay in the ring and RecorderError says where.
+        stay in the ring and RecorderError says where, or that somebody removed it.
         """
         if self._kept is None:
             self._ring.finish()
+            missing = 0  # of what an earlier recorder wrote
             try:
                 if not self._ended_well():
                     self._spawn()  # finds the ring closed: writes what the journal lacks, and ends
                     if not self._ended_well():
                         self.check()  # raises: it has ended, and not well
+                    missing = rows_missing(self.folder)
             except RecorderError as error:
                 raise RecorderError(f"{error}; {self._left_behind()}") from error
-            self._discard(self._ring.acked)
+            put = self._ring.acked
+            self._discard(put - missing)
+            if missing:
+                raise RecorderError(f"{missing} of {put} rows are lost: a journal was removed or cut")
         return self._kept or 0
 
     def _spawn(self) -> None:
@@ -122,10 +153,15 @@ class Recorder:
 
     def _left_behind(self) -> str:
         safe, put = self._ring.written, self._ring.head
+        if not self._ring.path.exists():
+            return f"{safe} of {put} rows are in the journal, the last {put - safe} are lost: {self._gone()}"
         return (
             f"{safe} of {put} rows are in the journal, the last {put - safe} in {self._ring.path}; "
             f"mend the cause, then: hdrig recover {self.folder}"
         )
+
+    def _gone(self) -> str:
+        return f"somebody removed {self._ring.path}, where they waited"
 
     def _discard(self, kept: int = 0) -> None:
         self._kept = kept

@@ -146,6 +146,7 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
     if not path.exists():
         return 0
     ring = Ring.attach(path)
+    refuse_stranger(ring, folder)
     have = rows_in_journal(folder)
     left = ring.head - max(have, ring.oldest)
     if left > 0:
@@ -158,6 +159,15 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
     ring.unlink()
     ring.close()
     return max(left, 0)
+
+
+def refuse_stranger(ring: Ring, folder: Path) -> None:
+    """Raises UsageError when the rows in `ring` are those of another folder."""
+    if not ring.belongs_to(folder):
+        raise UsageError(
+            f"the rows in {ring.path} belong to {ring.owner or 'another folder'}, of which {folder} is a copy: "
+            "close or recover that one first"
+        )
 
 
 def raw_files(folder: Path) -> list[Path]:

@@ -27,13 +27,17 @@ def journal_files(folder: Path) -> list[Path]:
     return sorted(folder.glob("journal-*.arrows"))
 
 
+def _last_number(folder: Path) -> int:
+    numbers = (path.stem.removeprefix("journal-") for path in journal_files(folder))
+    return max((int(number) for number in numbers if number.isdecimal()), default=0)
+
+
 class JournalWriter:
     """Appends batches to a new journal file. A batch is in it whole or not at all, unless the writer is killed."""
 
     def __init__(self, folder: Path, layout: pa.Schema, first: int) -> None:
         """`first` is the index in the run of the first row to come. Raises OSError."""
-        number = len(journal_files(folder)) + 1
-        self.path = folder / f"journal-{number:04d}.arrows"
+        self.path = folder / f"journal-{_last_number(folder) + 1:04d}.arrows"
         self.rows = first  # index of the next row
         self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
         self._end = 0  # bytes that are whole
@@ -154,3 +158,11 @@ def rows_in_journal(folder: Path) -> int:
     for _ in reader:
         pass
     return reader.next_row
+
+
+def rows_missing(folder: Path) -> int:
+    """Rows that a later batch says came before it, and that are not there. Reads everything."""
+    reader = JournalReader(folder)
+    for _ in reader:
+        pass
+    return reader.missing

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from rig.core.errors import UsageError
-from rig.runfile.manifest import NAME, SCHEMA
+from rig.runfile.manifest import NAME, SCHEMA, parse
 from rig.runfile.process import is_being_made
 
 
@@ -36,7 +36,11 @@ def list_runs(root: Path | str) -> list[Row]:
 
 def run_folders(root: str, depth: int = 3) -> Iterator[str]:
     """Folders with a manifest, down to ./runs/date/run; hidden ones are passed by."""
-    with os.scandir(root) as entries:
+    try:
+        entries = os.scandir(root)
+    except OSError:  # not ours to look into
+        return
+    with entries:
         folders = [e.path for e in entries if e.is_dir() and not e.name.startswith(".")]
     for folder in folders:
         if os.path.exists(f"{folder}/{NAME}"):
@@ -45,29 +49,40 @@ def run_folders(root: str, depth: int = 3) -> Iterator[str]:
             yield from run_folders(folder, depth - 1)
 
 
+def _text(value: object) -> str:
+    """A word of the manifest; a number is one too (a serial), anything else is as good as nothing said."""
+    return str(value) if isinstance(value, str | int | float) else ""
+
+
+def _number(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
 def _row(folder: str) -> Row:
     try:
         with open(f"{folder}/{NAME}", "rb") as file:
-            about = json.loads(file.read())
+            about = parse(file.read())
         if about["schema"] != SCHEMA:
             raise ValueError
-    except (OSError, ValueError, KeyError, TypeError):
+        return _row_of(Path(folder), about)
+    except (OSError, ValueError, KeyError, TypeError, OverflowError):
         return Row("", "", "", "unreadable", None, None, False, "", Path(folder))
-    return _row_of(Path(folder), about)
 
 
 def _row_of(folder: Path, about: Mapping[str, Any]) -> Row:
-    status = str(about.get("status", ""))
+    status, gear = _text(about.get("status")), about.get("gear")
     if status == "running" and not is_being_made(about):
         status = "interrupted"
     return Row(
-        started_utc=str(about.get("started_utc", "")),
-        procedure=str(about.get("label") or about.get("procedure", "")),
-        gear=str((about.get("gear") or {}).get("serial", "")),
+        started_utc=_text(about.get("started_utc")),
+        procedure=_text(about.get("label") or about.get("procedure")),
+        gear=_text(gear.get("serial")) if isinstance(gear, dict) else "",
         status=status,
-        duration=about.get("duration"),
-        rows=about.get("rows"),
+        duration=_number(about.get("duration")),
+        rows=rows if isinstance(rows := about.get("rows"), int) else None,
         simulated=about.get("backend") == "sim",
-        verdict=str(about.get("verdict", "")),
+        verdict=_text(about.get("verdict")),
         path=folder,
     )

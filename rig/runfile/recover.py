@@ -11,7 +11,7 @@ from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events
-from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed
+from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed, refuse_stranger
 from rig.runfile.journal import journal_files
 from rig.runfile.process import Process, lives
 from rig.runfile.run import ratio_of
@@ -75,17 +75,20 @@ def _refuse_living(folder: Path, about: Mapping[str, Any]) -> None:
         raise NotReady(f"{folder.name} is still being made by process {loop['pid']}; stop that first")
     ring = _ring(about)
     if ring.exists():
-        recorder = _recorder_of(ring, loop)
+        recorder = _recorder_of(folder, ring, loop)
         if lives(recorder):
             raise NotReady(
                 f"the recorder of {folder.name}, process {recorder['pid']}, is still writing; try again soon"
             )
 
 
-def _recorder_of(path: Path, loop: Process | None) -> Process:
+def _recorder_of(folder: Path, path: Path, loop: Process | None) -> Process:
     ring = Ring.attach(path)
-    pid, started = ring.reader
-    ring.close()
+    try:
+        refuse_stranger(ring, folder)
+        pid, started = ring.reader
+    finally:
+        ring.close()
     return Process(pid=pid, started=started, host=str(loop.get("host", "")) if loop else "")
 
 

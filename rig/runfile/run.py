@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from datetime import datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, TypeGuard
@@ -75,6 +76,16 @@ class Run:
     def simulated(self) -> bool:
         """True when the samples came from the twin."""
         return self.manifest.get("backend") == "sim"
+
+    @property
+    def started(self) -> datetime | None:
+        """When the run started; None when not said. Raises UsageError when what is said is no time."""
+        said = self.manifest.get("started_utc")
+        try:
+            return datetime.fromisoformat(said) if said else None
+        except ValueError:
+            where = self.path / manifests.NAME
+            raise UsageError(f"{where}: started_utc is {json.dumps(said)[:60]}, expected ISO 8601") from None
 
     @cached_property
     def timing(self) -> Mapping[str, Any]:

@@ -20,7 +20,7 @@ from rig.runfile.finalise import finalise
 from rig.runfile.recover import recover
 from rig.runfile.run import Run
 from tests.recorder.clocks import HeldClock, WallClock
-from tests.runfile.rows import assert_prefix, manifest_of, new_folder, sample
+from tests.runfile.rows import assert_prefix, copy_of, manifest_of, new_folder, sample
 
 
 def put(recorder: Recorder, start: int, stop: int) -> None:
@@ -263,3 +263,85 @@ def test_the_run_can_be_read_while_it_is_made(tmp_path: Path) -> None:
     assert len(ring.read(0, 300)) == 300
     ring.close()
     recorder.close()
+
+
+@contextmanager
+def stopped(recorder: Recorder) -> Iterator[None]:
+    """Its process stands still, as one whose disk is stuck."""
+    os.kill(pid_of(recorder), signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(pid_of(recorder), signal.SIGCONT)
+
+
+def test_held_time_does_not_wait_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rig.recorder.recorder.STUCK", 0.2)
+    recorder = Recorder(new_folder(tmp_path), HeldClock(), capacity=64)
+    recorder.start()
+    with stopped(recorder), pytest.raises(RecorderError, match=r"has kept none for 0 s; the disk of .* is stuck"):
+        put(recorder, 0, 65)
+    assert recorder.close() == 64
+
+
+def test_an_operator_who_wants_an_end_need_not_wait_so_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rig.recorder.recorder.STUCK_WHEN_ASKED", 0.2)
+    recorder = Recorder(new_folder(tmp_path), HeldClock(), capacity=64, interrupted=lambda: True)
+    recorder.start()
+    with stopped(recorder), pytest.raises(RecorderError, match="the recorder's process was stopped"):
+        put(recorder, 0, 65)
+    assert recorder.close() == 64
+
+
+def test_rows_in_memory_that_somebody_removed_are_told_as_lost(tmp_path: Path) -> None:
+    recorder = Recorder(new_folder(tmp_path), WallClock())
+    recorder.start()
+    with stopped(recorder):
+        put(recorder, 0, 100)
+        os.kill(pid_of(recorder), signal.SIGKILL)
+    recorder.ring.unlink()
+    assert "100 more are lost: somebody removed" in raised(recorder)
+    with pytest.raises(RecorderError, match="0 of 100 rows are in the journal, the last 100 are lost"):
+        recorder.close()
+
+
+def test_a_journal_removed_in_mid_run_is_told_and_what_is_in_memory_is_kept(tmp_path: Path) -> None:
+    folder = new_folder(tmp_path)
+    recorder = Recorder(folder, WallClock(), capacity=1000)
+    recorder.start()
+    ring = Ring.attach(recorder.ring)
+    put(recorder, 0, 900)
+    until(lambda: ring.acked == 900)
+    put(recorder, 900, 1100)
+    (folder / "journal-0001.arrows").unlink()
+    assert "somebody removed or cut it" in raised(recorder)
+    with pytest.raises(RecorderError, match=r"\d+ of 1100 rows are lost: a journal was removed or cut"):
+        recorder.close()
+    done = finalise(folder, "completed", "end", expected_rows=1100)
+    assert done.lost == 1100 - done.rows > 0
+    assert manifest_of(folder)["status"] == "interrupted"
+    ring.close()
+
+
+def test_the_rows_of_a_run_are_not_taken_by_its_copy(tmp_path: Path) -> None:
+    folder = new_folder(tmp_path)
+    recorder = Recorder(folder, WallClock())
+    recorder.start()
+    put(recorder, 0, 100)
+    copy = copy_of(folder, tmp_path / "copy")
+    before = {p.name: p.read_bytes() for p in copy.iterdir()}
+    with pytest.raises(UsageError, match=f"belong to {folder}, of which {copy} is a copy"):
+        recover(copy)
+    assert {p.name: p.read_bytes() for p in copy.iterdir()} == before
+    assert recorder.ring.exists()
+    assert recorder.close() == 100
+
+
+def test_the_rows_of_a_run_that_was_moved_are_still_its_own(tmp_path: Path) -> None:
+    folder = new_folder(tmp_path)
+    ring = Ring.create(10, folder=folder)
+    moved = folder.rename(tmp_path / "moved")
+    assert ring.owner == str(folder)
+    assert ring.belongs_to(moved)
+    ring.unlink()
+    ring.close()

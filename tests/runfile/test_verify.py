@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 from collections.abc import Callable
@@ -13,12 +14,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from rig.commands import list_ as list_command
 from rig.core.channels import Flag
-from rig.core.errors import UsageError
+from rig.core.errors import HdrigError, UsageError
 from rig.runfile import manifest
+from rig.runfile.events import read_events
+from rig.runfile.export import export
 from rig.runfile.finalise import describe, finalise
 from rig.runfile.listing import list_runs
 from rig.runfile.process import this_process
+from rig.runfile.recover import recover
+from rig.runfile.run import Run
 from rig.runfile.verify import verify
 from tests.runfile.rows import new_folder, write_journal
 
@@ -240,3 +246,71 @@ def test_runs_side_by_side_are_a_root_too(tmp_path: Path) -> None:
     assert [row.path for row in list_runs(folder.parent)] == [folder]
     with pytest.raises(UsageError, match="there is no folder"):
         list_runs(tmp_path / "gone")
+
+
+ODD: list[bytes] = [
+    b'{"schema": "hdrig.run/1", "gear": "SN1", "duration": "long", "rows": "all", "verdict": {}, "label": []}',
+    b'{"schema": "hdrig.run/1", "gear": null, "duration": 1e999, "process": "me", "status": "running"}',
+    b'{"schema": "hdrig.run/1", "process": {"pid": "1", "started": []}, "status": "running", "started_utc": null}',
+    b'{"schema": "hdrig.run/1", "duration": 1' + b"0" * 400 + b"}",
+    b'{"schema": "hdrig.run/1", "procedure": "\\ud800", "gear": {"serial": "a\\nb"}}',
+    b'{"schema": "hdrig.run/1", "gear": ' + b"[" * 10_000 + b"]" * 10_000 + b"}",
+    b'{"schema": "hdrig.run/1", "gear": {"ratio": 1' + b"0" * 400 + b'}, "procedure": "other"}',
+    b'{"schema": "hdrig.run/1", "gear": {"ratio": 50}, "procedure": "other", "files": "none"}',
+    b'{"schema": "hdrig.run/1", "gear": {"ratio": 50}, "procedure": "other", "files": {"samples.parquet": null}}',
+    b'{"schema": "hdrig.run/1", "gear": {"ratio": 50}, "procedure": ["other"], "files": {"bench.toml": {}}}',
+    b"[]",
+    b"7",
+]
+
+
+@pytest.mark.parametrize("about", ODD)
+def test_an_odd_manifest_spoils_no_list(tmp_path: Path, about: bytes, capsys: pytest.CaptureFixture[str]) -> None:
+    closed(tmp_path)
+    (tmp_path / "odd").mkdir()
+    (tmp_path / "odd" / "manifest.json").write_bytes(about)
+    assert {row.path.name for row in list_runs(tmp_path)} > {"odd"}
+    assert list_command.run(argparse.Namespace(root=tmp_path)) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 3
+
+
+@pytest.mark.parametrize("about", ODD)
+def test_an_odd_manifest_is_a_sentence(tmp_path: Path, about: bytes) -> None:
+    (tmp_path / "manifest.json").write_bytes(about)
+    pq.write_table(pa.table({"theta_m": np.arange(9.0)}), tmp_path / "samples.parquet")
+    for act in (verify, Run.open, recover):
+        try:
+            act(tmp_path)
+        except HdrigError as error:
+            assert str(tmp_path) in str(error)
+
+
+@pytest.mark.parametrize("timing", [b"[]", b"7", b'[["a"]]', b"[" * 10_000, b'{"ticks": "many"}'])
+def test_odd_statistics_of_the_loop_are_as_good_as_none(tmp_path: Path, timing: bytes) -> None:
+    folder = closed(tmp_path)
+    tampered(folder, "timing.json", lambda data: timing)
+    assert [check for check, _ in found(folder)] == ["hashes"]
+    assert Run.open(folder).timing in ({}, {"ticks": "many"})
+
+
+def test_lines_that_are_no_events_are_left_out(tmp_path: Path) -> None:
+    lines = [b"7", b"[]", b"null", b"[" * 10_000, b'{"kind": "note"}']
+    (tmp_path / "events.jsonl").write_bytes(b"\n".join(lines))
+    assert read_events(tmp_path) == [{"kind": "note"}]
+
+
+def test_a_column_that_is_there_twice_is_a_finding(tmp_path: Path) -> None:
+    (tmp_path / "manifest.json").write_bytes(b'{"schema": "hdrig.run/1", "gear": {"ratio": 50}, "procedure": "other"}')
+    twice = pa.table([pa.array([1.0]), pa.array([2.0])], names=["theta_m", "theta_m"])
+    pq.write_table(twice, tmp_path / "samples.parquet")
+    ((check, sentence),) = found(tmp_path)
+    assert check == "samples"
+    assert "has 2 columns named theta_m, expected one" in sentence
+
+
+@pytest.mark.parametrize("kind", ["mcap", "mdf4"])
+def test_a_start_that_is_no_time_is_a_sentence(tmp_path: Path, kind: str) -> None:
+    folder = closed(tmp_path)
+    manifest.update(folder, started_utc="yesterday")
+    with pytest.raises(UsageError, match='started_utc is "yesterday", expected ISO 8601'):
+        export(Run.open(folder), kind)

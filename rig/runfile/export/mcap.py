@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -64,5 +63,5 @@ def _messages(run: Run) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def _start_ns(run: Run) -> int:
-    said = run.manifest.get("started_utc")
-    return round(datetime.fromisoformat(said).timestamp() * 1e6) * 1000 if said else 0
+    started = run.started
+    return round(started.timestamp() * 1e6) * 1000 if started else 0

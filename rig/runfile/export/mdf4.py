@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +41,8 @@ def _head(mdf: Any, run: Run) -> None:
     mdf.header.project = f"hdrig {run.procedure}"
     mdf.header.subject = str((run.manifest.get("gear") or {}).get("serial") or "")
     mdf.header.description = f"{'SIMULATED: every value is from the twin. ' if run.simulated else ''}Run {run.name}"
-    if run.manifest.get("started_utc"):
-        mdf.header.start_time = datetime.fromisoformat(run.manifest["started_utc"])
+    if run.started:
+        mdf.header.start_time = run.started
 
 
 def _signal(run: Run, name: str, t: Array, column: Column) -> Any:
