@@ -117,7 +117,7 @@ def _add_loop_width(found: Findings, ramps: list[Ramp]) -> str:
         return ""
     width = float(down.mean() - up.mean()) * ARCMIN
     dof = up.size + down.size - 2
-    how = f"Wind-up at zero torque, {down.size} falling less {up.size} rising ramps; a sensor offset moves zero."
+    how = f"Wind-up at zero torque, ramps falling ({down.size}) less rising ({up.size}); a sensor offset moves zero."
     spread = float("nan")
     if dof > 0:
         pooled = float(np.sqrt((np.sum((up - up.mean()) ** 2) + np.sum((down - down.mean()) ** 2)) / dof))

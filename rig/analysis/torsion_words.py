@@ -78,8 +78,8 @@ def _doubts(found: Findings, r: Torsion) -> None:
 def _row(line: Line) -> dict[str, float | str]:
     return {
         "order": line.order,
-        "amplitude_arcmin": line.amplitude * ARCMIN,
-        "u_arcmin": line.u * ARCMIN,
+        "amplitude_arcsec": line.amplitude * ARCSEC,
+        "u_arcsec": line.u * ARCSEC,
         "resolution": line.resolution,
         "resolved": "yes" if line.resolved else "no",
     }

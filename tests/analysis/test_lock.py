@@ -62,3 +62,13 @@ def test_a_lock_test_without_torque_says_so() -> None:
     result = analyse(run)
     assert "without shaft torque" in result.sentence
     assert result.estimates == ()
+
+
+def test_one_ramp_is_not_ramps_and_prose_has_true_minus_signs() -> None:
+    t = np.arange(0, 20.0, 0.004)
+    w = np.linspace(-0.007, 0.007, t.size)
+    columns = {"t": t, "theta_m": count(50 * w, 65_536), "theta_l": np.zeros_like(t), "tau_l": 7160 * w}
+    result = analyse(MadeRun(columns, {"procedure": "stiffness_lock", "gear": {"ratio": 50}}))
+    how = figures(result)["torsional_stiffness"].how
+    assert "1 ramp, −50.1 to 50.1 N·m" in how
+    assert "1 ramps" not in how

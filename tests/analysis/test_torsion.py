@@ -53,7 +53,7 @@ def test_the_measured_joint_twists_by_18_arcmin_and_little_is_left(joint3: Resul
 
 def test_the_measured_joint_has_a_line_beside_order_two(joint3: Result) -> None:
     line = next(r for r in joint3.tables["torsion_lines"] if abs(float(r["order"]) - (2 - 2 / 101)) < 1e-9)
-    assert abs(float(line["amplitude_arcmin"]) - 0.046) < 0.002
+    assert abs(float(line["amplitude_arcsec"]) - 2.76) < 0.12
     assert line["resolved"] == "yes"
 
 

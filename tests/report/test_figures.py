@@ -216,3 +216,16 @@ def walk(path: str) -> made_up.Array:
         if command == "m":
             start, command = here, "l"
     return np.array(out)
+
+
+def test_a_run_at_speed_is_not_called_the_kinematic_error() -> None:
+    from rig.report.figures import kinematic_error
+
+    slow, fast = made_up.curves(), {**made_up.curves(), "ke.at_speed": np.array([120.0])}
+    assert kinematic_error.named(slow)[0].startswith("Kinematic error over")
+    title, note = kinematic_error.named(fast)
+    assert title.startswith("θ̃ at 120 rpm over")
+    assert "fitted series, not of the drawn mean" in note
+    text = figures.svg(kinematic_error.DRAWING, fast) or ""
+    assert "θ̃ at 120 rpm" in text
+    assert "Kinematic error" not in text
