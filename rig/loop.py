@@ -61,6 +61,7 @@ class Loop:
         self.timing = timing
         self.watch = watch
         self.running = False
+        self.rows = 0  # handed to the sink so far
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
         """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure, a recorder that failed)
@@ -107,7 +108,7 @@ class Loop:
             trip = check(sample, asked)
             if trip is not None:
                 self.instruments.safe()
-                put(sample._replace(flags=sample.flags | Flag.TRIPPED), 0.0, 0.0, asked.theta_ref)
+                self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
             if self.interrupts.count and not stopping:
                 stopping, steps = True, brake(setting)
@@ -115,24 +116,30 @@ class Loop:
                 next(steps)
             if self.interrupts.count > 1:
                 self.instruments.safe()
-                put(sample, 0.0, 0.0, asked.theta_ref)
+                self._last_row(sample, asked)
                 return Ending("stopped", "halted by the operator: torque off at once", Exit.HALTED)
             try:
                 asked = steps.send(sample)
             except NotReady:
                 self.instruments.safe()
-                put(sample, 0.0, 0.0, asked.theta_ref)  # the sample it refused on is part of the run
+                self._last_row(sample, asked)  # the sample it refused on is part of the run
                 raise
             except StopIteration as end:
                 self.instruments.safe()
-                put(sample, 0.0, 0.0, asked.theta_ref)
+                self._last_row(sample, asked)
                 if stopping:
                     return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
                 return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
             put(sample, asked.tau, write(allowed(asked)), asked.theta_ref)
+            self.rows += 1
             if k % WATCH_TICKS == 0:
                 self.sink.check()
                 self.watch(sample)
+
+    def _last_row(self, sample: Sample, asked: Torque) -> None:
+        """What was seen when the torque had just been taken off."""
+        self.sink.put(sample, 0.0, 0.0, asked.theta_ref)
+        self.rows += 1
 
     def _leave(self, ending: Ending, confirmed: bool) -> Ending:
         if not confirmed:

@@ -14,7 +14,7 @@ from typing import Any
 
 from rig.bench import Bench, ClockName
 from rig.control.filter import SpeedFilter
-from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
+from rig.core.errors import DataError, Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -109,7 +109,7 @@ class Session:
             self._end_log()
 
     def _record(self, folder: Path, procedure: Procedure, timing: LoopTiming, watch: Watch) -> Done:
-        recorder = Recorder(folder, self.instruments.clock)
+        recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
         recorder.start()
         setting = self.bench.setting(lambda text: self._event("note", text))
         guard = Guard(self.bench.limits, procedure.envelope(setting), setting.ratio)
@@ -122,14 +122,14 @@ class Session:
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
-            problem = self._close(recorder, folder, ending, timing)
+            problem = self._close(recorder, folder, ending, timing, loop.rows)
             if problem:
-                print(f"hdrig: {problem}; hdrig recover {folder} tries again", file=sys.stderr)
+                print(f"hdrig: {problem}", file=sys.stderr)
         if problem:
-            raise RecorderError(f"{ending.reason}; but {problem}")
+            raise DataError(f"{ending.reason}; but {problem}")
         return Done(folder, ending)
 
-    def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming) -> str:
+    def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming, rows: int) -> str:
         """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""
         if ending.finding is not None:
             self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
@@ -139,10 +139,11 @@ class Session:
             ):  # what it could not write is in the ring; closing the run tries again
                 recorder.close()
             self._end_log()  # its hash is taken next: nothing may be added after
-            finalise(folder, ending.status, ending.reason, timing=timing.summary(), exit=int(ending.exit))
+            summary, code = timing.summary(), int(ending.exit)
+            closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, exit=code)
         except HdrigError as error:
-            return str(error)
-        return ""
+            return f"{error}; hdrig recover {folder} tries again"
+        return f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""
 
     def _end_log(self) -> None:
         if self._log is not None:
