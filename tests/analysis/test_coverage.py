@@ -26,6 +26,7 @@ def inside(seed: int, **conditions: Any) -> tuple[np.ndarray, bool]:
     return (low <= COEFFICIENTS) & (high >= COEFFICIENTS), peak.ci95[0] <= truth <= peak.ci95[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("conditions", "seeds"),
     [

@@ -14,6 +14,7 @@ from tests.scenario.test_slow_run import SHORT, run_of
 STICKY = ["--set", "twin.omega_s=1.5"]  # 9.6 rpm = 1 rad/s then lies on the steepest part of the Stribeck curve
 
 
+@pytest.mark.slow
 def test_default_gains_hunt_at_a_stribeck_speed_of_1_5_and_the_run_is_rejected_with_advice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
