@@ -81,6 +81,7 @@ def test_analysing_again_gives_the_same_figures_and_leaves_the_samples_alone(slo
     assert [f for f in verify(slow_run) if f.level == "error"] == []
 
 
+@pytest.mark.slow
 def test_a_run_that_sticks_is_rejected_with_the_number_and_the_gain_to_change(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
