@@ -95,13 +95,17 @@ def _bar(title: str, duration: float) -> Any:
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn
     from rich.progress import Progress as RichProgress
+    from rich.table import Column
+
+    def text(form: str) -> TextColumn:
+        return TextColumn(form, table_column=Column(no_wrap=True))  # a number broken over two lines can be misread
 
     bar = RichProgress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("rig time {task.completed:6.1f} of {task.total:.1f} s"),
-        TextColumn("{task.fields[left]}"),
-        TextColumn("{task.fields[peak]}"),
+        text("{task.description}"),
+        BarColumn(bar_width=12),  # all of it fits into 80 columns
+        text("rig time {task.completed:.1f}/{task.total:.1f} s"),
+        text("{task.fields[left]}"),
+        text("{task.fields[peak]}"),
         console=Console(stderr=True),
         auto_refresh=False,
     )
