@@ -29,13 +29,16 @@ def start(root: Path, *more: str) -> subprocess.Popen[str]:
 
 def wait_for(root: Path, what: str, process: subprocess.Popen[str], rows_bytes: int = 60_000) -> Path:
     """The folder of the run called `what`, once its journal holds samples."""
-    while process.poll() is None:
+    for _ in range(4000):  # 80 s: the proof takes 10; a run that never comes must not hang the suite
+        if process.poll() is not None:
+            break
         for folder in root.glob(f"*/*{what}*"):
             journal = folder / "journal-0001.arrows"
             if journal.exists() and journal.stat().st_size > rows_bytes:
                 return folder
         time.sleep(0.02)
-    raise AssertionError(f"ended early: {process.communicate()}")
+    process.kill()
+    raise AssertionError(f"no {what} came: {process.communicate()}")
 
 
 def last_row(folder: Path) -> dict[str, float]:
@@ -83,7 +86,7 @@ def test_two_signals_take_the_torque_off_at_once_and_keep_the_run(tmp_path: Path
 @pytest.mark.slow
 def test_a_signal_during_the_proof_ends_everything_with_the_operators_exit_code(tmp_path: Path) -> None:
     process = start(tmp_path)
-    folder = wait_for(tmp_path, "other", process, rows_bytes=20_000)
+    folder = wait_for(tmp_path, "sign-and-scale", process, rows_bytes=20_000)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 4, err
