@@ -6,6 +6,8 @@ import signal
 from types import FrameType, TracebackType
 from typing import Any
 
+from rig.core.errors import Exit
+
 
 class Interrupts:
     """While active, SIGINT, SIGTERM and SIGHUP are counted, not raised: 1 = stop (category 1), 2 or more = halt."""
@@ -15,6 +17,11 @@ class Interrupts:
     def __init__(self) -> None:
         self.count = 0
         self._before: dict[signal.Signals, Any] = {}
+
+    @property
+    def exit(self) -> Exit:
+        """What the command ends with when this is why: stopped, halted, or PASS when nobody asked."""
+        return (Exit.PASS, Exit.STOPPED, Exit.HALTED)[min(self.count, 2)]
 
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end; also what a button calls."""

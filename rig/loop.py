@@ -68,8 +68,8 @@ class Loop:
         only after the drive was made safe.
         """
         if self.interrupts.count:
-            code = Exit.STOPPED if self.interrupts.count == 1 else Exit.HALTED
-            return Ending("stopped", "stopped by the operator before anything was energised", code)
+            why = "stopped by the operator before anything was energised"
+            return Ending("stopped", why, self.interrupts.exit)
         try:
             self.instruments.start()
             self.supervisor.act(Act.ENABLE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import getpass
+import math
 import platform
 import sys
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from typing import Any
 
 from rig.bench import Bench, ClockName
 from rig.control.filter import SpeedFilter
-from rig.core.errors import DataError, Exit, HdrigError, NotReady, RecorderError
+from rig.core.errors import Exit, HdrigError, NotReady, RecorderError, UsageError
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -29,6 +30,7 @@ from rig.software import software
 from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
 
+LONGEST = 31 * 86400.0  # s
 Watch = Callable[[Sample], None]
 
 
@@ -68,13 +70,11 @@ class Session:
 
     def check(self, procedure: Procedure) -> None:
         """The bench can do what the procedure needs. Raises NotReady with what is missing or too much."""
-        envelope = procedure.envelope(self.bench.setting(lambda text: None))
+        refuse_endless(self.bench, procedure)
         missing = [c for c in procedure.needs if c not in self.instruments.channels]
         if missing:
             raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.title()} needs")
         refuse_beyond_limits(self.bench, procedure)
-        if not envelope.duration > 0:
-            raise NotReady(f"{procedure.name} would last {envelope.duration:g} s, expected more than 0 s")
 
     def rewire(self, bench: Bench) -> None:
         """Go on with other gains and another speed filter; the devices stay as they are."""
@@ -93,8 +93,7 @@ class Session:
         """Run one procedure into a folder of its own. The folder is closed, with its status, on every way out."""
         self.check(procedure)
         if self.interrupts.count:
-            code = Exit.STOPPED if self.interrupts.count == 1 else Exit.HALTED
-            raise Ended("stopped by the operator; nothing more was started", code)
+            raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
         folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
@@ -126,7 +125,7 @@ class Session:
             if problem:
                 print(f"hdrig: {problem}", file=sys.stderr)
         if problem:
-            raise DataError(f"{ending.reason}; but {problem}")
+            raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)
 
     def _close(self, recorder: Recorder, folder: Path, ending: Ending, timing: LoopTiming, rows: int) -> str:
@@ -134,9 +133,8 @@ class Session:
         if ending.finding is not None:
             self._event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
         try:
-            with contextlib.suppress(
-                RecorderError
-            ):  # what it could not write is in the ring; closing the run tries again
+            # what the recorder could not write is in the ring: closing the run tries again
+            with contextlib.suppress(RecorderError):
                 recorder.close()
             self._end_log()  # its hash is taken next: nothing may be added after
             summary, code = timing.summary(), int(ending.exit)
@@ -188,6 +186,17 @@ class Ended(HdrigError):
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)
         self.exit = exit
+
+
+def refuse_endless(bench: Bench, procedure: Procedure) -> None:
+    """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
+    try:
+        envelope = procedure.envelope(bench.setting(lambda text: None))
+        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
+    except (OverflowError, ZeroDivisionError):
+        finite = False
+    if not finite or not 0 < envelope.duration < LONGEST:
+        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
 
 
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:

@@ -41,7 +41,11 @@ class Smoothness:
 
     @property
     def passed(self) -> bool:
-        return self.stuck <= STUCK_LIMIT and self.sigma <= SIGMA_LIMIT
+        return self.within(1.0)
+
+    def within(self, share: float) -> bool:
+        """True when both figures stay within that share of their limits."""
+        return self.stuck <= share * STUCK_LIMIT and self.sigma <= share * SIGMA_LIMIT
 
     @property
     def hunts(self) -> bool:

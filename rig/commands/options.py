@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -12,8 +11,6 @@ from rig.bench import Bench, ClockName, read, toml_value
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
-
-LONGEST = 31 * 86400.0  # s
 
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,17 +76,6 @@ def a_word(kind: type) -> str:
     return {float: "a finite number", int: "a whole number", str: "text", bool: "true or false"}.get(
         kind, kind.__name__
     )
-
-
-def sensible(bench: Bench, procedure: Procedure) -> None:
-    """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
-    try:
-        envelope = procedure.envelope(bench.setting(lambda text: None))
-        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
-    except (OverflowError, ZeroDivisionError):
-        finite = False
-    if not finite or not 0 < envelope.duration < LONGEST:
-        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
 
 
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:

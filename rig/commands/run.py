@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 
-from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments, sensible
+from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments
 from rig.commands.perform import perform
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.procedures import CATALOGUE, procedure_class
-from rig.session import refuse_beyond_limits
+from rig.session import refuse_beyond_limits, refuse_endless
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, CATALOGUE)}")
     bench, clock = open_bench(args)
     procedure = make_procedure(procedure_class(name), args.parameters)
-    sensible(bench, procedure)
+    refuse_endless(bench, procedure)
     if args.dry_run:
         print("\n".join(plan_lines(bench, procedure)))
         refuse_beyond_limits(bench, procedure)

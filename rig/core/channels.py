@@ -22,8 +22,8 @@ class Flag(IntFlag):
     STALE_M = 1 << 1  # no new motor sample since the last row
     STALE_L = 1 << 2  # no new load-encoder sample since the last row
     STALE_TAU = 1 << 3  # no new torque-sensor sample since the last row
-    FROZEN_M = 1 << 4  # device time advances, the value does not although the other side moves; set by importers, the
-    FROZEN_L = 1 << 5  # loop itself trips on such an encoder (twist, following, load travel)
+    FROZEN_M = 1 << 4  # device time advances, the value does not although the other side moves: honoured in
+    FROZEN_L = 1 << 5  # runs made elsewhere; our loop trips on such an encoder instead (twist, following, load travel)
     FROZEN_TAU = 1 << 6  # the torque sensor gave the very same value for a second: a hint, coarse sensors do that
     SATURATED_TAU = 1 << 7  # torque sensor at the end of its range
     SATURATED_DRIVE = 1 << 8  # the drive could not give the torque asked for

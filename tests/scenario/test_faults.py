@@ -33,7 +33,7 @@ FAULTS: dict[str, tuple[Strike, str, float]] = {
     "motor encoder jumps": (lambda rig: setattr(rig.drive, "fault", Jump(1.0)), "", 0.001),
     "torque sensor overloaded": (lambda rig: setattr(rig.torque_sensor, "fault", Overload(1)), "shaft torque", 0.001),
     "drive trips": (lambda rig: rig.drive.trip("over-temperature"), "over-temperature", 0.001),
-    # only its effect shows: 0.5° of twist at 9.6 rpm of the motor takes 0.44 s and what the loop lags
+    # only its effect shows: 0.4° of twist at 9.6 rpm of the motor takes 0.35 s and what the loop lags
     "load encoder frozen": (lambda rig: setattr(rig.load_encoder, "fault", Frozen()), "disagree", 1.0),
     "motor encoder frozen": (lambda rig: setattr(rig.drive, "fault", Frozen()), "", 1.0),
 }

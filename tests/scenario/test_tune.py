@@ -41,6 +41,12 @@ def test_the_gains_it_finds_give_a_smooth_slow_run(
     assert result["estimates"]["speed_scatter"]["value"] < 5.0
 
 
+@pytest.mark.slow
+def test_a_trial_that_trips_ends_the_tuning_as_tripped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tune", "--set", "limits.twist_deg=0.012", "--out", str(tmp_path)]) == 5
+    assert "the trial was ended: motor and load disagree" in capsys.readouterr().err
+
+
 def test_a_file_that_exists_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     taken = tmp_path / "bench.toml"
     taken.write_text("mine")
