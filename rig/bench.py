@@ -84,7 +84,8 @@ class Bench:
         timer, world = self._clock(clock)
         made = {role: self._device(role, world) for role in ("drive", "load_encoder", "torque_sensor")}
         speed = SpeedFilter(self.file.loop.speed_filter)
-        return Instruments(made["drive"], made["load_encoder"], made["torque_sensor"], timer, speed)
+        hand = importlib.import_module("sim.operator").TwinOperator(world) if world is not None else None
+        return Instruments(made["drive"], made["load_encoder"], made["torque_sensor"], timer, speed, hand)
 
     def _clock(self, clock: ClockName) -> tuple[Clock, Any]:
         if not self.simulated:

@@ -9,6 +9,7 @@ from rig.core.channels import Flag
 from rig.core.clock import Clock
 from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
 from rig.core.errors import HdrigError
+from rig.core.operator import Operator
 from rig.core.sample import NAN, Sample, Setpoint
 
 FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
@@ -24,6 +25,7 @@ class Instruments:
     torque_sensor: TorqueSensor | None
     clock: Clock
     speed_filter: SpeedFilter
+    operator: Operator | None = None  # whose hand changes weights and pins; None where that is a person
 
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run
