@@ -8,5 +8,7 @@ REFERENCES: dict[str, str] = {
     "armstrong1994": "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and "
     "compensation methods for the control of machines with friction, Automatica 30 (1994) 1083-1138",
     "gum": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement",
+    "tuttle1992": "T. D. Tuttle, Understanding and modeling the behavior of a harmonic drive gear transmission, "
+    "MIT Artificial Intelligence Laboratory, Technical Report 1365 (1992)",
     "astrom2006": "K. J. Åström, T. Hägglund, Advanced PID Control, ISA (2006)",
 }

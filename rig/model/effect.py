@@ -1,0 +1,174 @@
+"""What an effect is: where it acts on the rig, and the columns it adds to the equations there.
+
+One definition serves the search for effects in measured runs, the refit, the simulation and the report.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.model.fourier import FourierSeries
+
+Array = npt.NDArray[np.float64]
+Shape = tuple[float, ...]
+"""The parameters an effect depends on nonlinearly (a Stribeck speed, an order, a frequency), in `shape_names`' order."""
+
+
+class Port(StrEnum):
+    """Where an effect enters      [ghorbel2001, Eqs. 6-7]
+
+    With θ̃ = θ_m/N − θ_l, the shaft torque T (what the gear gives to the load) and the reading r of a sensor:
+
+    MOTOR_TORQUE     N·m that resists the motor, as B_m·ω_m does
+    LOAD_TORQUE      N·m that resists the load, as B_l·ω_l does
+    KINEMATIC_ERROR  rad that adds to θ̃_p
+    LEVER            dθ̃_p/dθ_m of the same columns; without it the columns turn no torque
+    WIND_UP          rad of θ̃ that goes with the torque, as T/K does
+    READS_*          what the reading of that sensor has too much, in its own unit
+    """
+
+    MOTOR_TORQUE = "motor_torque"
+    LOAD_TORQUE = "load_torque"
+    KINEMATIC_ERROR = "kinematic_error"
+    LEVER = "lever"
+    WIND_UP = "wind_up"
+    READS_THETA_M = "reads_theta_m"
+    READS_THETA_L = "reads_theta_l"
+    READS_TAU_M = "reads_tau_m"
+    READS_TAU_L = "reads_tau_l"
+
+
+@dataclass(frozen=True)
+class Signals:
+    """A piece of one run on a uniform time grid, shapes (n,), SI, and what is known of the gear so far.
+
+    Angles are as read; speeds, accelerations and the torque are low-passed without phase. A channel that was not
+    recorded is NaN throughout. `way` is the direction of the motor, −1, 0 (sticking or reversing) or 1.
+    """
+
+    t: Array  # s since the campaign began
+    dt: float  # s
+    ratio: float
+    theta_m: Array
+    theta_l: Array
+    omega_m: Array
+    alpha_m: Array
+    omega_l: Array
+    alpha_l: Array
+    jerk_l: Array
+    torque: Array  # N·m, T
+    torque_rate: Array
+    tau_m: Array
+    tau_ext: Array
+    way: Array
+    temperature: Array  # °C
+    gear: Known
+
+
+@dataclass(frozen=True)
+class Known:
+    """The baseline as fitted so far: what columns may lean on. SI."""
+
+    K: float
+    B_sp: float
+    J_m: float
+    J_l: float
+    kinematic_error: FourierSeries
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What a campaign covers, from which an effect chooses the shapes worth trying. SI."""
+
+    ratio: float
+    fastest: float  # rad/s of the motor
+    slowest: float  # rad/s of the motor, while it turns
+    torque: float  # N·m, largest |T|
+    duration: float  # s, first to last sample of the campaign
+    rate: float  # Hz of the samples
+    load_turns: float  # most output turns in one run
+    counts_m: float  # encoder counts per turn; 0 when not said
+    counts_l: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What the data say of one effect: coefficients (k,), then shape (s,); covariance (k+s, k+s) of both together."""
+
+    coefficients: Array
+    shape: Shape
+    covariance: Array
+    known: Known
+    ratio: float
+
+    def half_width(self, gradient: Array) -> float:
+        """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,)."""
+        return float(1.96 * np.sqrt(max(0.0, gradient @ self.covariance @ gradient)))
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A figure of an effect in the words of the field."""
+
+    name: str
+    value: float
+    ci95: tuple[float, float]
+    unit: str
+
+
+def parameter(name: str, value: float, half: float, unit: str) -> Parameter:
+    """A parameter with a symmetric interval."""
+    return Parameter(name, float(value), (float(value - half), float(value + half)), unit)
+
+
+def harmonic(fit: Fit, name: str, unit: str, first: int = 0, scale: float = 1.0) -> tuple[Parameter, Parameter]:
+    """c·cos x + s·sin x = A·cos(x + phase) from coefficients `first` and `first + 1`: amplitude A and phase."""
+    c, s = fit.coefficients[first] * scale, fit.coefficients[first + 1] * scale
+    size = float(np.hypot(c, s)) or 1e-300
+    along, around = np.zeros(fit.covariance.shape[0]), np.zeros(fit.covariance.shape[0])
+    along[first : first + 2] = np.array([c, s]) / size * scale
+    around[first : first + 2] = np.array([s, -c]) / size**2 * scale
+    return (
+        parameter(f"{name}_amplitude", size, fit.half_width(along), unit),
+        parameter(f"{name}_phase", float(np.arctan2(-s, c)), fit.half_width(around), "rad"),
+    )
+
+
+class Effect(ABC):
+    """One physical effect the paper's model lacks. Members are stateless; the catalogue holds one of each."""
+
+    name: ClassVar[str]  # also the file's name
+    in_short: ClassVar[str]  # one line for people
+    source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
+    shape_names: ClassVar[tuple[str, ...]] = ()
+    loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
+
+    @abstractmethod
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """The shapes worth trying on such a campaign; `((),)` when the effect has none; () when it cannot show."""
+
+    @abstractmethod
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Columns (n, k) at each port the effect acts on, one set of k coefficients for all of them."""
+
+    @abstractmethod
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """The coefficients in the words of the field."""
+
+    def plausible(self, fit: Fit) -> bool:
+        """False when the coefficients have a sign or size no such effect can have."""
+        return True
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Range of each shape parameter in a refit."""
+        grid = np.array(self.shapes(reach), dtype=float)
+        if grid.size == 0:
+            return ()
+        return tuple((float(low), float(high)) for low, high in zip(grid.min(0) / 3, grid.max(0) * 3, strict=True))

@@ -1,0 +1,39 @@
+"""The library of effects the paper's model lacks, one per file; a file bears the effect's name.
+
+How to write one: subclass `Effect` (rig/model/effect.py), `name` as the file, and say
+
+- `shapes(reach)`: the few values of each nonlinear parameter that together leave no gap between them (neighbours should
+  share about 90 % of what they explain; the refit finds the exact value). An order or frequency to be scanned is a
+  shape too. Return () when such a campaign cannot show the effect (for example too few output turns).
+- `columns(signals, shape)`: at the port where the effect acts, its physical law at every sample, (n, k), in SI, with
+  the coefficient still to be found left out. The engine maps ports to the equations (which channel a thing shows in is
+  what tells a bad sensor from a real torque), filters columns and readings alike, masks sticking and reversals and
+  takes out every run's own offsets. A kinematic error that really is in the gear also gives LEVER, its derivative by
+  theta_m. Use signals as given: do not filter again, do not take differences. States with memory start at rest.
+- `parameters(fit)`: coefficients as the field names them, with unit and 95 % interval (`harmonic`, `parameter`).
+- `plausible(fit)`: signs that must hold (friction opposes motion).
+
+Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member.
+"""
+
+from __future__ import annotations
+
+from rig.model.effect import Effect
+from rig.model.effects.channel_time_skew import ChannelTimeSkew
+from rig.model.effects.cogging_torque import CoggingTorque
+from rig.model.effects.load_dependent_friction import LoadDependentFriction
+from rig.model.effects.load_dependent_kinematic_error import LoadDependentKinematicError
+from rig.model.effects.output_once_per_rev import OutputOncePerRev
+from rig.model.effects.stribeck_friction import StribeckFriction
+
+CATALOGUE: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        StribeckFriction(),
+        LoadDependentFriction(),
+        LoadDependentKinematicError(),
+        OutputOncePerRev(),
+        CoggingTorque(),
+        ChannelTimeSkew(),
+    )
+}

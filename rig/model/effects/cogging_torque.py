@@ -1,0 +1,34 @@
+"""Torque ripple of the motor that is there without current."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+
+
+class CoggingTorque(Effect):
+    """τ_m loses C·cos(k·θ_m + φ), k a whole number of cycles per motor turn."""
+
+    name: ClassVar[str] = "cogging_torque"
+    in_short: ClassVar[str] = "motor torque ripple at rest, fixed orders of the motor"
+    source: ClassVar[str] = "ghorbel2001"
+    shape_names: ClassVar[tuple[str, ...]] = ("order",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+    HIGHEST: Final = 60  # LCM(slots, poles) of common servo motors: 12 to 60
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Orders 1 to 60."""
+        return tuple((float(k),) for k in range(1, self.HIGHEST + 1))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine."""
+        x = shape[0] * signals.theta_m
+        return {Port.MOTOR_TORQUE: np.stack([np.cos(x), np.sin(x)], 1)}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Amplitude and phase."""
+        return harmonic(fit, f"order_{fit.shape[0]:g}", "N·m")

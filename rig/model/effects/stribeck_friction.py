@@ -1,0 +1,45 @@
+"""Friction that falls with speed near rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+
+
+class StribeckFriction(Effect):
+    """τ_f gains (τ_s − τ_c)·exp(−|ω_m/ω_s|^δ)·sgn ω_m      [armstrong1994]"""
+
+    name: ClassVar[str] = "stribeck_friction"
+    in_short: ClassVar[str] = "friction falls with speed near rest"
+    source: ClassVar[str] = "armstrong1994"
+    shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
+    loose: ClassVar[tuple[bool, ...]] = (True, False)
+    SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
+    EXPONENTS: Final = (1.0, 2.0)  # what is reported: 0.5 to 2; between these two the curves differ by a tenth
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Speeds between half the slowest and the fastest."""
+        return tuple((v, d) for v in self.SPEEDS if 0.3 * reach.slowest < v < reach.fastest for d in self.EXPONENTS)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        omega_s, delta = shape
+        x = np.abs(signals.omega_m) / omega_s
+        return {Port.MOTOR_TORQUE: (signals.way * np.exp(-(x**delta)))[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """τ_s − τ_c, ω_s and δ."""
+        excess, speed, delta = np.eye(3)[:, : fit.covariance.shape[0]]
+        return (
+            parameter("tau_s_minus_tau_c", fit.coefficients[0], fit.half_width(excess), "N·m"),
+            parameter("omega_s", fit.shape[0], fit.half_width(speed), "rad/s"),
+            parameter("delta", fit.shape[1], fit.half_width(delta), "1"),
+        )
+
+    def plausible(self, fit: Fit) -> bool:
+        """Friction at rest is the larger one."""
+        return bool(fit.coefficients[0] > 0)
