@@ -1,3 +1,7 @@
 """Real devices, one per file. The catalogue: device type in the bench file → "module:class"."""
 
-CATALOGUE: dict[str, str] = {}
+CATALOGUE: dict[str, str] = {
+    "can.cia402": "drivers.cia402:Cia402",
+    "can.cia406": "drivers.cia406:Cia406",
+    "can.cia404": "drivers.cia404:Cia404",
+}

@@ -82,9 +82,11 @@ class Bench:
         if not self.simulated and clock == "virtual":
             raise UsageError(f"{self.source}: the virtual clock exists only on the twin; use --clock wall")
         timer, world = self._clock(clock)
-        made = {role: self._device(role, world) for role in ("drive", "load_encoder", "torque_sensor")}
         speed = SpeedFilter(self.file.loop.speed_filter)
-        hand = importlib.import_module("sim.operator").TwinOperator(world) if world is not None else None
+        if world is None:
+            return self._real(timer, speed)
+        made = {role: self._device(role, world) for role in ROLES}
+        hand = importlib.import_module("sim.operator").TwinOperator(world)
         return Instruments(made["drive"], made["load_encoder"], made["torque_sensor"], timer, speed, hand)
 
     def _clock(self, clock: ClockName) -> tuple[Clock, Any]:
@@ -96,13 +98,42 @@ class Bench:
     def _twin_seed(self) -> int:
         return self.file.twin.seed if self.file.twin else 0
 
-    def _device(self, role: str, world: Any) -> Any:
+    def _device(self, role: str, *plugged: Any) -> Any:
         make = self.device(role)
-        if make is None:
-            return None
-        return make(world) if world is not None else make(self.file)
+        return None if make is None else make(*plugged)
 
-    def device(self, role: str) -> Callable[[Any], Device] | None:
+    def _real(self, timer: Clock, speed: SpeedFilter) -> Instruments:
+        """Devices on buses and ports."""
+        from drivers.wiring import Wiring
+
+        wiring = Wiring(timer, {name: bus.model_dump() for name, bus in self.file.bus.items()})
+        made = {role: self._device(role, wiring, self._place(role)) for role in ROLES if self._has(role)}
+        return Instruments(
+            made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed,
+            latch=wiring.latch, lead=self.file.loop.latch_lead,
+        )  # fmt: skip
+
+    def _has(self, role: str) -> bool:
+        return getattr(self.file.devices, role) is not None
+
+    def _place(self, role: str) -> Any:
+        """What the driver of `role` is told of the bench."""
+        from drivers.wiring import Place
+
+        f, limits = self.file, self.limits
+        side = f.load_encoder if role == "load_encoder" else f.motor
+        return Place(
+            role=role,
+            options=getattr(f.devices, role).options(),
+            counts_per_turn=side.counts_per_turn if side else 0,
+            torque_rated=f.motor.torque_rated,
+            torque_limit=min(f.motor.torque_limit, f.limits.torque),
+            speed_limit=limits.speed / (f.gear.N if role == "load_encoder" else 1.0),
+            range=f.torque_sensor.range if f.torque_sensor else 0.0,
+            period=1.0 / f.loop.rate,
+        )
+
+    def device(self, role: str) -> Callable[..., Device] | None:
         """The class that fills a role, or None where the bench has none. Raises UsageError when it cannot."""
         section = getattr(self.file.devices, role)
         if section is None:
@@ -174,7 +205,7 @@ def toml_value(text: str) -> Any:
         return text.strip()
 
 
-def device_class(kind: str, where: str) -> Callable[[Any], Device]:
+def device_class(kind: str, where: str) -> Callable[..., Device]:
     """The class behind a device type. Raises UsageError naming the nearest that exists."""
     import drivers
     import sim
@@ -183,7 +214,7 @@ def device_class(kind: str, where: str) -> Callable[[Any], Device]:
     if kind not in catalogue:
         raise UsageError(f"{where} = '{kind}': no such device; {nearest(kind, catalogue)}")
     module, _, name = catalogue[kind].partition(":")
-    found: Callable[[Any], Device] = getattr(importlib.import_module(module), name)
+    found: Callable[..., Device] = getattr(importlib.import_module(module), name)
     return found
 
 

@@ -70,12 +70,34 @@ class LoopSection(Strict):
 
     rate: Annotated[float, _quantity("Hz", ge=10, le=10_000)]
     speed_filter: Annotated[float, _quantity("s", **Positive)]
+    latch_lead: Annotated[float, _quantity("s", **NotNegative)] = 0.0  # SYNC goes out so long before the tick
+
+
+class BusSection(Strict):
+    """[bus.NAME]: a CAN bus, under python-can's name for its interface."""
+
+    interface: str = Field(min_length=1)
+    channel: str = Field(min_length=1)
+    bitrate: Annotated[int | None, _quantity("bit/s", gt=0, le=8_000_000)] = None
+    host_node: int = Field(default=127, ge=0, le=127)  # CANopen number of this host; 0: it sends no heartbeat
+    options: dict[str, str | int | float | bool] = {}  # handed to python-can as they are
 
 
 class DeviceSection(Strict):
-    """[devices.*]"""
+    """[devices.*]: which driver, and where the device is; which keys are needed depends on the driver."""
 
     type: str
+    bus: str | None = None  # [bus.NAME] it is on
+    node: int | None = Field(default=None, ge=1, le=127)
+    port: str | None = None  # serial port
+    baud: Annotated[int | None, _quantity("bit/s", gt=0)] = None
+    direction: Literal[1, -1] = 1  # -1 turns the sign of its readings (and commands) over
+    watchdog: Annotated[float, _quantity("s", ge=0.01, le=10)] = 0.1  # the drive stops after this without its host
+    delay: Annotated[float, _quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
+
+    def options(self) -> dict[str, Any]:
+        """For the driver: the keys as they are, without those not given."""
+        return {key: value for key, value in self.model_dump().items() if value is not None}
 
 
 class DevicesSection(Strict):
@@ -201,6 +223,7 @@ class BenchFile(Strict):
     schema_name: Literal["hdrig.bench/1"] = Field(alias="schema")
     name: str = Field(min_length=1, max_length=64)
     loop: LoopSection
+    bus: dict[str, BusSection] = {}
     devices: DevicesSection
     gear: GearSection
     motor: MotorSection

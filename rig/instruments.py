@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rig.control.filter import SpeedFilter
@@ -26,6 +27,8 @@ class Instruments:
     clock: Clock
     speed_filter: SpeedFilter
     operator: Operator | None = None  # whose hand changes weights and pins; None where that is a person
+    latch: Callable[[], None] | None = None  # has devices on a bus take their readings now; None: they do so unasked
+    lead: float = 0.0  # s between that and the tick that reads them
 
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run

@@ -88,12 +88,16 @@ class Loop:
 
     def _tick(self, steps: Steps, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
+        latch, lead = self.instruments.latch, self.instruments.lead
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
         period, start, k, stopping = setting.period, clock.now(), 0, False
         asked: Torque = next(steps)
         while True:
             k += 1
             deadline = start + k * period
+            if latch is not None:
+                clock.wait_until(deadline - lead)
+                latch()
             now = clock.wait_until(deadline)
             lateness = now - deadline
             late(lateness if lateness > 0.0 else 0.0)

@@ -1,0 +1,162 @@
+"""One CAN bus, read and written in the caller's own thread: no receive thread dies unseen, no sender runs on alone."""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import can
+
+from rig.core.clock import Clock
+from rig.core.errors import NotReady
+
+SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
+OPERATIONAL = 0x05
+MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
+NEVER = -1e9  # s, before any SYNC
+GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
+GONE = (can.CanError, OSError)
+
+
+class Frame(NamedTuple):
+    """The newest frame of one identifier."""
+
+    arrived: float  # s on the clock of the loop, when it was taken from the queue
+    latched: float  # s, when the last SYNC before it was sent
+    data: bytes
+    number: int  # frames of this identifier so far
+
+
+class Bus:
+    """A bus under python-can's name for its interface. Frames are taken when `drain` is called, never otherwise.
+
+    After a failed send or receive the bus is dead and stays so until it is opened again: what the system queued
+    meanwhile is thrown away with the socket, so that no old target reaches a drive.
+    """
+
+    def __init__(self, name: str, interface: str, channel: str, clock: Clock, options: Mapping[str, Any]) -> None:
+        self.name = name
+        self.clock = clock
+        self.frames: dict[int, Frame] = {}
+        self.listeners: dict[int, Callable[[bytes, float], None]] = {}
+        self.dead = ""  # why, in words
+        self.garbled = 0  # lines or frames that made no sense
+        self.errors = 0  # error frames of the controller
+        self.host_node = 0  # CANopen node number of this host, 0: it sends no heartbeat
+        self.heartbeat = 0.02  # s between heartbeats of this host
+        self.synced = NEVER  # s, when the last SYNC was sent
+        self._where = (interface, channel, dict(options))
+        self._can: Any = None
+        self._beat = NEVER
+        self._messages: dict[int, can.Message] = {}
+
+    @property
+    def is_open(self) -> bool:
+        """True between `open` and `close`."""
+        return self._can is not None
+
+    def open(self) -> None:
+        """Open it; nothing when it is. Raises NotReady, one sentence, whatever the backend raises."""
+        if self._can is not None:
+            return
+        interface, channel, options = self._where
+        try:
+            self._can = can.Bus(interface=interface, channel=channel, **options)
+        except (Exception, SystemExit) as why:  # noqa: BLE001  each backend of python-can raises what it likes
+            reason = str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__
+            raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
+        self.frames.clear()
+        self.dead, self.synced, self._beat = "", NEVER, NEVER
+
+    def close(self) -> None:
+        """Leave the bus. Idempotent; never raises."""
+        bus, self._can = self._can, None
+        if bus is not None:
+            with contextlib.suppress(*GONE, *GARBLED):
+                bus.shutdown()
+
+    def send(self, identifier: int, data: bytes) -> bool:
+        """One data frame with an 11-bit identifier; False when the bus is dead, or by this became so. Never raises."""
+        if self._can is None or self.dead:
+            return False
+        message = self._messages.get(identifier)
+        if message is None:
+            # python-can's default is a 29-bit identifier, which no CANopen node hears
+            message = self._messages[identifier] = can.Message(arbitration_id=identifier, is_extended_id=False)
+        message.data, message.dlc = bytearray(data), len(data)
+        try:
+            self._can.send(message)
+        except GONE as why:
+            self.dead = f"CAN bus '{self.name}' takes no frames any more ({_reason(why)})"
+            return False
+        return True
+
+    def drain(self) -> None:
+        """Take what has arrived, without waiting. Never raises."""
+        for _ in range(MOST):
+            if not self.take(0.0):
+                return
+
+    def wait(self, seconds: float, done: Callable[[], bool]) -> bool:
+        """Take frames for up to `seconds` until `done` says so; what it says at the end. Not for use in a tick."""
+        until = time.monotonic() + seconds
+        while not done():
+            remaining = until - time.monotonic()
+            if remaining <= 0 or self.dead:
+                return False
+            self.take(remaining)
+        return True
+
+    def take(self, timeout: float) -> bool:
+        """One frame, waiting up to `timeout` s for it. False when there was none. Never raises."""
+        if self._can is None or self.dead:
+            return False
+        try:
+            message = self._can.recv(timeout)
+        except GARBLED:
+            self.garbled += 1
+            return True
+        except GONE as why:
+            self.dead = f"CAN bus '{self.name}' is lost ({_reason(why)})"
+            return False
+        if message is None:
+            return False
+        if message.is_error_frame:
+            self.errors += 1
+        elif not (message.is_extended_id or message.is_remote_frame):
+            self._keep(message.arbitration_id, bytes(message.data))
+        return True
+
+    def _keep(self, identifier: int, data: bytes) -> None:
+        now = self.clock.now()
+        last = self.frames.get(identifier)
+        self.frames[identifier] = Frame(now, self.synced, data, last.number + 1 if last else 1)
+        listener = self.listeners.get(identifier)
+        if listener is not None:
+            listener(data, now)
+
+    def sync(self) -> None:
+        """Have every synchronous node latch now; this host's heartbeat when it is due. Never raises."""
+        self.drain()  # what still comes from the last SYNC belongs to that one
+        now = self.clock.now()
+        if self.send(SYNC, b""):
+            self.synced = now
+        if self.host_node and now - self._beat >= self.heartbeat:
+            self._beat = now
+            self.send(HEARTBEAT + self.host_node, bytes((OPERATIONAL,)))
+
+    def nmt(self, command: int, node: int) -> bool:
+        """A network-management command to one node      [cia301, 7.2.8]"""
+        return self.send(NMT, bytes((command, node)))
+
+    @property
+    def raw(self) -> Any:
+        """python-can's bus, for canopen's SDO client."""
+        return self._can
+
+
+def _reason(why: BaseException) -> str:
+    return str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__

@@ -1,0 +1,257 @@
+"""What every CANopen node shares: identity, configuration verified by read-back, PDOs, heartbeat and emergencies.
+
+SDO is canopen's, but in the caller's thread: its queue of answers takes frames from the bus itself, so that no receive
+thread is needed, before a run or in it.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import struct
+import time
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import can
+import canopen
+from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
+
+from drivers.bus import HEARTBEAT, Bus
+from rig.core.devices import Identity
+from rig.core.errors import NotReady
+
+logging.getLogger("canopen").setLevel(logging.CRITICAL)  # it logs what we say in sentences
+
+START, PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
+BOOT_UP, STOPPED, OPERATIONAL, PREOP = 0x00, 0x04, 0x05, 0x7F  # NMT states in a heartbeat
+NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational", PREOP: "pre-operational"}
+PRODUCE = 50  # ms between a node's heartbeats
+PATIENCE = 3.5  # heartbeats that may stay away
+INVALID = 1 << 31  # of a PDO's identifier: not in use
+NO_OBJECT = {0x06020000, 0x06090011}  # abort codes: no such object, no such sub-index
+MISSING = object()
+
+
+class Mapped(NamedTuple):
+    """One object in a PDO."""
+
+    at: int  # index
+    sub: int
+    bits: int
+
+
+class _Answers(queue.Queue[bytes]):
+    """SDO answers, fetched from the bus by whoever waits for them."""
+
+    def __init__(self, bus: Bus) -> None:
+        super().__init__()
+        self._bus = bus
+
+    def empty(self) -> bool:
+        """Asked before each request: what came too late for the last one is thrown away."""
+        self._bus.drain()
+        while self.qsize():
+            super().get(block=False)
+        return True
+
+    def get(self, block: bool = True, timeout: float | None = None) -> bytes:
+        """The next answer. Raises queue.Empty."""
+        if not self._bus.wait(timeout or 0.0, lambda: self.qsize() > 0):
+            raise queue.Empty
+        return super().get(block=False)
+
+
+class Node:
+    """One node on a bus. `who` is what errors call it."""
+
+    def __init__(self, bus: Bus, number: int, who: str) -> None:
+        self.bus = bus
+        self.number = number
+        self.who = f"{who} (node {number} on CAN bus '{bus.name}')"
+        self.emergency = ""  # the first one since `forget`, in words
+        self.rebooted = False  # since `forget`
+        self.state: int | None = None  # NMT state it last told
+        self.heard = float("-inf")  # s on the loop's clock, last heartbeat
+        self._sdo: Any = None
+
+    def open(self) -> None:
+        """Open the bus and listen to the node; it is asked nothing yet. Raises NotReady."""
+        self.bus.open()
+        network = canopen.Network()
+        network.bus = self.bus.raw
+        remote = canopen.RemoteNode(self.number, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
+        remote.associate_network(network)
+        self._sdo = remote.sdo
+        self._sdo.responses = _Answers(self.bus)
+        self.bus.listeners[0x580 + self.number] = lambda data, t: self._sdo.responses.put(data)
+        self.bus.listeners[0x080 + self.number] = self._on_emergency
+        self.bus.listeners[HEARTBEAT + self.number] = self._on_heartbeat
+
+    def forget(self) -> None:
+        """Emergencies and reboots told so far are no longer news."""
+        self.emergency, self.rebooted = "", False
+
+    def identify(self, profile: int) -> Identity:
+        """Device type, name, serial number and version. Raises NotReady when it is no `profile` device."""
+        kind = self.read_uint(0x1000) & 0xFFFF
+        if kind != profile:
+            raise NotReady(f"{self.who} says it is a CiA {kind} device (1000h), expected CiA {profile}")
+        name, version = self.text(0x1008), self.text(0x100A)
+        vendor, product, revision, serial = (self.read_uint(0x1018, sub, default=0) for sub in (1, 2, 3, 4))
+        model = name or f"vendor {vendor:#x} product {product:#x}"
+        return Identity(model, str(serial or ""), version or f"{revision:#x}")
+
+    def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
+        """An object's bytes; `default` where the node has no such object. Raises NotReady."""
+        try:
+            return bytes(self._sdo.upload(index, sub))
+        except SdoAbortedError as why:
+            if why.code in NO_OBJECT and default is not MISSING:
+                return default  # type: ignore[no-any-return]
+            raise NotReady(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
+        except (SdoCommunicationError, can.CanError) as why:
+            raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
+
+    def read_uint(self, index: int, sub: int = 0, default: int | None = None) -> int:
+        """An unsigned number, whatever its size. Raises NotReady."""
+        raw = self.read(index, sub, MISSING if default is None else default.to_bytes(8, "little"))
+        return int.from_bytes(raw, "little")
+
+    def read_int(self, index: int, sub: int = 0) -> int:
+        """A signed number. Raises NotReady."""
+        return int.from_bytes(self.read(index, sub), "little", signed=True)
+
+    def text(self, index: int) -> str:
+        """A string, "" when there is none."""
+        return self.read(index, 0, b"").decode(errors="replace").strip("\0 ")
+
+    def write(self, index: int, sub: int, value: bytes) -> None:
+        """Write an object and read it back. Raises NotReady when refused, or when it reads back differently."""
+        self.put(index, sub, value)
+        back = self.read(index, sub)
+        if back[: len(value)] != value:
+            raise NotReady(
+                f"{self.who}: wrote {value[::-1].hex()}h to {index:04X}h:{sub}, it reads back {back[::-1].hex()}h"
+            )
+
+    def write_if_there(self, index: int, sub: int, value: bytes) -> bool:
+        """As `write`; False when the node has no such object. Raises NotReady."""
+        try:
+            self._sdo.upload(index, sub)
+        except SdoAbortedError as why:
+            if why.code in NO_OBJECT:
+                return False
+        except (SdoCommunicationError, can.CanError):
+            pass  # said by the write
+        self.write(index, sub, value)
+        return True
+
+    def put(self, index: int, sub: int, value: bytes) -> None:
+        """Write an object that is not to be read back. Raises NotReady."""
+        try:
+            self._sdo.download(index, sub, value)
+        except SdoAbortedError as why:
+            raise NotReady(f"{self.who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
+        except (SdoCommunicationError, can.CanError) as why:
+            raise NotReady(f"{self.who} does not answer (writing {index:04X}h:{sub}: {why})") from None
+
+    def map_pdo(self, communication: int, identifier: int, kind: int, objects: Iterable[Mapped]) -> None:
+        """Set up one PDO: off, emptied, mapped, on      [cia301, 7.5.2.36-38]
+
+        `communication` 1400h… or 1800h…, `kind` its transmission type. Raises NotReady, naming what is refused.
+        """
+        mapping, entries = communication + 0x200, list(objects)
+        self.put(communication, 1, struct.pack("<I", identifier | INVALID))
+        self.write(communication, 2, bytes((kind,)))
+        self.put(mapping, 0, b"\0")  # many drives refuse entries while the number is not zero
+        for place, (index, sub, bits) in enumerate(entries, 1):
+            self.write(mapping, place, struct.pack("<I", index << 16 | sub << 8 | bits))
+        self.write(mapping, 0, bytes((len(entries),)))
+        self.write(communication, 1, struct.pack("<I", identifier))
+
+    def switch_off_pdo(self, communication: int) -> None:
+        """A PDO not wanted on the bus; nothing when the node has none such. Raises NotReady."""
+        present = self.read(communication, 1, b"")
+        if present and not int.from_bytes(present, "little") & INVALID:
+            self.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))
+
+    def produce_heartbeat(self) -> None:
+        """Have the node tell that it lives. Raises NotReady when it cannot: then nobody would notice its death."""
+        self.write(0x1017, 0, struct.pack("<H", PRODUCE))
+
+    def start(self) -> None:
+        """Operational, confirmed by its heartbeat. Raises NotReady."""
+        self._nmt(START, OPERATIONAL)
+
+    def pause(self) -> None:
+        """Pre-operational: PDOs off, while it is being configured. Raises NotReady."""
+        self.bus.nmt(PRE_OPERATIONAL, self.number)
+        time.sleep(0.002)  # it has no answer; some nodes drop an SDO that follows at once
+
+    def _nmt(self, command: int, wanted: int) -> None:
+        self.state = None
+        self.bus.nmt(command, self.number)
+        if not self.bus.wait(PATIENCE * PRODUCE / 1000, lambda: self.state == wanted):
+            told = "nothing" if self.state is None else NMT_NAMES.get(self.state, f"state {self.state:#x}")
+            raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
+
+    def trouble(self, now: float) -> str:
+        """What is wrong with the node as such, in words; "" when nothing is."""
+        if self.bus.dead:
+            return self.bus.dead
+        if self.rebooted:
+            return f"{self.who} rebooted: its configuration and position are lost"
+        if self.emergency:
+            return self.emergency
+        if now - self.heard > PATIENCE * PRODUCE / 1000:
+            return f"no heartbeat of {self.who} for {PATIENCE * PRODUCE:.0f} ms, expected one every {PRODUCE} ms"
+        if self.state != OPERATIONAL:
+            told = NMT_NAMES.get(self.state or 0, f"NMT state {self.state}")
+            return f"{self.who} is {told}, expected operational"
+        return ""
+
+    def _on_heartbeat(self, data: bytes, t: float) -> None:
+        if len(data) != 1:
+            return
+        self.heard, self.state = t, data[0] & 0x7F
+        self.rebooted |= data[0] == BOOT_UP
+
+    def _on_emergency(self, data: bytes, t: float) -> None:
+        code = int.from_bytes(data[:2], "little") if len(data) >= 2 else 0
+        if code and not self.emergency:
+            self.emergency = f"{self.who}: emergency {code:04X}h, {emergency_text(code)}"
+
+
+EMERGENCIES = {
+    0x1000: "generic error",
+    0x2000: "current",
+    0x3000: "voltage",
+    0x4000: "temperature",
+    0x5000: "device hardware",
+    0x6000: "device software",
+    0x7000: "additional modules",
+    0x8000: "monitoring",
+    0x8100: "communication",
+    0x8110: "CAN overrun, frames lost",
+    0x8120: "CAN in error-passive mode",
+    0x8130: "heartbeat or life guarding of this host was missed",
+    0x8140: "recovered from bus-off",
+    0x8200: "protocol error",
+    0x8210: "PDO not processed, wrong length",
+    0x8250: "RPDO timeout: the commands stayed away",
+    0x8400: "speed control",
+    0x8500: "position control",
+    0x8600: "position control",
+    0x8611: "following error",
+    0x9000: "external error",
+    0xFF00: "device specific",
+}
+
+
+def emergency_text(code: int) -> str:
+    """What an error code means, by the finest class the standard names      [cia301, 7.2.7]"""
+    for mask in (0xFFFF, 0xFFF0, 0xFF00, 0xF000):
+        if code & mask in EMERGENCIES:
+            return EMERGENCIES[code & mask]
+    return "a code of the maker's"

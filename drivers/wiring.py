@@ -1,0 +1,67 @@
+"""Where devices are plugged in: the buses and ports of one bench, opened once however many devices share them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from drivers.bus import Bus
+from rig.core.clock import Clock
+from rig.core.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Place:
+    """What the bench file says of one device: its own keys, and the numbers it has to agree with."""
+
+    role: str  # drive, load_encoder, torque_sensor
+    options: Mapping[str, Any]  # the keys of [devices.ROLE]
+    counts_per_turn: int = 0  # of its encoder
+    torque_rated: float = 0.0  # N·m
+    torque_limit: float = 0.0  # N·m
+    speed_limit: float = 0.0  # rad/s at its shaft, more is no measurement
+    range: float = 0.0  # N·m of a torque sensor, either way
+    period: float = 0.001  # s, one tick of the loop
+
+    @property
+    def where(self) -> str:
+        """What errors call the section."""
+        return f"devices.{self.role}"
+
+    def need(self, key: str) -> Any:
+        """An option without which the device cannot be reached. Raises UsageError."""
+        value = self.options.get(key)
+        if value is None:
+            raise UsageError(f"{self.where} needs the key '{key}'")
+        return value
+
+
+@dataclass
+class Wiring:
+    """The buses of a bench by name, as [bus.NAME] says. Opened by the devices on them."""
+
+    clock: Clock
+    sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    _buses: dict[str, Bus] = field(default_factory=dict)
+
+    def bus(self, place: Place) -> Bus:
+        """The bus a device is on. Raises UsageError when the bench file has none such."""
+        name = place.need("bus")
+        if name not in self.sections:
+            known = ", ".join(sorted(self.sections)) or "none"
+            raise UsageError(f"{place.where}.bus = '{name}': no such bus; the bench file has {known}")
+        if name not in self._buses:
+            section = self.sections[name]
+            options = {**section.get("options", {})}
+            if section.get("bitrate"):
+                options["bitrate"] = section["bitrate"]
+            made = Bus(name, section["interface"], str(section["channel"]), self.clock, options)
+            made.host_node = section.get("host_node", 0)
+            self._buses[name] = made
+        return self._buses[name]
+
+    def latch(self) -> None:
+        """A SYNC on every open bus: its synchronous nodes take their reading now. Never raises."""
+        for bus in self._buses.values():
+            bus.sync()
