@@ -17,7 +17,7 @@ from sim.world import World
 def test_the_limits_are_si_and_the_gains_know_the_torque_limit() -> None:
     bench = read("twin")
     assert bench.limits.speed == pytest.approx(600 * math.pi / 30)
-    assert bench.limits.travel == pytest.approx(60 * 2 * math.pi)
+    assert bench.limits.travel == pytest.approx(400 * 2 * math.pi)
     assert bench.gains.torque_limit == 5.0
 
 

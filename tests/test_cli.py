@@ -93,13 +93,13 @@ def test_a_dry_run_prints_the_margins_and_writes_nothing(
     monkeypatch.chdir(tmp_path)
     assert main(["run", "kinematic-error", "--dry-run"]) == 0
     out = capsys.readouterr().out
-    for word in ("SIMULATED", "201.0 s", "1440 of 21600 deg", "9.6 of 600 rpm", "margin", "MB", " J "):
+    for word in ("SIMULATED", "201.0 s", "1440 of 144000 deg", "9.6 of 600 rpm", "margin", "MB", " J "):
         assert word in out
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
-    ("assignment", "word"), [("amplitude_deg=100000", "travel 100000 deg"), ("frequency=1.0", "speed 960 rpm")]
+    ("assignment", "word"), [("amplitude_deg=200000", "travel 200000 deg"), ("frequency=1.0", "speed 960 rpm")]
 )
 def test_what_the_bench_does_not_allow_is_refused_before_anything_moves(
     assignment: str, word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -62,7 +62,8 @@ def make_procedure(kind: type[Procedure], assignments: list[str]) -> Procedure:
             value = float(value)
         if not isinstance(value, wanted) or value != value or value in (float("inf"), float("-inf")):
             raise UsageError(f"{name} = {text}: expected {a_word(wanted)}, for example {default}")
-        if isinstance(value, float | int) and not isinstance(value, bool) and value <= 0:
+        signed = known[name].metadata.get("signed", False)
+        if isinstance(value, float | int) and not isinstance(value, bool) and value <= 0 and not signed:
             raise UsageError(f"{name} = {text}: expected more than 0, for example {default}")
         values[name] = value
     try:

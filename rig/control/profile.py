@@ -70,3 +70,31 @@ class Trapezoid:
         if left < ramp:
             return self.distance - sign * self.acceleration * left * left / 2, sign * self.acceleration * left
         return sign * self.peak * (t - ramp / 2), sign * self.peak
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """From one speed to another at constant acceleration, and on at that speed for as long as one likes."""
+
+    start: float  # rad/s
+    end: float  # rad/s
+    acceleration: float  # rad/s², > 0
+
+    @property
+    def duration(self) -> float:
+        """s until the end speed is reached."""
+        return abs(self.end - self.start) / self.acceleration
+
+    @property
+    def travel(self) -> float:
+        """rad, signed, until then."""
+        return 0.5 * (self.start + self.end) * self.duration
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Offset [rad] and speed [rad/s] at `t` s; at its start before."""
+        if t <= 0.0:
+            return 0.0, self.start
+        if t >= self.duration:
+            return self.travel + self.end * (t - self.duration), self.end
+        slope = math.copysign(self.acceleration, self.end - self.start)
+        return (self.start + 0.5 * slope * t) * t, self.start + slope * t

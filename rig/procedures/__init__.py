@@ -11,6 +11,12 @@ CATALOGUE: dict[str, str] = {
     "kinematic-error": "rig.procedures.kinematic_error:KinematicError",
     "sign-and-scale": "rig.procedures.sign_and_scale:SignAndScale",
     "step-test": "rig.procedures.step_test:StepTest",
+    "weigh": "rig.procedures.weigh:Weigh",
+    "lock-check": "rig.procedures.lock_check:LockCheck",
+    "constant-torque": "rig.procedures.constant_torque:ConstantTorque",
+    "sentinel": "rig.procedures.sentinel:Sentinel",
+    "standstill": "rig.procedures.standstill:Standstill",
+    "held-standstill": "rig.procedures.held_standstill:HeldStandstill",
 }
 
 

@@ -22,7 +22,13 @@ MANIFEST_NAMES = {
     "kinematic_error", "speed_convergence", "full_turn", "constant_torque", "constant_speed", "load_sweep",
     "assembly_sweep", "stiffness_lock", "friction", "coast_down", "standstill", "sentinel", "other",
 }  # fmt: skip
-SHORTER: dict[str, dict[str, Any]] = {"kinematic-error": {"amplitude_deg": 360.0, "frequency": 0.04, "cycles": 1.0}}
+SHORTER: dict[str, dict[str, Any]] = {
+    "kinematic-error": {"amplitude_deg": 360.0, "frequency": 0.04, "cycles": 1.0},
+    "constant-torque": {"revolutions": 10, "settle": 1.0},
+    "sentinel": {"revolutions": 10, "settle": 1.0},
+    "standstill": {"duration": 3.0},
+    "held-standstill": {"duration": 3.0},
+}
 
 
 def made(name: str) -> Procedure:

@@ -1,0 +1,53 @@
+"""What becomes of the kinematic error at speed: the motor pushed by one torque that nothing corrects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from rig.core.errors import UsageError
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.procedures.open_loop import OpenLoop
+
+
+@dataclass(frozen=True)
+class ConstantTorque(Procedure):
+    """Find the torque that holds a mean speed, then give exactly that, open loop, and watch      [ghorbel2001, Fig. 11]
+
+    No loop corrects anything while it is measured: what the speed does is the gear's doing. In the run the rows of
+    that part have no `theta_ref` and one and the same `tau_ask`; the first `settle` seconds of them are left out.
+    """
+
+    name: ClassVar[str] = "constant_torque"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
+
+    speed_rpm: float = field(default=310.0, metadata={"signed": True})  # of the motor
+    revolutions: int = 60  # of the wave generator, measured open loop
+    settle: float = 5.0  # s of constant torque before; the speed settles with J/B, 0.4 s on the paper's rig
+    torque: float = field(default=0.0, metadata={"signed": True})  # N·m, sign of the speed; 0: find it
+
+    def __post_init__(self) -> None:
+        if self.speed_rpm == 0.0:
+            raise UsageError("speed_rpm = 0: expected a speed of either sign, for example 310 or -310 rpm")
+        if self.torque * self.speed_rpm < 0.0:
+            raise UsageError(
+                f"torque = {self.torque:g} N·m against speed_rpm = {self.speed_rpm:g} rpm: expected the sign of the "
+                "speed, or 0 to have it found"
+            )
+
+    @property
+    def plan(self) -> OpenLoop:
+        """The same in SI."""
+        return OpenLoop(self.speed_rpm, self.revolutions, self.settle, self.torque)
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """The speed with what it may overshoot; the torque is what the loop may give while it holds the speed."""
+        return self.plan.envelope(setting)
+
+    def conditions(self) -> dict[str, Any]:
+        """For the manifest; `settle_s` tells the analysis what to leave out."""
+        return self.plan.conditions()
+
+    def steps(self, setting: Setting) -> Steps:
+        """Up, held, let run, down."""
+        return self.plan.steps(setting)
