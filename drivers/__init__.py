@@ -4,4 +4,6 @@ CATALOGUE: dict[str, str] = {
     "can.cia402": "drivers.cia402:Cia402",
     "can.cia406": "drivers.cia406:Cia406",
     "can.cia404": "drivers.cia404:Cia404",
+    "serial.qsb": "drivers.qsb:Qsb",
+    "serial.ascii_torque": "drivers.ascii_torque:AsciiTorque",
 }

@@ -1,0 +1,80 @@
+"""A torque sensor that sends a line of text per reading, such as `-12.345 Nm`, with or without a checksum `*5A`.
+
+No maker's protocol in particular: the shape several amplifiers share. The unit has to be there, and has to be N·m; a
+checksum, two hexadecimal digits behind `*`, is the exclusive or of all bytes before it, and is believed over the text.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from functools import reduce
+
+from drivers.lines import Lines
+from drivers.port import Port
+from drivers.wiring import Place, Wiring
+from rig.core.channels import Flag
+from rig.core.devices import Identity, TorqueReading, TorqueSensor
+from rig.core.errors import NotReady
+from rig.core.sample import NAN
+
+LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*(N.?m|Nm)\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
+LONGEST = 48  # bytes of a line
+NEVER = -1e9  # s, a latch time older than any
+PATIENCE = 1.0  # s for the first good line
+
+
+def decode_line(line: bytes) -> float | None:
+    """N·m, or None when the line says no torque, or its checksum something else."""
+    found = LINE.fullmatch(line)
+    if found is None:
+        return None
+    if found[3] is not None and reduce(lambda a, b: a ^ b, line[: line.index(b"*")], 0) != int(found[3], 16):
+        return None
+    return float(found[1])
+
+
+class AsciiTorque(TorqueSensor):
+    """Read without waiting; its readings are as old as `delay` says when they arrive."""
+
+    name = "torque sensor"
+
+    def __init__(self, wiring: Wiring, place: Place) -> None:
+        self.place = place
+        self.port = Port(place.need("port"), place.need("baud"), "torque sensor")
+        self.garbled = 0  # lines that said no torque
+        self._clock = wiring.clock
+        self._direction = place.options.get("direction", 1)
+        self._delay = place.options.get("delay", 0.0)
+        self._lines = Lines(LONGEST)
+        self._last = TorqueReading(NEVER, NAN)
+
+    def connect(self) -> Identity:
+        """Open the port and wait for a line that makes sense. Raises NotReady."""
+        self.port.open()
+        until = time.monotonic() + PATIENCE
+        while self.read().t == NEVER:
+            if time.monotonic() > until:
+                got = f"{self.garbled} lines that say no torque" if self.garbled else "nothing that is a line"
+                raise NotReady(f"{self.port.who} sent {got} in {PATIENCE:g} s, expected for example '-12.345 Nm'")
+            time.sleep(0.005)
+        return Identity("ASCII torque sensor", self.port.path)
+
+    def read(self) -> TorqueReading:
+        """The newest line; never waits."""
+        data = self.port.read()
+        if not data:
+            return self._last
+        for line in reversed(self._lines.feed(data)):
+            tau = decode_line(line)
+            if tau is not None:
+                over = abs(tau) >= 0.999 * self.place.range
+                t = self._clock.now() - self._delay
+                self._last = TorqueReading(t, self._direction * tau, int(Flag.SATURATED_TAU) if over else 0)
+                break
+            self.garbled += 1
+        return self._last
+
+    def close(self) -> None:
+        """Let the port go."""
+        self.port.close()

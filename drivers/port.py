@@ -1,0 +1,64 @@
+"""One serial port, read without waiting; the three kinds of error an unplugged adapter raises become one sentence."""
+
+from __future__ import annotations
+
+import contextlib
+import termios
+
+import serial
+
+from rig.core.errors import NotReady
+
+GONE = (serial.SerialException, OSError, termios.error)  # pyserial 3.5 raises all three for the same pulled plug
+
+
+class Port:
+    """A serial port opened for us alone. RTS and DTR are set before opening: raising them resets some devices."""
+
+    def __init__(self, path: str, baud: int, who: str, rts: bool = True, dtr: bool = True) -> None:
+        self.path = path
+        self.who = f"{who} on {path}"
+        self.dead = ""  # why, in words
+        self._made = serial.Serial()
+        self._made.port, self._made.baudrate = path, baud
+        self._made.timeout, self._made.write_timeout = 0, 0.2  # s; a write to a peer that does not read would block
+        self._made.exclusive = True
+        self._made.rts, self._made.dtr = rts, dtr
+
+    def open(self) -> None:
+        """Raises NotReady with the reason."""
+        if self._made.is_open:
+            return
+        try:
+            self._made.open()
+            self._made.reset_input_buffer()
+        except GONE as why:
+            raise NotReady(f"{self.who} could not be opened: {why}") from None
+        self.dead = ""
+
+    def read(self) -> bytes:
+        """What has arrived, without waiting; b"" also when the port is gone. Never raises."""
+        if self.dead or not self._made.is_open:
+            return b""
+        try:
+            waiting = self._made.in_waiting
+            return bytes(self._made.read(waiting)) if waiting else b""
+        except GONE as why:
+            self.dead = f"{self.who} is gone ({why})"
+            return b""
+
+    def write(self, data: bytes) -> bool:
+        """False when the port is gone or takes nothing. Never raises."""
+        if self.dead or not self._made.is_open:
+            return False
+        try:
+            self._made.write(data)
+        except GONE as why:
+            self.dead = f"{self.who} takes nothing ({why})"
+            return False
+        return True
+
+    def close(self) -> None:
+        """Idempotent; never raises."""
+        with contextlib.suppress(*GONE):
+            self._made.close()

@@ -1,0 +1,102 @@
+"""US Digital QSB: a quadrature encoder counted by a USB adapter that streams its counter as text      [usdigital-qsb]
+
+230 400 baud 8N1, RTS low and DTR high (its falling edge resets the counter). A command is a letter, a register and
+data in hexadecimal; an answer repeats letter and register, in small letters, then eight digits and `!`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+
+from drivers.lines import Lines
+from drivers.port import Port
+from drivers.unwrap import Unwrapped
+from drivers.wiring import Place, Wiring
+from rig.core.channels import Flag
+from rig.core.devices import AngleReading, Encoder, Identity
+from rig.core.errors import NotReady
+from rig.core.sample import NAN
+
+BAUD = 230_400
+ANSWER = re.compile(rb"([rwsex])([0-9A-Fa-f]{2})([0-9A-Fa-f]{8})(?:\s*([0-9A-Fa-f]{8}))?\s*!?")
+LONGEST = 40  # bytes of an answer
+NEVER = -1e9  # s, a latch time older than any
+PATIENCE = 1.0  # s for an answer
+LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
+TURN = 2 * math.pi
+QUADRATURE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
+X4 = 0x03  # mode: quadrature, four counts a line
+
+
+def decode_answer(line: bytes) -> tuple[str, int, int] | None:
+    """Kind (r read, w written, s streamed, e x errors), register and value; None when the line is none."""
+    found = ANSWER.fullmatch(line.strip())
+    return (found[1].decode(), int(found[2], 16), int(found[3], 16)) if found else None
+
+
+class Qsb(Encoder):
+    """The counter is 32 bits wide and streamed whenever it changes."""
+
+    name = "load encoder"
+
+    def __init__(self, wiring: Wiring, place: Place) -> None:
+        self.place = place
+        self.port = Port(place.need("port"), place.options.get("baud", BAUD), "load encoder", rts=False)
+        self.garbled = 0  # lines that were no answer
+        self._clock = wiring.clock
+        self._direction = place.options.get("direction", 1)
+        self._delay = place.options.get("delay", 0.0)
+        self._step = TURN / place.counts_per_turn
+        fastest = place.speed_limit * place.period / self._step
+        self._angle = Unwrapped(1 << 32, max(int(LATE * fastest), 1))
+        self._lines = Lines(LONGEST)
+        self._heard = NEVER
+        self._last = AngleReading(NEVER, NAN, 0)
+
+    def connect(self) -> Identity:
+        """Quadrature times four, streaming at every change and every interval. Raises NotReady."""
+        self.port.open()
+        self.port.write(b"\r\n")  # ends whatever half a command stood in its buffer
+        self._lines.feed(b"\r\n")  # an answer has a shape of its own: the first need not be thrown away
+        version = self._ask(b"R%02X" % VERSION)
+        self._ask(b"W00%08X" % X4)
+        self._ask(b"W%02X%08X" % (THRESHOLD, 0))  # 0: also while nothing moves, or rest would look like silence
+        self._ask(b"W%02X%08X" % (INTERVAL, 0))
+        value = self._ask(b"R%02X" % ENCODER)
+        self._take(value)
+        self.port.write(b"S%02X\r\n" % ENCODER)
+        return Identity("US Digital QSB", self.port.path, f"{version:08X}")
+
+    def _ask(self, command: bytes) -> int:
+        kind, register = command[:1].lower().decode(), int(command[1:3], 16)
+        self.port.write(command + b"\r\n")
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until:
+            for line in self._lines.feed(self.port.read()):
+                answer = decode_answer(line)
+                if answer and answer[0] == kind and answer[1] == register:
+                    return answer[2]
+            time.sleep(0.001)
+        raise NotReady(f"{self.port.who} did not answer {command.decode()} within {PATIENCE:g} s; is it a QSB?")
+
+    def read(self) -> AngleReading:
+        """The newest count; never waits."""
+        for line in self._lines.feed(self.port.read()):
+            answer = decode_answer(line)
+            if answer and answer[0] in "rs" and answer[1] == ENCODER:
+                self._take(answer[2])
+            else:
+                self.garbled += 1
+        return self._last
+
+    def _take(self, raw: int) -> None:
+        flags = Flag.EPOCH if self._angle.step(raw) else 0
+        counts = self._direction * (self._angle.counts or 0)
+        self._last = AngleReading(self._clock.now() - self._delay, counts * self._step, counts, int(flags))
+
+    def close(self) -> None:
+        """Stop the stream, let the port go."""
+        self.port.write(b"R%02X\r\n" % ENCODER)
+        self.port.close()
