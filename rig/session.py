@@ -14,14 +14,25 @@ from types import TracebackType
 from typing import Any
 
 from rig.bench import Bench, ClockName
+from rig.changes import (
+    band_at_rest,
+    judge_lock,
+    judge_tare,
+    judge_weight,
+    refuse_unfit,
+    wait_for_rest,
+)
 from rig.control.filter import SpeedFilter
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError, UsageError
+from rig.core.operator import Change, HangWeight, LockOutput, Operator, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
 from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
+from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import Proof, SignAndScale
+from rig.procedures.weigh import Weigh, Weighing
 from rig.recorder import Recorder
 from rig.runfile.events import EventLog
 from rig.runfile.finalise import finalise
@@ -51,7 +62,11 @@ class Session:
     root: Path
     interrupts: Interrupts
     note: str = ""
+    hand: Operator | None = None  # the person who makes changes; the twin has a hand of its own
+    rigging: Rigging = field(default_factory=Rigging)  # weight, lock pin, depth: as last shown by the sensors
+    unsure: str = ""  # the change that was asked for and not shown; no run until one is
     _proof: Proof | None = None
+    _tare: Weighing | None = None
     _early: list[tuple[str, str]] = field(default_factory=list)  # events before there is a folder for them
     _log: EventLog | None = None
 
@@ -83,15 +98,69 @@ class Session:
 
     def prove(self) -> Proof:
         """Sign-and-scale proof, recorded as a run of its own. Raises NotReady with what was measured."""
-        done = self.run(SignAndScale())
-        if not isinstance(done.ending.finding, Proof):
-            raise Ended(f"the sign-and-scale proof did not finish: {done.ending.reason}", done.ending.exit)
-        self._proof = done.ending.finding
-        return self._proof
+        proof: Proof = self._found(SignAndScale())
+        self._proof = proof
+        return proof
+
+    def tare(self) -> str:
+        """Weigh the unloaded output: the torque sensor's zero, for the weights to come. Raises NotReady."""
+        if self.rigging.tau_ext:
+            raise NotReady(f"{self.rigging.tau_ext:+g} N·m hang on the output: the torque sensor is tared without")
+        found: Weighing = self._found(Weigh())
+        told = judge_tare(found, self.bench.limits.shaft_torque or math.inf)
+        self._tare = found
+        return told
+
+    def change(self, change: Change) -> str:
+        """Torque off, at rest, asked for, made by hand, shown by the sensors; the sentence says what they showed.
+
+        Raises NotReady: nobody to make it, it does not fit, or it cannot be seen; no run starts before one was.
+        """
+        operator = self.instruments.operator or self.hand
+        if operator is None:
+            raise NotReady(f"nobody is there to {change.words()}: start hdrig on a terminal")
+        breakaway = (self._proof or self.prove()).breakaway
+        if isinstance(change, HangWeight) and self._tare is None:
+            self.tare()
+        refuse_unfit(change, self.rigging, self.bench.file.gear.N, breakaway, self.bench.limits.shaft_torque)
+        wait_for_rest(self.instruments)
+        self.unsure = change.words()
+        operator.make(change)
+        wait_for_rest(self.instruments)
+        self.rigging = change.applied(self.rigging)
+        shown = self._show(change)
+        self.unsure = ""
+        return shown
+
+    def _show(self, change: Change) -> str:
+        """What the sensors say of a change. Raises NotReady when it is not what was asked for."""
+        match change:
+            case HangWeight(tau_ext):
+                assert self._tare is not None
+                zero, band = self._tare.torque, band_at_rest(tau_ext, self._tare.friction)
+                return judge_weight(self._found(Weigh(tau_ext, zero, band)), tau_ext, zero)
+            case LockOutput():
+                check = LockCheck()
+                return judge_lock(self._found(check), math.radians(check.angle_deg))
+            case _:  # turns, and the output follows by the ratio
+                return self.prove().sentence
+
+    def _found(self, procedure: Procedure) -> Any:
+        """The finding of a run that others build on. Raises Ended when it came to no end."""
+        done = self._run(procedure)
+        if done.ending.status != "completed":
+            raise Ended(f"the {procedure.title()} run did not finish: {done.ending.reason}", done.ending.exit)
+        return done.ending.finding
 
     def run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
         """Run one procedure into a folder of its own. The folder is closed, with its status, on every way out."""
+        if self.unsure:
+            raise NotReady(f"what the rig is like is not known: '{self.unsure}' was asked for and could not be shown")
+        return self._run(procedure, watch)
+
+    def _run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
         self.check(procedure)
+        refuse_rigging(self.rigging, procedure)
         if self.interrupts.count:
             raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:
@@ -164,7 +233,7 @@ class Session:
 
     def _manifest(self, procedure: Procedure) -> dict[str, Any]:
         manifest = self.bench.manifest()
-        conditions = procedure.conditions()
+        conditions = {**procedure.conditions(), **self.rigging.conditions()}
         if self.note:
             conditions["note"] = self.note
         return {
@@ -186,6 +255,16 @@ class Ended(HdrigError):
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)
         self.exit = exit
+
+
+def refuse_rigging(rigging: Rigging, procedure: Procedure) -> None:
+    """Raises NotReady when the lock pin is not as the procedure needs it."""
+    if procedure.output_locked is not rigging.output_locked:
+        words = {True: "locked", False: "free"}
+        raise NotReady(
+            f"{procedure.title()} needs a {words[procedure.output_locked]} output, "
+            f"and it is {words[rigging.output_locked]}"
+        )
 
 
 def refuse_endless(bench: Bench, procedure: Procedure) -> None:

@@ -10,10 +10,13 @@ from rig.bench import Bench, ClockName
 from rig.commands.analyse import analyse_folder, exit_of, print_result
 from rig.commands.progress import Progress
 from rig.core.errors import Exit
+from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
 from rig.interrupts import Interrupts
+from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
+from rig.procedures.weigh import Weigh
 from rig.session import Done, Session
 
 if TYPE_CHECKING:
@@ -29,6 +32,8 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
         if procedure.closes_loop:
             print("the motor is about to turn: sign-and-scale proof, one turn forth and back", file=sys.stderr)
             print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
+        if procedure.output_locked:
+            print(session.change(LockOutput()), file=sys.stderr)
         done = _watched(session, procedure)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
     print(f"run {done.ending.status}: {done.ending.reason}", file=sys.stderr)
@@ -47,7 +52,7 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
 def finding(procedure: Procedure, done: Done) -> str:
     """What a procedure with an answer of its own found; "" when the analysis gives it."""
     match procedure:
-        case SignAndScale():
+        case SignAndScale() | Weigh() | LockCheck():
             return str(done.ending.finding.sentence)
         case StepTest():
             return response_of(done.folder).sentence

@@ -1,0 +1,1 @@
+"""Many procedures, one campaign: planned, ordered, run, written down, resumed."""

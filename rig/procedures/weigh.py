@@ -1,0 +1,111 @@
+"""What hangs on the output, by the torque sensor: at standstill first, then turning slowly both ways."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from rig.control.pid import Pid
+from rig.control.profile import Trapezoid
+from rig.core.errors import NotReady
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.core.sample import Sample, Setpoint, Torque
+
+TURN = 2 * math.pi
+STANDSTILL = 0.5  # s, 500 readings at 1 kHz
+BLOCKS = 8  # stretches whose means tell how sure the mean is
+
+
+class Weighing(NamedTuple):
+    """What was measured, N·m at the torque sensor."""
+
+    standstill: float  # before anything turned: what hangs there, less what friction on the load side holds
+    torque: float  # mean of both directions: Coulomb friction cancels, what hangs there and the zero remain
+    friction: float  # half the difference of the directions: friction on the load side
+    error: float  # standard error of `torque`
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Weigh(Procedure):
+    """Read the torque sensor at rest, then over one slow motor turn forth and back: τ_ext = zero − mean of both.
+
+    At rest the load's own friction may hold any part of a small weight; turning, it adds on one way what it takes off
+    the other. Refused before anything turns when the reading at rest is farther than `band` from −τ_ext + zero.
+    """
+
+    name: ClassVar[str] = "other"
+    label: ClassVar[str] = "weigh"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l", "tau_l")
+
+    tau_ext: float = 0.0  # N·m expected on the load, positive drives it forward
+    zero: float = 0.0  # N·m, what the sensor shows with nothing on it
+    band: float = 5.0  # N·m, load-side friction and the tolerance of the weight, at rest
+    speed_rpm: float = 15.0  # of the motor
+
+    @property
+    def turn(self) -> Trapezoid:
+        """One motor turn, so that the kinematic error averages out."""
+        speed = self.speed_rpm * math.pi / 30
+        return Trapezoid(TURN, speed, speed / 0.3)
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """One turn out and back."""
+        duration = STANDSTILL + 2 * (self.turn.duration + 0.5)
+        return Envelope(duration, TURN, self.turn.speed, setting.control.torque_limit)
+
+    def conditions(self) -> dict[str, object]:
+        """For the manifest."""
+        return {"output_locked": False, "note": f"weighing, {self.tau_ext:g} N·m expected"}
+
+    def steps(self, setting: Setting) -> Steps:
+        """Returns a Weighing. Raises NotReady when the reading at rest is nowhere near what was expected."""
+        standstill = yield from self._rest()
+        expected = self.zero - self.tau_ext
+        if not abs(standstill - expected) <= self.band:
+            raise NotReady(
+                f"at standstill the torque sensor shows {standstill:+.2f} N·m, expected {expected:+.2f} N·m within "
+                f"{self.band:.2f} N·m for {self.tau_ext:+g} N·m on the output: is it there, and the right way round?"
+            )
+        forward = yield from self._leg(setting, +1)
+        reverse = yield from self._leg(setting, -1)
+        return weighing(standstill, forward, reverse)
+
+    def _rest(self) -> Generator[Setpoint, Sample, float]:
+        sample = yield Torque(0.0)
+        begin, readings = sample.t, [sample.tau_l]
+        while sample.t - begin < STANDSTILL:
+            sample = yield Torque(0.0)
+            readings.append(sample.tau_l)
+        return statistics.fmean(readings)
+
+    def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, list[float]]:
+        """Means [N·m] of BLOCKS equal parts of the middle half of one turn."""
+        pid, move = Pid(setting.control, setting.period), self.turn
+        sample = yield Torque(0.0)
+        home, begin = sample.theta_m, sample.t
+        sums, counts = [0.0] * BLOCKS, [0] * BLOCKS
+        while (t := sample.t - begin) < move.duration + 0.5:
+            offset, omega = move.at(t)
+            block = int((t / move.duration - 0.25) * 2 * BLOCKS)
+            if 0 <= block < BLOCKS:
+                sums[block], counts[block] = sums[block] + sample.tau_l, counts[block] + 1
+            theta_ref, omega_ref = home + direction * offset, direction * omega
+            tau = pid.step(theta_ref, omega_ref, sample.theta_m, sample.omega_m)
+            sample = yield Torque(tau, theta_ref, omega_ref)
+        return [total / n for total, n in zip(sums, counts, strict=True)]
+
+
+def weighing(standstill: float, forward: list[float], reverse: list[float]) -> Weighing:
+    """The two directions put together; `forward` and `reverse` are means of stretches [N·m]."""
+    ahead, back = statistics.fmean(forward), statistics.fmean(reverse)
+    torque, friction = (ahead + back) / 2, (ahead - back) / 2
+    error = math.sqrt((statistics.pvariance(forward) + statistics.pvariance(reverse)) / (BLOCKS - 1)) / 2
+    sentence = (
+        f"torque sensor {standstill:+.2f} N·m at standstill, {torque:+.3f} ± {2 * error:.3f} N·m over both directions, "
+        f"load-side friction {friction:.2f} N·m"
+    )
+    return Weighing(standstill, torque, friction, error, sentence)
