@@ -15,4 +15,5 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),
     "verify": ("rig.commands.verify", "check hashes, row counts, time order and gaps of runs"),
     "export": ("rig.commands.export", "write a run as CSV, MDF4, MCAP or HDF5"),
+    "simulate": ("rig.commands.simulate", "the kinematic error at speed that the model predicts for a gear"),
 }

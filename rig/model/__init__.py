@@ -1,1 +1,1 @@
-"""The gear: the paper's equations, numpy only, no input or output."""
+"""The gear: the paper's equations, and the gear file that holds what was measured. Knows no run and no device."""

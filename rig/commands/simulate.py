@@ -1,0 +1,138 @@
+"""hdrig simulate GEAR: the steady kinematic error at constant torque, from a gear file or a bench; moves nothing."""
+
+from __future__ import annotations
+
+import argparse
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.core.errors import Exit, UsageError
+
+if TYPE_CHECKING:
+    from rig.model.gear import Gear
+    from rig.model.gearfile import GearFile
+    from rig.model.simulate import Waveform
+
+Array = npt.NDArray[np.float64]
+ARCSEC = 180.0 / np.pi * 3600.0
+RPM = np.pi / 30.0  # rad/s
+SPEEDS = (120.0, 300.0, 500.0)  # rpm, the paper's Fig. 11
+ORDERS = 8  # printed; beyond, amplitudes are below what a rig resolves
+HEAD = ("rpm", "τ, N·m", "θ̃ p-p, arcsec", "θ̃_p p-p", "θ̃_s p-p", "speed p-p, rpm", "τ_l p-p, N·m")
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig simulate`."""
+    parser.add_argument("gear", metavar="GEAR", help="gear file of hdrig identify; or a bench, by name or file")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--speed", type=float, nargs="+", metavar="RPM", help="mean motor speeds, default 120 300 500")
+    what.add_argument("--torque", type=float, nargs="+", metavar="N·m", help="constant motor torques instead")
+    parser.add_argument("--load", type=float, default=0.0, metavar="N·m", help="on the output, + drives it forward")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="the first one's figure, as .svg or .html")
+
+
+def run(args: argparse.Namespace) -> int:
+    """One line a speed, orders below, and the figure where asked for."""
+    from rig.model.simulate import at_speed, steady_state
+
+    if args.out is not None and args.out.suffix not in (".svg", ".html"):
+        raise UsageError(f"--out {args.out}: expected a name that ends in .svg or .html")
+    file = open_gear(args.gear)
+    gear = file.gear()
+    if args.torque:
+        waves = [steady_state(gear, tau, args.load) for tau in args.torque]
+    else:
+        waves = [at_speed(gear, rpm * RPM, args.load) for rpm in args.speed or SPEEDS]
+    print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
+    print(describe(file, waves, args.load))
+    if args.out is not None:
+        draw(args.out, waves[0], f"{args.gear}")
+        print(f"figure {args.out}")
+    return int(Exit.PASS)
+
+
+def open_gear(source: str) -> GearFile:
+    """The gear file `source`, or the gear of a bench. Raises UsageError: neither, or no kinematic error in it."""
+    from rig import bench
+    from rig.model import gearfile
+
+    path = Path(source)
+    if path.is_file():
+        try:
+            schema = tomllib.loads(path.read_text(encoding="utf-8")).get("schema", "")
+        except (OSError, ValueError, RecursionError):
+            schema = ""
+        if not str(schema).startswith("hdrig.bench/"):
+            return gearfile.read(path)
+    found = bench.read(source)
+    if found.file.twin is None:
+        raise UsageError(f"{found.source} says nothing of a kinematic error; identify the gear and give its gear file")
+    gear: Gear = bench.twin_parameters(found.file).gear
+    return gearfile.declared(gear, "declared", found.file.gear.serial, True)
+
+
+def figures(wave: Waveform) -> Array:
+    """What the table shows of a waveform, in its units, then the amplitudes of the orders in arcsec."""
+    curves = (wave.kinematic_error, wave.pure, wave.flexible)
+    swings = [float(np.ptp(c)) * ARCSEC for c in curves]
+    head = [wave.mean_speed / RPM, wave.tau, *swings, float(np.ptp(wave.omega_m)) / RPM]
+    orders = np.abs(wave.orders(wave.kinematic_error, ORDERS)) * ARCSEC
+    return np.array([*head, float(np.ptp(wave.shaft_torque)), *orders])
+
+
+def describe(file: GearFile, waves: Sequence[Waveform], load: float) -> str:
+    """The table, with 95 % intervals where the gear file has any."""
+    from rig.model.simulate import at_speed
+    from rig.model.simulate.spread import drawn_gears, half_widths
+    from rig.report.numbers import quantity
+
+    gears = drawn_gears(file)
+    names = (*HEAD, *(f"order {n}, arcsec" for n in range(1, ORDERS + 1)))
+    columns = []
+    for wave in waves:
+        speed = wave.mean_speed
+        halves = half_widths(gears, lambda g, speed=speed: figures(at_speed(g, speed, load)))  # type: ignore[misc]
+        values = figures(wave)
+        halves = np.resize(halves, values.size)
+        halves[0] = np.nan  # the speed is held; its torque is what is uncertain
+        columns.append([quantity(v, h) for v, h in zip(values, halves, strict=True)])
+    width = max(len(n) for n in names)
+    lines = [f"  {n:{width}s}  " + "  ".join(f"{c[i]:>18s}" for c in columns) for i, n in enumerate(names)]
+    how = f"± 95 %: {len(gears)} gears drawn from the gear file" if gears else "no intervals: nothing was measured"
+    return "\n".join([*lines, f"  ({how}; means over time, amplitudes over the wave-generator angle)"])
+
+
+def draw(path: Path, wave: Waveform, source: str) -> None:
+    """The figure, marked SIMULATED. Raises UsageError when it cannot be written."""
+    from rig.report.figures import Frame, svg
+    from rig.report.figures.simulated import DRAWING
+
+    text = svg(DRAWING, curves(wave), Frame(mark="SIMULATED")) or ""
+    if path.suffix == ".html":
+        title = f"{DRAWING.title}: {wave.mean_speed / RPM:.1f} rpm, {wave.tau:.3f} N·m, {source}"
+        title = title.replace("&", "&amp;").replace("<", "&lt;")
+        text = f'<!doctype html><meta charset="utf-8"><title>{title}</title><h1>{title}</h1>{text}<p>{DRAWING.note}</p>'
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+
+
+def curves(wave: Waveform) -> dict[str, Array]:
+    """Curves of the drawing, arcsec and N·m about their means, on 512 points of the trigonometric interpolant."""
+    made = {"total": wave.kinematic_error, "pure": wave.pure, "flexible": wave.flexible}
+    scaled = {name: (c - c.mean()) * ARCSEC for name, c in made.items()}
+    scaled["torque"] = wave.shaft_torque - wave.shaft_torque.mean()
+    out = {f"steady.{name}": fine(c) for name, c in scaled.items()}
+    out["steady.theta_deg"] = np.linspace(0.0, 360.0, 512, endpoint=False)
+    return out
+
+
+def fine(curve: Array) -> Array:
+    """A periodic curve on 512 points."""
+    return np.asarray(np.fft.irfft(np.fft.rfft(curve), 512) * (512 / curve.size))
