@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
 from rig.bench import Bench, ClockName, read, toml_value
-from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
+from rig.parameters import make
 
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,35 +47,18 @@ def procedure_arguments(parser: argparse.ArgumentParser) -> None:
 
 def make_procedure(kind: type[Procedure], assignments: list[str]) -> Procedure:
     """The procedure with its parameters set. Raises UsageError: unknown name, wrong type, value that makes no sense."""
-    known = {f.name: f for f in fields(kind)}  # type: ignore[arg-type]
+    return make(kind, parameters_of(assignments), kind.name)
+
+
+def parameters_of(assignments: list[str]) -> dict[str, Any]:
+    """What --with says, each value as TOML writes it. Raises UsageError."""
     values: dict[str, Any] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
         if not equals:
             raise UsageError(f"--with {assignment}: expected name=value, for example cycles=1")
-        if name not in known:
-            raise UsageError(f"{kind.name} has no parameter '{name}'; {nearest(name, known)}")
-        value, default = toml_value(text), known[name].default
-        wanted = type(default) if default is not MISSING else str
-        if wanted is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
-        if not isinstance(value, wanted) or value != value or value in (float("inf"), float("-inf")):
-            raise UsageError(f"{name} = {text}: expected {a_word(wanted)}, for example {default}")
-        signed = known[name].metadata.get("signed", False)
-        if isinstance(value, float | int) and not isinstance(value, bool) and value <= 0 and not signed:
-            raise UsageError(f"{name} = {text}: expected more than 0, for example {default}")
-        values[name] = value
-    try:
-        return kind(**values)
-    except (OverflowError, ZeroDivisionError):
-        raise UsageError(f"{kind.name}: the parameters {', '.join(assignments)} cannot be meant") from None
-
-
-def a_word(kind: type) -> str:
-    """How a person calls a type."""
-    return {float: "a finite number", int: "a whole number", str: "text", bool: "true or false"}.get(
-        kind, kind.__name__
-    )
+        values[name] = toml_value(text)
+    return values
 
 
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:

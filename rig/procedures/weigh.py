@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
 from rig.control.pid import Pid
@@ -41,8 +41,10 @@ class Weigh(Procedure):
     label: ClassVar[str] = "weigh"
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l", "tau_l")
 
-    tau_ext: float = 0.0  # N·m expected on the load, positive drives it forward
-    zero: float = 0.0  # N·m, what the sensor shows with nothing on it
+    tau_ext: float = field(
+        default=0.0, metadata={"signed": True}
+    )  # N·m expected on the load, positive drives it forward
+    zero: float = field(default=0.0, metadata={"signed": True})  # N·m, what the sensor shows with nothing on it
     band: float = 5.0  # N·m, load-side friction and the tolerance of the weight, at rest
     speed_rpm: float = 15.0  # of the motor
 

@@ -1,0 +1,65 @@
+"""A procedure's parameters as somebody wrote them, on a command line or in a plan, checked against its fields."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, fields
+from typing import Any, TypeVar
+
+from rig.config import nearest
+from rig.core.errors import UsageError
+
+Made = TypeVar("Made")
+WORDS = {
+    float: "a finite number",
+    int: "a whole number",
+    str: "text",
+    bool: "true or false",
+    tuple: "a list of numbers",
+}
+
+
+def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
+    """`kind`, a dataclass whose fields all have defaults, with the values `given`; `title` is what errors call it.
+
+    A field takes numbers above 0 only, unless its metadata say `signed`. Raises UsageError: unknown name, wrong type,
+    a value that makes no sense.
+    """
+    known = {f.name: f for f in fields(kind)}  # type: ignore[arg-type]
+    for name in given:
+        if name not in known:
+            raise UsageError(f"{title} has no parameter '{name}'; {nearest(name, known)}")
+    values = {name: _value(known[name], raw) for name, raw in given.items()}
+    try:
+        return kind(**values)
+    except (OverflowError, ZeroDivisionError):
+        told = ", ".join(f"{name} = {raw}" for name, raw in given.items())
+        raise UsageError(f"{title}: the parameters {told} cannot be meant") from None
+
+
+def _value(field: Field[Any], raw: Any) -> Any:
+    """`raw` as the field wants it. Raises UsageError."""
+    wanted = type(field.default) if field.default is not MISSING else str
+    signed = bool(field.metadata.get("signed", False))
+    if wanted is tuple and isinstance(raw, list | tuple) and raw:
+        return tuple(_number(field, value, signed) for value in raw)
+    if wanted is float:
+        return _number(field, raw, signed)
+    if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
+        raise _refused(field, raw, WORDS.get(wanted, wanted.__name__))
+    if isinstance(raw, int) and not isinstance(raw, bool) and raw <= 0 and not signed:
+        raise _refused(field, raw, "more than 0")
+    return raw
+
+
+def _number(field: Field[Any], raw: Any, signed: bool) -> float:
+    if isinstance(raw, bool) or not isinstance(raw, float | int) or not math.isfinite(raw):
+        raise _refused(field, raw, WORDS[float])
+    if raw <= 0 and not signed:
+        raise _refused(field, raw, "more than 0")
+    return float(raw)
+
+
+def _refused(field: Field[Any], raw: Any, expected: str) -> UsageError:
+    return UsageError(f"{field.name} = {raw}: expected {expected}, for example {field.default}")
