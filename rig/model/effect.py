@@ -66,6 +66,7 @@ class Signals:
     torque: Array  # N·m, T
     torque_rate: Array
     tau_m: Array
+    tau_l: Array  # N·m, as read: `torque` before the low-pass
     tau_ext: Array
     way: Array
     temperature: Array  # °C

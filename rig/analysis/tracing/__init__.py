@@ -1,0 +1,1 @@
+"""From measured runs to the effect the paper's model lacks."""

@@ -1,0 +1,189 @@
+"""The three equations of the rig as linear regressions, and how an effect's ports show in them.
+
+With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [ghorbel2001, Eqs. 1, 6-8]
+
+    A (rad)  θ̃ = c_0 + θ̃_p(θ_m) + T/K − (B_sp/K²)·Ṫ
+    M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
+    L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
+
+c_0 and the torque sensor's zero z belong to the run. Without a torque sensor T comes from L with what is declared, and L
+is no equation any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.recording import Recording
+from rig.analysis.tracing.smoothing import Smoother
+from rig.model.effect import Array, Known, Port, Signals
+
+ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
+CHANNELS: Final = ("A", "M", "L")
+SERIES: Final = tuple(f"{c}{n}" for n in range(1, ORDERS + 1) for c in "ab")
+BASELINE: Final = (*SERIES, "compliance", "damping", "J_m", "B_m", "tau_c", "tau_0", "J_l", "B_l", "tau_cl")
+LOCAL: Final = ("angle_zero", "torque_zero")  # every run its own
+INDEX: Final = {name: i for i, name in enumerate((*BASELINE, *LOCAL))}
+SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
+
+
+@dataclass(frozen=True)
+class Rows:
+    """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE + LOCAL they are."""
+
+    y: Array
+    z: Array
+    at: tuple[int, ...]
+    keep: Array  # bool, (n,), before masking
+
+
+def is_measured(run: Recording, channel: str) -> bool:
+    """Whether this run can say anything in that channel."""
+    need = {"A": {"theta_m", "theta_l"}, "M": {"theta_m", "tau_m"}, "L": {"theta_l", "tau_l"}}[channel]
+    return need <= run.has and not (run.locked and channel != "A") and run.procedure != "standstill"
+
+
+def rows(run: Recording, channel: str) -> Rows:
+    """Response and baseline columns of a channel, pieces joined, masked rows gone."""
+    made = [{"A": _angle, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
+    keep = np.concatenate([valid(piece, run, channel) for piece in run.pieces])
+    y = np.concatenate([m[0] for m in made])
+    z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
+    keep &= np.isfinite(y) & np.isfinite(z).all(1)
+    return Rows(y[keep], z[keep], tuple(INDEX[name] for name in made[0][1]), keep)
+
+
+def valid(piece: Signals, run: Recording, channel: str) -> Array:
+    """Rows in which the channel's equation holds: all in A, sliding ones in M and L."""
+    smooth = run.smoother
+    if channel == "A":
+        return np.ones(smooth.rows(piece.t.size), dtype=bool)
+    sliding = piece.way != 0
+    if channel == "L":
+        usual = float(np.median(np.abs(piece.omega_m[sliding]))) / run.ratio if sliding.any() else 0.0
+        sliding &= (piece.omega_l * piece.way) > SLIDING * usual
+    return np.asarray(smooth(sliding.astype(float)) > 1 - 1e-9)
+
+
+def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+    y = f(s.theta_m / s.ratio - s.theta_l)
+    columns = dict(zip(SERIES, f(series(s.theta_m)).T, strict=True))
+    columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "angle_zero": np.ones_like(y)}
+    return y, columns
+
+
+def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+    y = f(s.tau_m - s.tau_l / s.ratio)
+    columns = dict(zip(SERIES, f(-s.tau_l[:, None] * slopes(s.theta_m)).T, strict=True))
+    columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
+    columns["torque_zero"] = np.full_like(y, -1 / s.ratio)
+    return y, columns
+
+
+def _load(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+    y = f(s.tau_l + s.tau_ext)
+    columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "torque_zero": np.ones_like(y)}
+    return y, columns
+
+
+def series(theta: Array) -> Array:
+    """cos nθ, sin nθ in turn, n = 1..15, shape (n, 30)."""
+    out = np.empty((theta.size, 2 * ORDERS))
+    c, s = np.cos(theta), np.sin(theta)
+    out[:, 0], out[:, 1] = c, s
+    for n in range(1, ORDERS):
+        out[:, 2 * n] = out[:, 2 * n - 2] * c - out[:, 2 * n - 1] * s
+        out[:, 2 * n + 1] = out[:, 2 * n - 1] * c + out[:, 2 * n - 2] * s
+    return out
+
+
+def slopes(theta: Array) -> Array:
+    """d/dθ of `series`, shape (n, 30)."""
+    values = series(theta)
+    n = np.repeat(np.arange(1, ORDERS + 1), 2)
+    out = values[:, np.arange(2 * ORDERS) ^ 1] * n
+    out[:, ::2] *= -1
+    return np.asarray(out)
+
+
+Footprint = Callable[[Array, Signals, Smoother], Iterator[tuple[str, Array]]]
+
+
+def _motor_torque(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "M", f(c)
+
+
+def _load_torque(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "L", f(c)
+
+
+def _kinematic_error(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "A", f(c)
+
+
+def _lever(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "M", f(-s.torque[:, None] * c)
+
+
+def _reads_theta_m(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    slope = s.gear.kinematic_error.slope(s.theta_m)
+    yield "A", f(c * (1 / s.ratio - slope)[:, None])
+    yield "M", -s.gear.J_m * f(c, 2)
+
+
+def _reads_theta_l(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "A", -f(c)
+    yield "L", -s.gear.J_l * f(c, 2)
+
+
+def _reads_tau_m(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    yield "M", f(c)
+
+
+def _reads_tau_l(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+    k = s.gear.K
+    yield "A", -f(c) / k + s.gear.B_sp / k**2 * f(c, 1)
+    yield "M", -f(c) / s.ratio
+    yield "L", f(c)
+
+
+FOOTPRINTS: Final[Mapping[Port, Footprint]] = {
+    Port.MOTOR_TORQUE: _motor_torque,
+    Port.LOAD_TORQUE: _load_torque,
+    Port.KINEMATIC_ERROR: _kinematic_error,
+    Port.WIND_UP: _kinematic_error,
+    Port.LEVER: _lever,
+    Port.READS_THETA_M: _reads_theta_m,
+    Port.READS_THETA_L: _reads_theta_l,
+    Port.READS_TAU_M: _reads_tau_m,
+    Port.READS_TAU_L: _reads_tau_l,
+}
+
+
+def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother) -> dict[str, Array]:
+    """Columns at ports (n, k) → columns in channels (rows, k)."""
+    out: dict[str, Array] = {}
+    for port, columns in ports.items():
+        for channel, made in FOOTPRINTS[port](columns, s, f):
+            out[channel] = out[channel] + made if channel in out else made
+    return out
+
+
+def known_of(values: Mapping[str, float]) -> Known:
+    """What effects may lean on, from the baseline's coefficients."""
+    from rig.model.fourier import FourierSeries
+
+    stiffness = 1 / values["compliance"]
+    return Known(
+        K=stiffness,
+        B_sp=-values["damping"] * stiffness**2,
+        J_m=values["J_m"],
+        J_l=values["J_l"],
+        kinematic_error=FourierSeries(
+            tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
+        ),
+    )

@@ -1,0 +1,165 @@
+"""A run as the tracer uses it: pieces on a uniform time grid, speeds and accelerations by one zero-phase filter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.source import Motion, motion_of
+from rig.analysis.tracing.smoothing import Smoother, thin
+from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
+from rig.model.effect import Array, Known, Signals
+from rig.model.fourier import FourierSeries
+from rig.runfile.run import Run
+
+UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
+TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One run. `pieces` hold no gap; `start` is s since the campaign began."""
+
+    name: str
+    procedure: str
+    condition: str  # equal for repeats
+    locked: bool
+    start: float
+    ratio: float
+    pieces: tuple[Signals, ...]
+    smoother: Smoother
+    has: frozenset[str]  # measured channels among theta_m, theta_l, tau_m, tau_l, t
+    counts_m: float
+    counts_l: float
+    rate: float  # Hz of the file
+    notes: tuple[str, ...] = ()
+
+    @property
+    def duration(self) -> float:
+        """s of recorded motion."""
+        return float(sum(piece.t.size * piece.dt for piece in self.pieces))
+
+    def knowing(self, known: Known) -> Recording:
+        """The same with what is known of the gear."""
+        return replace(self, pieces=tuple(replace(piece, gear=known) for piece in self.pieces))
+
+
+def record(run: Run, start: float, condition: str) -> Recording:
+    """Read the columns the tracer uses. Raises UsageError when the run has no angle it can use."""
+    motion = motion_of(run)
+    channels = _channels(run, motion)
+    has = frozenset(name for name, values in channels.items() if values is not None)
+    t, dt, steady = _grid(channels["t"], run)
+    rows = t.size
+    whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
+    factor = max(1, round(1 / dt / RATE))
+    work = dt * factor
+    sigma = min(BANDWIDTH, TAMEST / work)
+    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
+    tau_ext = float(run.conditions.get("tau_ext") or 0.0)
+    pieces = tuple(
+        piece
+        for lo, hi in _joined(t, dt, motion, steady)
+        if (
+            piece := _piece(
+                t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext
+            )
+        )
+        is not None
+    )
+    encoders = run.manifest.get("encoders") or {}
+    return Recording(
+        name=run.name,
+        procedure=run.procedure,
+        condition=condition,
+        locked=bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock",
+        start=start,
+        ratio=run.ratio,
+        pieces=pieces,
+        smoother=smoother,
+        has=has,
+        counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
+        counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
+        rate=1 / dt,
+        notes=motion.notes if motion else (),
+    )
+
+
+def _channels(run: Run, motion: Motion | None) -> dict[str, Array | None]:
+    names = ("tau_m", "tau_l", "temperature")
+    if motion is None:
+        found: dict[str, Array | None] = {name: run.column(name) for name in names}
+        return {"t": run.column("t"), "theta_m": None, "theta_l": run.column("theta_l"), **found}
+    picked = {name: motion.pick(run.column(name)) for name in names}
+    return {"t": motion.t, "theta_m": motion.theta_m, "theta_l": motion.theta_l, **picked}
+
+
+def _grid(t: Array | None, run: Run) -> tuple[Array, float, bool]:
+    """Time of each row, s between rows, and whether there is a time at all (else rows count)."""
+    if t is None or t.size < 3:
+        said = float(run.manifest.get("sample_rate_hz") or RATE)
+        return np.arange(run.rows) / said, 1 / said, False
+    return t, float(np.median(np.diff(t))), True
+
+
+def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tuple[int, int]]:
+    """Rows lo..hi without a gap or a new encoder reference between them."""
+    cuts = set(motion.breaks if motion else ())
+    if steady:
+        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > 1.8 * dt)}
+    edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
+    return [(lo, hi) for lo, hi in zip(edges, edges[1:], strict=False) if hi - lo > 50]
+
+
+def _uniform(t: Array, x: Array, dt: float) -> Array:
+    """`x` on a uniform grid of `dt`; left alone when it already is."""
+    even = t[0] + dt * np.arange(t.size)
+    if np.max(np.abs(t - even)) < 0.02 * dt:
+        return x
+    return np.interp(np.arange(t[0], t[-1], dt), t, x)
+
+
+def _piece(
+    t: Array, c: dict[str, Array], dt: float, factor: int, smooth: Smoother, run: Run, start: float, tau_ext: float
+) -> Signals | None:
+    """One piece at the working rate."""
+    c = {name: _uniform(t, x, dt) for name, x in c.items()}
+    first = t[0]
+    if factor > 1:
+        thinned = {name: thin(x, factor) for name, x in c.items()}
+        first += thinned["theta_m"][1] * dt
+        c = {name: x for name, (x, _) in thinned.items()}
+    n = c["theta_m"].size
+    if n < 10 * smooth.half:
+        return None
+    time = start + first + smooth.dt * np.arange(n)
+    omega_m = smooth.same(c["theta_m"], 1)
+    return Signals(
+        t=time,
+        dt=smooth.dt,
+        ratio=run.ratio,
+        theta_m=c["theta_m"],
+        theta_l=c["theta_l"],
+        omega_m=omega_m,
+        alpha_m=smooth.same(c["theta_m"], 2),
+        omega_l=smooth.same(c["theta_l"], 1),
+        alpha_l=smooth.same(c["theta_l"], 2),
+        jerk_l=smooth.same(c["theta_l"], 3),
+        torque=smooth.same(c["tau_l"]),
+        torque_rate=smooth.same(c["tau_l"], 1),
+        tau_m=c["tau_m"],
+        tau_l=c["tau_l"],
+        tau_ext=np.full(n, tau_ext),
+        way=direction(omega_m, smooth.dt),
+        temperature=c["temperature"],
+        gear=UNKNOWN,
+    )
+
+
+def direction(omega: Array, dt: float) -> Array:
+    """−1 or 1 while it slides, 0 around every reversal and stop; (n,)."""
+    sign = np.where(np.abs(omega) > SLOWEST_TURNING, np.sign(omega), 0.0)
+    width = max(1, round(SETTLING / dt))
+    rest = np.convolve((sign == 0) | (np.diff(sign, prepend=sign[:1]) != 0), np.ones(2 * width + 1), mode="same") > 0.5
+    return np.where(rest, 0.0, sign)

@@ -1,0 +1,94 @@
+"""One Gaussian low-pass for every reading and every column, with its derivatives; zero phase, then fewer rows.
+
+A residual is only explained by columns that went through the same filter: filter the reading and not the columns, and
+the filter itself looks like an effect.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from rig.model.effect import Array
+
+REACH = 4.5  # standard deviations of the kernel kept on each side: 1e-5 of its height is cut off
+
+
+@lru_cache(maxsize=64)
+def kernel(sigma: float, dt: float, derivative: int) -> Array:
+    """Gaussian of standard deviation `sigma` s sampled every `dt` s, its `derivative` 0..3; shape (odd,).
+
+    Corrected so that it maps t^d/d! exactly to one, and (derivatives above 0) a constant exactly to zero.
+    """
+    half = int(np.ceil(REACH * sigma / dt))
+    t = np.arange(-half, half + 1) * dt
+    x = t / sigma
+    bell = np.exp(-0.5 * x * x)
+    hermite = (np.ones_like(x), -x, x * x - 1.0, -x * (x * x - 3.0))[derivative]
+    taps = hermite * bell
+    if derivative == 2:
+        taps = taps - bell * (taps.sum() / bell.sum())
+    if derivative == 3:
+        odd = x * bell
+        taps = taps - odd * ((taps @ t) / (odd @ t))
+    power = (-t) ** derivative / float(np.prod(np.arange(1, derivative + 1)))
+    return np.asarray(taps / (taps @ power))
+
+
+@dataclass(frozen=True)
+class Smoother:
+    """Low-pass of bandwidth `sigma_hz` on a grid of `dt` s, keeping every `step`-th row."""
+
+    sigma_hz: float
+    dt: float
+    step: int
+
+    @property
+    def half(self) -> int:
+        """Rows of the input lost at each end."""
+        return int((self._kernel(0).size - 1) // 2)
+
+    def _kernel(self, derivative: int) -> Array:
+        return kernel(float(1.0 / (2 * np.pi * self.sigma_hz)), self.dt, derivative)
+
+    def rows(self, n: int) -> int:
+        """Rows that come out of `n` rows."""
+        return max(0, -(-(n - 2 * self.half) // self.step))
+
+    def __call__(self, x: Array, derivative: int = 0) -> Array:
+        """`x` (n,) or (n, k) → derivative 0..3 by time, (rows(n),) or (rows(n), k)."""
+        taps, m, step = self._kernel(derivative), self.rows(x.shape[0]), self.step
+        out = np.zeros((m, *x.shape[1:]))
+        for j, tap in enumerate(taps[::-1]):
+            out += tap * x[j : j + (m - 1) * step + 1 : step] if m else 0.0
+        return out
+
+    def same(self, x: Array, derivative: int = 0) -> Array:
+        """The derivative on the grid of `x` itself (n,), the ends held at the nearest valid row."""
+        full = np.convolve(x, self._kernel(derivative), mode="same") if x.size > 2 * self.half else np.zeros_like(x)
+        if x.size > 2 * self.half:
+            full[: self.half] = full[self.half]
+            full[x.size - self.half :] = full[x.size - self.half - 1]
+        return np.asarray(full)
+
+
+@lru_cache(maxsize=16)
+def _flat(factor: int) -> Array:
+    """Low-pass that passes the lower third of the new rate untouched, for taking every `factor`-th row; (odd,)."""
+    half = 5 * factor
+    t = np.arange(-half, half + 1) / factor
+    taps = np.sinc(t) * np.kaiser(t.size, 6.0)  # 6: ripple below 1e-3 between pass band and alias
+    return np.asarray(taps / taps.sum())
+
+
+def thin(x: Array, factor: int) -> tuple[Array, int]:
+    """Every `factor`-th row of `x` (n,) without aliases below a third of the new rate; also the row the first one is."""
+    taps = _flat(factor)
+    half = (taps.size - 1) // 2
+    m = max(0, -(-(x.size - 2 * half) // factor))
+    out = np.zeros(m)
+    for j, tap in enumerate(taps[::-1]):
+        out += tap * x[j : j + (m - 1) * factor + 1 : factor] if m else 0.0
+    return out, half
