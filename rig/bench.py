@@ -63,7 +63,7 @@ class Bench:
 
     def setting(self, note: Callable[[str], None]) -> Setting:
         """What a procedure is told about the rig; `note` receives its remarks."""
-        return Setting(1.0 / self.file.loop.rate, self.file.gear.N, self.gains, note)
+        return Setting(1.0 / self.file.loop.rate, self.file.gear.N, self.gains, note, self.file.gear.K)
 
     def manifest(self) -> dict[str, Any]:
         """The bench's part of a run's manifest."""

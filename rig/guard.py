@@ -50,6 +50,7 @@ class Guard:
         # not yet known to follow, or which way: still, the load must not go much farther than the motor may take it
         self.load_travel = None if limits.twist is None else LOAD_MARGIN * self.travel / ratio
         self.torque = min(limits.torque, envelope.torque)
+        self.shaft_torque = None if limits.shaft_torque is None else min(limits.shaft_torque, envelope.shaft_torque)
         self.start: Sample | None = None
 
     def check(self, sample: Sample, asked: Torque) -> Trip | None:
@@ -64,7 +65,7 @@ class Guard:
             and -lim.speed <= sample.omega_m <= lim.speed
             and -lim.torque * TORQUE_MARGIN <= sample.tau_m <= lim.torque * TORQUE_MARGIN
             and -self.travel <= sample.theta_m - start.theta_m <= self.travel
-            and (lim.shaft_torque is None or -lim.shaft_torque <= sample.tau_l <= lim.shaft_torque)
+            and (self.shaft_torque is None or -self.shaft_torque <= sample.tau_l <= self.shaft_torque)
             and (self.twist is None or abs(self.twist_of(sample)) <= self.twist)
             and (self.load_travel is None or abs(sample.theta_l - start.theta_l) <= self.load_travel)
             and abs(asked.tau) < math.inf
@@ -126,7 +127,7 @@ def torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
 
 def shaft_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     """The torque sensor must not be overloaded."""
-    limit = guard.limits.shaft_torque
+    limit = guard.shaft_torque
     if limit is None or -limit <= sample.tau_l <= limit:
         return None
     full = " (sensor at the end of its range)" if sample.flags & Flag.SATURATED_TAU else ""

@@ -76,7 +76,7 @@ class Loop:
             self.instruments.drive.enable()
             self.supervisor.act(Act.RUN, procedure.name)
             self.running = True
-            ending = self._tick(procedure.steps(setting), setting)
+            ending = self._tick(procedure, setting)
         except BaseException as error:
             self.instruments.safe()
             refused = isinstance(error, NotReady)
@@ -86,11 +86,12 @@ class Loop:
             confirmed = self.instruments.safe()
         return self._leave(ending, confirmed)
 
-    def _tick(self, steps: Steps, setting: Setting) -> Ending:
+    def _tick(self, procedure: Procedure, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
         latch, lead = self.instruments.latch, self.instruments.lead
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
         period, start, k, stopping = setting.period, clock.now(), 0, False
+        steps: Steps = procedure.steps(setting)
         asked: Torque = next(steps)
         while True:
             k += 1
@@ -115,7 +116,7 @@ class Loop:
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
             if self.interrupts.count and not stopping:
-                stopping, steps = True, brake(setting)
+                stopping, steps = True, procedure.to_rest(setting) or brake(setting)
                 self.supervisor.act(Act.STOP, "asked by the operator")
                 next(steps)
             if self.interrupts.count > 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
@@ -22,6 +23,7 @@ class Envelope:
     speed: float  # rad/s of the motor, nominal
     torque: float  # N·m, motor side
     coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
+    shaft_torque: float = math.inf  # N·m at the torque sensor, either way; inf: nothing below the bench's own limit
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,7 @@ class Setting:
     ratio: float  # gear ratio N
     control: Any  # rig.control.pid.Gains
     note: Callable[[str], None] = field(default=lambda text: None)  # a line in events.jsonl
+    stiffness: float = math.nan  # N·m/rad at the output, declared, of the whole path
 
 
 class Procedure(ABC):
@@ -50,6 +53,16 @@ class Procedure(ABC):
     @abstractmethod
     def steps(self, setting: Setting) -> Steps:
         """The experiment. Primed with `next`, then given one sample a tick."""
+
+    def to_rest(self, setting: Setting) -> Steps | None:
+        """How a controlled stop (category 1) ends it from wherever it is. None: the motor is braked, which will do
+        wherever nothing stays wound up behind it.
+        """
+        return None
+
+    def remarks(self, setting: Setting) -> list[str]:
+        """What a person should know before it starts, one sentence each: stored energy, how it is let out."""
+        return []
 
     def title(self) -> str:
         """What people call it, with hyphens, as on the command line."""

@@ -17,6 +17,7 @@ CATALOGUE: dict[str, str] = {
     "sentinel": "rig.procedures.sentinel:Sentinel",
     "standstill": "rig.procedures.standstill:Standstill",
     "held-standstill": "rig.procedures.held_standstill:HeldStandstill",
+    "stiffness-lock": "rig.procedures.stiffness_lock:StiffnessLock",
 }
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from rig.bench import read
 from rig.core.channels import CHANNELS
+from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
 from rig.guard import Guard
 from rig.interrupts import Interrupts
@@ -28,6 +29,7 @@ SHORTER: dict[str, dict[str, Any]] = {
     "sentinel": {"revolutions": 10, "settle": 1.0},
     "standstill": {"duration": 3.0},
     "held-standstill": {"duration": 3.0},
+    "stiffness-lock": {"tau_max": 6.0, "rate": 3.0, "cycles": 1, "hold": 0.2, "rates": (1.0,)},
 }
 
 
@@ -41,6 +43,8 @@ def run(name: str, stop_at: int | None = None) -> tuple[Ending, ListSink, Proced
     rig.connect()
     supervisor.act(Act.CONNECT)
     supervisor.act(Act.CHECK)
+    if procedure.output_locked and rig.operator is not None:
+        rig.operator.make(LockOutput())
 
     def watch(sample: object) -> None:
         if stop_at is not None and len(sink.rows) >= stop_at:
