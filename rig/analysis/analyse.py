@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from rig.analysis.angle import TURN
+from rig.analysis.constant_torque import add_constant_torque
+from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
 from rig.analysis.lock import add_lock
 from rig.analysis.overview import add_overview
@@ -41,6 +43,10 @@ def _at_speed(found: Findings, run: Source, motion: Motion, speed: Speed | None)
     add_turning(found, run, motion, speed, slow=False)
 
 
+def _constant_torque(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_constant_torque(found, run, motion)
+
+
 def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
     add_standstill(found, run, motion)
 
@@ -71,16 +77,23 @@ PROCEDURES: Mapping[str, Part] = {
     "full_turn": _slow,
     "load_sweep": _slow,
     "assembly_sweep": _slow,
-    "constant_torque": _at_speed,
+    "constant_torque": _constant_torque,
     "constant_speed": _at_speed,
-    "sentinel": _at_speed,
+    "sentinel": _constant_torque,
     "stiffness_lock": _lock,
     "standstill": _standstill,
 }
 
 
-def analyse(run: Source) -> Result:
-    """All that `run` says on its own: figures with 95 % intervals, checks, curves, and what it cannot tell.
+AT_SPEED = ("constant_torque", "constant_speed", "sentinel")
+"""Procedures whose θ̃ is split into the pure kinematic error and what flexibility makes of it."""
+
+
+def analyse(run: Source, reference: Source | None = None) -> Result:
+    """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
+
+    `reference` is a slow run of the same gear: a run at speed is then split into the pure kinematic error and what
+    flexibility makes of it.
 
     `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
     holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
@@ -90,7 +103,7 @@ def analyse(run: Source) -> Result:
         warnings.simplefilter("ignore")  # numpy's remarks on empty and constant pieces say nothing to an operator
         tame = Tame(run)
         try:
-            return _analyse(tame)
+            return _analyse(tame, reference)
         except UNFORESEEN as why:
             return _nothing(tame, f"The analysis broke off on what this run holds ({type(why).__name__}: {why}).")
 
@@ -101,7 +114,7 @@ def _nothing(run: Tame, why: str) -> Result:
     return conclude(found, run.procedure, {**run.manifest, "limits": {}})
 
 
-def _analyse(run: Tame) -> Result:
+def _analyse(run: Tame, reference: Source | None) -> Result:
     if not RATIOS[0] <= run.ratio <= RATIOS[1]:
         return _nothing(run, f"The manifest says a gear ratio of {run.ratio:g}: no gear has it, nothing was computed.")
     found = Findings()
@@ -120,5 +133,7 @@ def _analyse(run: Tame) -> Result:
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
     PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
+    if run.procedure in AT_SPEED and not found.rejected:
+        add_decomposition(found, run, motion, reference)
     found.cannot += run.notes
     return conclude(found, run.procedure, run.manifest)

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
+from rig.commands.reference import reference_beside, reference_named
 from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
     from rig.analysis.result import Result
+    from rig.runfile.run import Run
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,15 +23,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="write results there instead of into the run folders"
     )
+    parser.add_argument(
+        "--reference",
+        type=Path,
+        metavar="RUN",
+        help="slow run (kinematic-error) to split runs at speed with; without it the one beside them is taken",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Figures and report of every run."""
     folders = expand(args.runs)
     places = dict(zip(folders, targets(folders, args.out), strict=True))
+    reference = reference_named(args.reference) if args.reference else None
 
     def analyse_one(folder: Path) -> Exit:
-        result, simulated = analyse_folder(folder, places[folder])
+        result, simulated = analyse_folder(folder, places[folder], reference)
         print_result(result, places[folder], folder, simulated)
         return exit_of(result)
 
@@ -44,12 +53,13 @@ def targets(folders: list[Path], out: Path | None) -> list[Path]:
     return [out / folder.resolve().relative_to(base) for folder in folders]
 
 
-def analyse_folder(folder: Path, target: Path) -> tuple[Result, bool]:
+def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> tuple[Result, bool]:
     """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself.
 
-    Returns the result, and whether the run is simulated.
+    `reference` is the slow run to split a run at speed with; without it the one in the same folder is taken. Returns
+    the result, and whether the run is simulated.
     """
-    from rig.analysis import analyse
+    from rig.analysis.analyse import AT_SPEED, analyse
     from rig.report.page import write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
@@ -58,7 +68,9 @@ def analyse_folder(folder: Path, target: Path) -> tuple[Result, bool]:
 
     run = Run.open(folder)
     refuse_changed(folder, run.manifest)
-    result = analyse(run)
+    if run.procedure in AT_SPEED:
+        reference = reference or reference_beside(run)
+    result = analyse(run, reference)
     try:
         target.mkdir(parents=True, exist_ok=True)
         made = [
