@@ -11,6 +11,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "tune": ("rig.commands.tune", "find gains that turn the motor smoothly at the slow speed"),
     "analyse": ("rig.commands.analyse", "figures and report of recorded runs, again and again, no hardware"),
     "import": ("rig.commands.import_", "turn a file of another logger into a run folder"),
+    "twin": ("rig.commands.twin", "the simulated rig in real time, reached over CAN and serial lines"),
     "list": ("rig.commands.list_", "the runs in a folder"),
     "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),
     "verify": ("rig.commands.verify", "check hashes, row counts, time order and gaps of runs"),

@@ -1,0 +1,49 @@
+"""hdrig twin: the simulated rig as a process of its own that real drivers reach over CAN and serial lines."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import signal
+from pathlib import Path
+
+from rig.bench import read, twin_parameters
+from rig.core.errors import Exit, UsageError
+
+FOLDER = Path("/tmp/hdrig-twin")
+MOTOR_CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin's plant has no current
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig twin`."""
+    parser.add_argument("--bench", default="twin", metavar="FILE", help="bench file with a [twin] section")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
+    parser.add_argument("--bus", type=Path, default=FOLDER / "can", metavar="PATH", help="socket of the CAN bus")
+    parser.add_argument("--control", type=Path, default=FOLDER / "control", metavar="PATH", help="command channel")
+    parser.add_argument("--bitrate", type=float, default=1e6, metavar="BIT/S", help="of the bus; inf: takes no time")
+    parser.add_argument("--for", type=float, default=math.inf, dest="seconds", metavar="SECONDS", help="then stop")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Serve until SIGTERM, SIGINT, `stop` on the command channel or the time is up."""
+    if not args.bitrate > 0.0:
+        raise UsageError(f"--bitrate {args.bitrate:g}: expected more than 0 bit/s, for example 1e6")
+    bench = read(args.bench, args.set)
+    if bench.file.twin is None:
+        raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
+    from sim.wire.assembly import Assembly
+    from sim.wire.motor import Rating
+    from sim.wire.process import Process
+
+    rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
+    assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
+    process = Process(assembly, args.bus, args.control)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: process.reactor.stop())
+    assembly.agenda.at(args.seconds, process.reactor.stop)
+    print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
+    for line in process.lines:
+        print(line, flush=True)
+    print("ready", flush=True)
+    process.run()
+    return Exit.PASS

@@ -1,0 +1,109 @@
+"""The twin's command channel: one JSON object a line on a Unix socket, one line back.
+
+    {"do": "load", "tau_ext": 3.0}  →  {"ok": true}      {"do": "truth"}  →  {"ok": true, "theta_m": …, …}
+
+{"do": "help"} lists what there is. A line that cannot be meant is answered with {"ok": false, "error": sentence}.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import socket
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, final
+
+from rig.core.errors import HdrigError, UsageError
+from sim.wire.hub import listen
+from sim.wire.reactor import Reactor, Source
+
+Answer = Mapping[str, Any] | None
+Verb = Callable[..., Answer]
+LONGEST_LINE = 65536  # bytes
+
+
+def describe(verbs: Mapping[str, Verb]) -> dict[str, str]:
+    """Each verb with its arguments and what it does."""
+    lines = {}
+    for name, verb in verbs.items():
+        text = inspect.getdoc(verb) or ""
+        lines[name] = f"{inspect.signature(verb)}: {text.splitlines()[0] if text else ''}"
+    return lines
+
+
+def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
+    """Do what one line asks; the answer as an object."""
+    try:
+        asked = json.loads(line)
+        if not isinstance(asked, dict) or "do" not in asked:
+            raise UsageError('expected an object with "do", for example {"do": "truth"}')
+        name = asked.pop("do")
+        if name not in verbs:
+            raise UsageError(f"no command '{name}'; expected one of {', '.join(sorted(verbs))}")
+        inspect.signature(verbs[name]).bind(**asked)
+        return {"ok": True, **(verbs[name](**asked) or {})}
+    except (HdrigError, ValueError, TypeError) as error:
+        return {"ok": False, "error": str(error)}
+
+
+@final
+class Control(Source):
+    """Accepts any number of clients at `path`; `verbs` are what they may ask for."""
+
+    def __init__(self, reactor: Reactor, path: Path, verbs: Mapping[str, Verb]) -> None:
+        self.reactor, self.path = reactor, path
+        self.verbs: dict[str, Verb] = {**verbs, "help": lambda: describe(self.verbs)}
+        self.lines: list[Line] = []
+        self._socket = listen(path, socket.SOCK_STREAM)
+        reactor.add(self)
+
+    def fileno(self) -> int:
+        return self._socket.fileno()
+
+    def ready(self) -> None:
+        line = Line(self, self._socket.accept()[0])
+        self.lines.append(line)
+        self.reactor.add(line)
+
+    def close(self) -> None:
+        for line in tuple(self.lines):
+            line.close()
+        self._socket.close()
+        self.path.unlink(missing_ok=True)
+
+
+@final
+class Line(Source):
+    """One client of the command channel."""
+
+    def __init__(self, control: Control, connection: socket.socket) -> None:
+        self._control, self._socket = control, connection
+        self._socket.setblocking(False)
+        self._text = b""
+
+    def fileno(self) -> int:
+        return self._socket.fileno()
+
+    def ready(self) -> None:
+        try:
+            got = self._socket.recv(LONGEST_LINE)
+        except OSError:
+            got = b""
+        if not got or len(self._text) > LONGEST_LINE:
+            self.close()
+            return
+        *lines, self._text = (self._text + got).split(b"\n")
+        for line in lines:
+            answer = json.dumps(perform(self._control.verbs, line)).encode() + b"\n"
+            try:
+                self._socket.send(answer)
+            except OSError:
+                self.close()
+                return
+
+    def close(self) -> None:
+        if self in self._control.lines:
+            self._control.lines.remove(self)
+            self._control.reactor.remove(self)
+            self._socket.close()

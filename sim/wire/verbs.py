@@ -1,0 +1,53 @@
+"""What the command channel can ask of the plant and the process. Faults are in `faults`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sim.wire.assembly import Assembly
+from sim.wire.control import Verb
+from sim.wire.reactor import Reactor
+
+
+def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
+    """load, lock, unlock, truth, status, stop."""
+    world, agenda, bus = assembly.world, assembly.agenda, assembly.bus
+
+    def load(tau_ext: float) -> None:
+        """Hang a weight: N·m on the load, positive drives it forward"""
+        world.advance_to(agenda.now)
+        world.load_torque(float(tau_ext))
+
+    def lock() -> None:
+        """Clamp the output where it is; refused while it turns"""
+        world.advance_to(agenda.now)
+        world.lock_output()
+
+    def unlock() -> None:
+        """Let the output turn again"""
+        world.advance_to(agenda.now)
+        world.unlock_output()
+
+    def truth() -> dict[str, Any]:
+        """What really happens now, SI"""
+        world.advance_to(agenda.now)
+        return {"t": world.t, **world.truth()._asdict(), "simulated": True}
+
+    def status() -> dict[str, Any]:
+        """Bus, nodes and process"""
+        return {
+            "t": agenda.now,
+            "load": bus.load,
+            "frames": bus.frames,
+            "stations": [port.name for port in bus.ports],
+            "drive": assembly.drive.drive_state.name,
+            "error_code": assembly.drive.error_code.number,
+            "nmt": {node.id: node.state.name for node in assembly.nodes},
+            "late": reactor.late,
+        }
+
+    def stop() -> None:
+        """End the twin"""
+        reactor.stop()
+
+    return {verb.__name__: verb for verb in (load, lock, unlock, truth, status, stop)}
