@@ -10,5 +10,17 @@ REFERENCES: dict[str, str] = {
     "gum": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement",
     "tuttle1992": "T. D. Tuttle, Understanding and modeling the behavior of a harmonic drive gear transmission, "
     "MIT Artificial Intelligence Laboratory, Technical Report 1365 (1992)",
+    "dahl1968": "P. R. Dahl, A solid friction model, The Aerospace Corporation, TOR-0158(3107-18)-1 (1968)",
+    "wolf2018": "S. Wolf, M. Iskandar, Extending a dynamic friction model with nonlinear viscous and thermal "
+    "dependency for a motor and harmonic drive gear, IEEE Int. Conf. Robotics and Automation (2018) 783-790",
+    "seyfferth1995": "W. Seyfferth, A. J. Maghzal, J. Angeles, Nonlinear modeling and parameter identification of "
+    "harmonic drive robotic transmissions, IEEE Int. Conf. Robotics and Automation (1995) 3027-3032",
+    "kuhnen2003": "K. Kuhnen, Modeling, identification and compensation of complex hysteretic nonlinearities: a "
+    "modified Prandtl-Ishlinskii approach, European J. Control 9 (2003) 407-418",
+    "jia2021": "H. Jia et al., Modeling and analysis of pure kinematic error in harmonic drive, "
+    "Mechanism and Machine Theory 155 (2021) 104122",
+    "taghirad1999": "H. D. Taghirad, P. R. Bélanger, Intelligent built-in torque sensor for harmonic drive systems, "
+    "IEEE Trans. Instrumentation and Measurement 48 (1999) 1201-1207",
+    "harmonicdrive": "Harmonic Drive SE / LLC, CSF and CSG component sets, engineering data of the catalogue",
     "astrom2006": "K. J. Åström, T. Hägglund, Advanced PID Control, ISA (2006)",
 }

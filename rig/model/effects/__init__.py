@@ -19,21 +19,55 @@ Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member.
 from __future__ import annotations
 
 from rig.model.effect import Effect
+from rig.model.effects.angle_dependent_stiffness import AngleDependentStiffness
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.cogging_torque import CoggingTorque
+from rig.model.effects.encoder_interpolation_error import EncoderInterpolationError
+from rig.model.effects.flexspline_frame_error import FlexsplineFrameError
+from rig.model.effects.gravity_unbalance import GravityUnbalance
+from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import LoadDependentKinematicError
+from rig.model.effects.lost_motion import LostMotion
+from rig.model.effects.motor_encoder_eccentricity import MotorEncoderEccentricity
+from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
+from rig.model.effects.position_dependent_friction import PositionDependentFriction
+from rig.model.effects.presliding_friction import PreslidingFriction
+from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
+from rig.model.effects.support_compliance import SupportCompliance
+from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
+from rig.model.effects.tooth_mesh_error import ToothMeshError
+from rig.model.effects.torque_ripple import TorqueRipple
+from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
+from rig.model.effects.torsional_mode import TorsionalMode
 
 CATALOGUE: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         StribeckFriction(),
+        PreslidingFriction(),
         LoadDependentFriction(),
+        PositionDependentFriction(),
+        ThermalFrictionDrift(),
+        QuadraticDrag(),
+        NonlinearStiffness(),
+        HystereticStiffness(),
+        AngleDependentStiffness(),
+        LostMotion(),
         LoadDependentKinematicError(),
         OutputOncePerRev(),
+        FlexsplineFrameError(),
+        ToothMeshError(),
+        GravityUnbalance(),
         CoggingTorque(),
+        TorqueRipple(),
+        MotorEncoderEccentricity(),
+        EncoderInterpolationError(),
         ChannelTimeSkew(),
+        TorqueSensorCrosstalk(),
+        TorsionalMode(),
+        SupportCompliance(),
     )
 }

@@ -1,0 +1,56 @@
+"""Sub-divisional error: each line of an encoder is divided unevenly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+
+MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter
+
+
+class EncoderInterpolationError(Effect):
+    """An angle reads e·cos(L·θ + φ) too much, L its lines per turn: a divisor of its counts per turn
+
+    Only where a line passes slower than the samples come; beyond that it aliases and cannot be told from noise.
+    """
+
+    name: ClassVar[str] = "encoder_interpolation_error"
+    in_short: ClassVar[str] = "orders of the encoder's line count"
+    source: ClassVar[str] = "ghorbel2001"
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "lines")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    LEAST: Final = (16, 900)  # lines of motor and load encoder: fewer are orders of the gear
+    TURN: Final = 2.0 * np.pi
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Divisors of the counts that the slowest run samples at least three times a line."""
+        out: list[Shape] = []
+        for side, counts, speed in (
+            (MOTOR, reach.counts_m, reach.slowest),
+            (LOAD, reach.counts_l, reach.slowest / reach.ratio),
+        ):
+            highest = min(reach.rate / 3.0 / (speed / self.TURN), counts / 4) if speed > 0 else 0.0
+            out += [(side, float(n)) for n in divisors(int(counts)) if self.LEAST[int(side)] <= n <= highest]
+        return tuple(out)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of the line angle."""
+        side, lines = shape
+        x = lines * (signals.theta_l if side == LOAD else signals.theta_m)
+        port = Port.READS_THETA_L if side == LOAD else Port.READS_THETA_M
+        return {port: np.stack([np.cos(x), np.sin(x)], 1)}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Amplitude and phase, named by side and line count."""
+        side = "load" if fit.shape[0] == LOAD else "motor"
+        return harmonic(fit, f"{side}_{fit.shape[1]:g}_lines", "rad")
+
+
+def divisors(number: int) -> list[int]:
+    """All divisors of `number`, ascending; none of 0."""
+    small = [d for d in range(1, int(number**0.5) + 1) if number % d == 0]
+    return sorted({*small, *(number // d for d in small)})

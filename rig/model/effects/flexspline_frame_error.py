@@ -1,0 +1,45 @@
+"""Kinematic error that rides on the flexspline, or on whatever turns with the output."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+
+
+class FlexsplineFrameError(Effect):
+    """θ̃_p gains C·cos(k·(θ_m + σ·θ_l) + φ): order k·(1 + σ/N), 2.04 beside 2      [jia2021]
+
+    σ = +1 when the flexspline is the output and turns against the wave generator, −1 when the circular spline is.
+    """
+
+    name: ClassVar[str] = "flexspline_frame_error"
+    in_short: ClassVar[str] = "orders that ride on the flexspline (2.04, 4.08 …)"
+    source: ClassVar[str] = "jia2021"
+    shape_names: ClassVar[tuple[str, ...]] = ("k", "sigma")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Less than a sixth of an output turn cannot tell 2.04 from 2."""
+        if reach.load_turns < 1 / 6:
+            return ()
+        return tuple((k, sigma) for sigma in (1.0, -1.0) for k in self.ORDERS)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine, with their lever."""
+        k, sigma = shape
+        x = k * (signals.theta_m + sigma * signals.theta_l)
+        slope = k * (1.0 + sigma / signals.ratio)
+        return {
+            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
+            Port.LEVER: np.stack([-slope * np.sin(x), slope * np.cos(x)], 1),
+        }
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Amplitude and phase of the order."""
+        order = fit.shape[0] * (1.0 + fit.shape[1] / fit.ratio)
+        return harmonic(fit, f"order_{order:.4g}", "rad")

@@ -1,0 +1,37 @@
+"""Friction that changes over a turn of the wave generator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+
+
+class PositionDependentFriction(Effect):
+    """τ_f gains τ_k·cos(k·θ_m + φ)·sgn ω_m      [tuttle1992]
+
+    Cogging keeps its sign when the motor turns back; this does not. One direction alone cannot tell them apart.
+    """
+
+    name: ClassVar[str] = "position_dependent_friction"
+    in_short: ClassVar[str] = "friction modulated by wave-generator angle"
+    source: ClassVar[str] = "tuttle1992"
+    shape_names: ClassVar[tuple[str, ...]] = ("order",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+    ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the wave generator's own geometry: two lobes and their halves
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Low orders of the motor."""
+        return tuple((k,) for k in self.ORDERS)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine, with the sign of the motion."""
+        x = shape[0] * signals.theta_m
+        return {Port.MOTOR_TORQUE: np.stack([np.cos(x), np.sin(x)], 1) * signals.way[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Amplitude and phase."""
+        return harmonic(fit, f"order_{fit.shape[0]:g}", "N·m")

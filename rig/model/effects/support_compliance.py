@@ -1,0 +1,51 @@
+"""The housing gives way to the reaction of the output torque, and both encoders turn with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+from rig.model.memory import resonated
+
+
+class SupportCompliance(Effect):
+    """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much
+
+    Far below ω it is just more or less compliance, which the baseline's K already has.
+    """
+
+    name: ClassVar[str] = "support_compliance"
+    in_short: ClassVar[str] = "the housing moves"
+    source: ClassVar[str] = "ghorbel2001"
+    shape_names: ClassVar[tuple[str, ...]] = ("frequency", "zeta")
+    loose: ClassVar[tuple[bool, ...]] = (True, True)
+    LOWEST: Final = 15.0  # Hz
+    STEP: Final = 1.1  # neighbouring frequencies within a half width of a 5 % damped peak
+    ZETA: Final = 0.05
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Frequencies up to a third of the sample rate."""
+        count = int(np.log(max(reach.rate / 3.0, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
+        return tuple((float(f), self.ZETA) for f in self.LOWEST * self.STEP ** np.arange(count))
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Any frequency that is sampled; damping of steel to rubber."""
+        return ((0.7 * self.LOWEST, reach.rate / 2.5), (0.005, 0.5))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in both readings."""
+        torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
+        moved = resonated(torque, signals.dt, 2.0 * np.pi * shape[0], shape[1])[:, None]
+        return {Port.READS_THETA_L: moved, Port.READS_THETA_M: moved}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Compliance of the support, its frequency and damping."""
+        compliance, frequency, zeta = np.eye(3)[:, : fit.covariance.shape[0]]
+        return (
+            parameter("compliance", fit.coefficients[0], fit.half_width(compliance), "rad/(N·m)"),
+            parameter("frequency", fit.shape[0], fit.half_width(frequency), "Hz"),
+            parameter("zeta", fit.shape[1], fit.half_width(zeta), "1"),
+        )

@@ -1,0 +1,40 @@
+"""Kinematic error at the order of the tooth count."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+
+
+class ToothMeshError(Effect):
+    """θ̃_p gains C·cos(z·θ_m + φ), z = 2N teeth of the flexspline, 2N + 2 of the circular spline, or twice as many"""
+
+    name: ClassVar[str] = "tooth_mesh_error"
+    in_short: ClassVar[str] = "orders of the tooth count"
+    source: ClassVar[str] = "tuttle1992"
+    shape_names: ClassVar[tuple[str, ...]] = ("order",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+    MULTIPLES: Final = (1, 2)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Orders the slowest run samples at least three times a period."""
+        teeth = (2 * reach.ratio, 2 * reach.ratio + 1, 2 * reach.ratio + 2)
+        highest = reach.rate / 3.0 / (reach.slowest / (2.0 * np.pi))
+        return tuple((m * z,) for m in self.MULTIPLES for z in teeth if m * z < highest)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine, with their lever."""
+        k = shape[0]
+        x = k * signals.theta_m
+        return {
+            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
+            Port.LEVER: np.stack([-k * np.sin(x), k * np.cos(x)], 1),
+        }
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Amplitude and phase."""
+        return harmonic(fit, f"order_{fit.shape[0]:g}", "rad")

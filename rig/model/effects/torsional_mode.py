@@ -1,0 +1,58 @@
+"""A second resonance: something elastic beyond the gear's own spring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+from rig.model.memory import resonated
+
+LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
+
+
+class TorsionalMode(Effect):
+    """An inertia J_2 hangs on the load (or the motor) by a spring of its own: it resists with J_2·H·ω̇,
+    H = ω²/(s² + 2ζωs + ω²). Far below ω it is just more inertia, which the baseline already has.
+    """
+
+    name: ClassVar[str] = "torsional_mode"
+    in_short: ClassVar[str] = "a second resonance beyond the gear's own"
+    source: ClassVar[str] = "ghorbel2001"
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta")
+    loose: ClassVar[tuple[bool, ...]] = (False, True, True)
+    LOWEST: Final = 20.0  # Hz
+    STEP: Final = 1.08  # neighbouring frequencies within a half width of a 4 % damped peak
+    ZETA: Final = 0.04
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Frequencies up to a third of the sample rate."""
+        count = int(np.log(max(reach.rate / 3.0, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
+        frequencies = self.LOWEST * self.STEP ** np.arange(count)
+        return tuple((side, float(f), self.ZETA) for side in (LOAD, MOTOR) for f in frequencies)
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Any frequency that is sampled; damping of steel to rubber."""
+        return ((0.0, 1.0), (0.7 * self.LOWEST, reach.rate / 2.5), (0.002, 0.4))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column: the acceleration behind the spring."""
+        side, frequency, zeta = shape
+        alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
+        port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
+        return {port: resonated(alpha, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Inertia, frequency and damping."""
+        inertia, _, frequency, zeta = np.eye(4)[:, : fit.covariance.shape[0]]
+        return (
+            parameter("J_2", fit.coefficients[0], fit.half_width(inertia), "kg·m²"),
+            parameter("frequency", fit.shape[1], fit.half_width(frequency), "Hz"),
+            parameter("zeta", fit.shape[2], fit.half_width(zeta), "1"),
+        )
+
+    def plausible(self, fit: Fit) -> bool:
+        """An inertia is positive."""
+        return bool(fit.coefficients[0] > 0)

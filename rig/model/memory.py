@@ -1,0 +1,63 @@
+"""States with memory, sample by sample: the play operator, Dahl's presliding state, a resonator. Compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Array = npt.NDArray[np.float64]
+
+
+@njit(cache=True)
+def play(x: Array, half_width: float) -> Array:
+    """Play of `half_width` (unit of x): follows x at a distance, rests when x turns back. Starts at 0, shape (n,)."""
+    out = np.empty_like(x)
+    y = 0.0
+    for i in range(x.size):
+        y = min(max(y, x[i] - half_width), x[i] + half_width)
+        out[i] = y
+    return out
+
+
+@njit(cache=True)
+def presliding(theta: Array, x0: float) -> Array:
+    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step; starts at 0, shape (n,)."""
+    out = np.empty_like(theta)
+    z, last = 0.0, theta[0] if theta.size else 0.0
+    for i in range(theta.size):
+        moved = theta[i] - last
+        last = theta[i]
+        if moved != 0.0:
+            way = math.copysign(1.0, moved)
+            z = way + (z - way) * math.exp(-abs(moved) / x0)
+        out[i] = z
+    return out
+
+
+@njit(cache=True)
+def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
+    """x through ω²/(s² + 2ζωs + ω²), x linear between samples dt [s] apart, exact; starts in balance with x[0].
+
+    The state is how far the output is behind: e = y − x and its rate; both shapes (n,).
+    """
+    out = np.empty_like(x)
+    if x.size == 0:
+        return out
+    sigma = zeta * omega
+    wd = omega * math.sqrt(1.0 - zeta * zeta)
+    decay, c, s = math.exp(-sigma * dt), math.cos(wd * dt), math.sin(wd * dt)
+    # with a ramp of slope r as input, y − (x − 2ζr/ω) decays freely
+    y, rate = x[0], 0.0
+    out[0] = y
+    for i in range(1, x.size):
+        slope = (x[i] - x[i - 1]) / dt
+        settled = 2.0 * zeta / omega * slope
+        e, v = y - (x[i - 1] - settled), rate - slope
+        e_next = decay * (e * c + (v + sigma * e) / wd * s)
+        v_next = decay * (v * c - (sigma * v + omega * omega * e) / wd * s)
+        y, rate = x[i] - settled + e_next, slope + v_next
+        out[i] = y
+    return out

@@ -1,0 +1,140 @@
+"""What every effect of the library promises."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
+from rig.model.effects import CATALOGUE
+from rig.model.fourier import FourierSeries
+from rig.model.references import REFERENCES
+
+N, DT = 50.0, 0.001
+KNOWN = Known(7000.0, 5.0, 1.5e-3, 0.8, FourierSeries((1e-5, 2e-4, 0.0), (0.0, 1e-4, 1e-5)))
+REACH = Reach(
+    ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, load_turns=1.0,
+    counts_m=65536, counts_l=1_296_000,
+)  # fmt: skip
+FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}
+ANGLE_LOCKED = {"output_once_per_rev", "flexspline_frame_error", "tooth_mesh_error", "load_dependent_kinematic_error"}
+every_effect = pytest.mark.parametrize("effect", CATALOGUE.values(), ids=list(CATALOGUE))
+
+
+def motion(sign: float = 1.0, n: int = 4000) -> Signals:
+    """A motor that speeds up and slows down one way, under a torque that swings through zero."""
+    t = np.arange(n) * DT
+    omega = sign * (6.0 + 4.0 * np.sin(2 * np.pi * 0.4 * t))
+    theta = np.concatenate([[0.0], np.cumsum((omega[1:] + omega[:-1]) / 2)]) * DT + 0.3
+    alpha = np.gradient(omega, DT)
+    torque = sign * 25.0 * np.sin(2 * np.pi * 0.7 * t + 0.2)
+    nothing = np.zeros(n)
+    return Signals(
+        t=t, dt=DT, ratio=N, theta_m=theta, theta_l=theta / N, omega_m=omega, alpha_m=alpha, omega_l=omega / N,
+        alpha_l=alpha / N, jerk_l=np.gradient(alpha, DT) / N, torque=torque, torque_rate=np.gradient(torque, DT),
+        tau_m=0.3 * np.sign(omega) + torque / N, tau_l=torque, tau_ext=nothing,
+        way=np.sign(omega), temperature=nothing * np.nan, gear=KNOWN,
+    )  # fmt: skip
+
+
+@every_effect
+def test_its_file_its_name_and_its_source_agree(effect: Effect):
+    assert type(effect).__module__.rsplit(".", 1)[1] == effect.name
+    assert effect.source.split(",")[0] in REFERENCES
+    assert effect.in_short
+    assert len(effect.shape_names) == len(effect.loose)
+
+
+@every_effect
+def test_columns_are_finite_and_as_many_at_every_port_for_every_shape(effect: Effect):
+    shapes = effect.shapes(REACH)
+    assert shapes, "a complete campaign can show it"
+    for shape in shapes:
+        assert len(shape) == len(effect.shape_names)
+        ports = effect.columns(motion(), shape)
+        assert len({c.shape for c in ports.values()}) == 1, shape
+        for columns in ports.values():
+            assert columns.shape[0] == motion().t.size
+            assert np.isfinite(columns).all(), shape
+
+
+@every_effect
+def test_a_refit_that_moves_the_shape_within_its_bounds_stays_finite(effect: Effect):
+    shapes = effect.shapes(REACH)
+    if not effect.shape_names:
+        return
+    bounds = effect.bounds(REACH)
+    assert len(bounds) == len(effect.shape_names)
+    for end in (0, 1):
+        loose = [b[end] if free else s for b, free, s in zip(bounds, effect.loose, shapes[0], strict=True)]
+        assert all(np.isfinite(c).all() for c in effect.columns(motion(), tuple(loose)).values())
+
+
+@every_effect
+def test_parameters_have_a_name_a_unit_and_an_interval_around_the_value(effect: Effect):
+    shape = effect.shapes(REACH)[0]
+    k = next(iter(effect.columns(motion(), shape).values())).shape[1]
+    size = k + len(shape)
+    fit = Fit(np.linspace(0.01, 0.02, k), shape, np.eye(size) * 1e-6, KNOWN, N)
+    for p in effect.parameters(fit):
+        assert p.name
+        assert p.unit
+        assert p.ci95[0] <= p.value <= p.ci95[1]
+        assert np.isfinite([p.value, *p.ci95]).all()
+    assert isinstance(effect.plausible(fit), bool)
+
+
+@pytest.mark.parametrize("name", sorted(FRICTION))
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_friction_never_gives_energy(name: str, sign: float):
+    effect, s = CATALOGUE[name], motion(sign)
+    for shape in effect.shapes(REACH):
+        columns = effect.columns(s, shape)[Port.MOTOR_TORQUE]
+        assert (columns * s.omega_m[:, None] >= 0).all()
+
+
+@pytest.mark.parametrize("name", sorted(FRICTION | {"presliding_friction", "thermal_friction_drift"}))
+def test_friction_is_the_same_both_ways(name: str):
+    effect = CATALOGUE[name]
+    forward, backward = motion(1.0), motion(-1.0)
+    backward = dataclasses.replace(backward, theta_m=-forward.theta_m)
+    for shape in effect.shapes(REACH):
+        ahead, back = (effect.columns(s, shape)[Port.MOTOR_TORQUE] for s in (forward, backward))
+        np.testing.assert_allclose(ahead, -back, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", sorted(ANGLE_LOCKED))
+def test_the_lever_is_the_slope_of_the_kinematic_error(name: str):
+    s = motion()
+    s = dataclasses.replace(s, theta_m=s.theta_m / 50, theta_l=s.theta_l / 50, torque=np.full(4000, 3.0))
+    effect = CATALOGUE[name]
+    for shape in effect.shapes(REACH):
+        ports = effect.columns(s, shape)
+        step = np.diff(ports[Port.KINEMATIC_ERROR], axis=0)
+        middle = (ports[Port.LEVER][1:] + ports[Port.LEVER][:-1]) / 2 * np.diff(s.theta_m)[:, None]
+        most = np.abs(step).max()
+        np.testing.assert_allclose(step, middle, atol=1e-3 * most)
+
+
+@pytest.mark.parametrize("name", ["nonlinear_stiffness", "lost_motion"])
+def test_an_elastic_law_is_odd_in_the_torque(name: str):
+    effect, s = CATALOGUE[name], motion()
+    turned = dataclasses.replace(s, torque=-s.torque)
+    for shape in effect.shapes(REACH):
+        np.testing.assert_allclose(effect.columns(s, shape)[Port.WIND_UP], -effect.columns(turned, shape)[Port.WIND_UP])
+
+
+def test_no_two_effects_have_the_same_footprint():
+    runs = (motion(1.0), motion(-1.0))
+    seen: list[tuple[str, dict[Port, np.ndarray]]] = []
+    for effect in CATALOGUE.values():
+        made = [effect.columns(s, effect.shapes(REACH)[0]) for s in runs]
+        columns = {port: np.concatenate([m[port][:, 0] for m in made]) for port in made[0]}
+        for other, theirs in seen:
+            same = set(columns) == set(theirs) and all(
+                abs(np.corrcoef(columns[p], theirs[p])[0, 1]) > 0.999 for p in columns if columns[p].std() > 0
+            )
+            assert not same, f"{effect.name} looks like {other}"
+        seen.append((effect.name, columns))
