@@ -26,6 +26,9 @@ MANIFEST_NAMES = {
 SHORTER: dict[str, dict[str, Any]] = {
     "kinematic-error": {"amplitude_deg": 360.0, "frequency": 0.04, "cycles": 1.0},
     "constant-torque": {"revolutions": 10, "settle": 1.0},
+    "full-turn": {"speed_rpm": 120.0},
+    "speed-convergence": {"amplitude_deg": 360.0, "speeds_rpm": "60,40,30"},
+    "coast-down": {"repeats": 1, "speed_rpm": 200.0},
     "sentinel": {"revolutions": 10, "settle": 1.0},
     "standstill": {"duration": 3.0},
     "held-standstill": {"duration": 3.0},

@@ -1,0 +1,85 @@
+"""How slow is slow enough: the same strokes at falling speeds, until the kinematic error no longer changes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from rig.control.pid import Pid
+from rig.control.profile import Triangle
+from rig.core.errors import UsageError
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.core.sample import Torque
+
+DEG = math.pi / 180
+RPM = math.pi / 30
+FEWEST = 3  # speeds: two to see a change, one more to see that it has ended
+APART = 1.2  # ratio of neighbouring speeds at least: closer ones are not told apart when the run is cut
+
+
+@dataclass(frozen=True)
+class SpeedConvergence(Procedure):
+    """Triangles of one amplitude at successively lower speed      [ghorbel2001]
+
+    The figure is the fastest speed at which the waveform agrees with that of standstill within a tolerance.
+    """
+
+    name: ClassVar[str] = "speed_convergence"
+    needs: ClassVar[tuple[str, ...]] = ("t", "theta_m", "theta_l")
+
+    speeds_rpm: str = "60,40,30,20,15,9.6,4.8"  # of the motor, falling
+    amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
+    cycles: int = 1  # at each speed
+    settle: float = 0.5  # s at rest before each
+    tolerance: float = 0.02  # of the waveform's rms: what counts as no longer changing
+
+    def __post_init__(self) -> None:
+        speeds = self.speeds
+        if len(speeds) < FEWEST or any(not a >= APART * b for a, b in pairwise(speeds)):
+            raise UsageError(
+                f"speeds_rpm = {self.speeds_rpm}: expected at least {FEWEST} falling speeds in rpm, each at least "
+                f"{APART:g} times the next, for example 60,40,30,20,15,9.6,4.8"
+            )
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """rpm, fastest first. Raises UsageError when one is no speed."""
+        try:
+            speeds = tuple(float(word) for word in self.speeds_rpm.split(","))
+        except ValueError:
+            speeds = ()
+        if not speeds or not all(0.0 < speed < math.inf for speed in speeds):
+            raise UsageError(f"speeds_rpm = {self.speeds_rpm}: expected speeds in rpm, divided by commas")
+        return speeds
+
+    @property
+    def waves(self) -> tuple[Triangle, ...]:
+        """One for each speed."""
+        amplitude = self.amplitude_deg * DEG
+        return tuple(Triangle(amplitude, speed * RPM / (4.0 * amplitude), self.cycles) for speed in self.speeds)
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """All triangles have the same travel; the first is the fastest."""
+        waves = self.waves
+        duration = sum(wave.duration + self.settle for wave in waves) + self.settle
+        return Envelope(duration, self.amplitude_deg * DEG, waves[0].speed, setting.control.torque_limit)
+
+    def conditions(self) -> dict[str, Any]:
+        """For the manifest."""
+        told = {"speeds_rpm": list(self.speeds), "tolerance": self.tolerance}
+        return {"output_locked": False, "tau_ext": 0.0, **told}
+
+    def steps(self, setting: Setting) -> Steps:
+        """One triangle after the other under one and the same loop."""
+        pid = Pid(setting.control, setting.period)
+        sample = yield Torque(0.0)
+        home, begin = sample.theta_m, self.settle
+        for wave, speed in zip(self.waves, self.speeds, strict=True):
+            setting.note(f"triangle at {speed:g} rpm from t = {begin:.3f} s")
+            while sample.t < begin + wave.duration + self.settle:
+                offset, omega_ref = wave.at(sample.t - begin)
+                tau = pid.step(home + offset, omega_ref, sample.theta_m, sample.omega_m)
+                sample = yield Torque(tau, home + offset, omega_ref)
+            begin += wave.duration + self.settle
