@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 from rig.core.errors import UsageError
 from rig.model.gear import Gear
+from sim.effects import Effects
 
 POSITIVE = {
     *("ratio", "J_m", "J_l", "K", "omega_s"),
     *("friction_noise_s", "torque_limit", "watchdog", "motor_counts_per_turn", "load_counts_per_turn"),
     *("sensor_range", "sensor_lowpass_hz"),
 }
-ANY = {"gear", "kinematic_error", "sensor_zero", "sigma"}  # no numbers, or of either sign
+ANY = {"gear", "kinematic_error", "sensor_zero", "sigma", "effects"}  # no numbers, or of either sign
 
 
 @dataclass(frozen=True)
@@ -38,12 +39,13 @@ class TwinParameters:
     latch_m: float  # s after the tick
     latch_l: float  # s after the tick
     latch_tau: float  # s after the tick
+    effects: Effects = field(default_factory=Effects)  # what the paper's model lacks
 
     def __post_init__(self) -> None:
         for part in (self, self.gear):
-            for field in fields(part):
-                if field.name not in ANY:
-                    _check(field.name, getattr(part, field.name))
+            for entry in fields(part):
+                if entry.name not in ANY:
+                    _check(entry.name, getattr(part, entry.name))
         if self.gear.tau_s < self.gear.tau_c:
             raise UsageError(
                 f"the twin's breakaway torque tau_s is {self.gear.tau_s:g} N·m, "

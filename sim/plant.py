@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.core.errors import HdrigError
-from rig.model.gear import Gear
-from rig.model.linear import damping_ratio, natural_frequency
 from sim import kernel
-from sim.energy import Ledger, stored
+from sim.energy import Hidden, Ledger, potential
 from sim.parameters import TwinParameters
+from sim.vector import pack, slips
 
-AT_ONCE = 1e-9  # s, what a drive without delay takes: nothing on the scale of a substep
 FAILURES = {
     kernel.NOT_FINITE: "its state is no longer finite",
     kernel.TOO_FAST: f"it moves too fast to be followed in steps of {kernel.H_LEAST:g} s",
@@ -49,28 +45,44 @@ class Plant:
     τ_f = (τ_c + (τ_s − τ_c)·exp(−(ω_m/ω_s)²))·sgn ω_m and F_l = F_cl·sgn ω_l while sliding; at rest whatever is
     needed, up to τ_s and F_cl      [armstrong1994] [karnopp1985]
 
+    What the paper's model lacks comes on top as `parameters.effects` says. Where load changes the kinematic error the
+    balance is d(T+V)/dt + losses − work = (K·φ + B_sp·φ̇)·θ̃_p·ġ/g; the ledger has it as `schedule`.
+
     `refine` divides the substeps, for tests of convergence.
     """
 
     def __init__(self, parameters: TwinParameters, theta_m: float = 0.0, refine: float = 1.0) -> None:
-        self.parameters = parameters
-        self.vector = pack(parameters, refine)
-        self.state = np.zeros(kernel.STATE_SIZE)
+        self.refine = refine
         self.tau_ext = 0.0  # N·m on the load, positive drives it forward
         self.locked = False  # output held fast, whatever the torque
+        self._fit(parameters)
         self.place(theta_m)
+
+    def _fit(self, parameters: TwinParameters) -> None:
+        self.parameters = parameters
+        self.vector = pack(parameters, self.refine)
+        self._pass = kernel.advance_full if parameters.effects.in_the_plant else kernel.advance
+        self.state = np.zeros(kernel.STATE_SIZE + len(slips(parameters.effects.hysteresis)) // 2)
+
+    def rebuild(self, parameters: TwinParameters) -> None:
+        """Another gear around the same motor angle, at rest; time, warmth and wander stay."""
+        stays = [kernel.THETA_M, kernel.WANDER_M, kernel.WANDER_L, kernel.WARMTH, kernel.CLOCK]
+        theta_m, *rest = self.state[stays].tolist()
+        self._fit(parameters)
+        self.place(theta_m)
+        self.state[stays[1:]] = rest
 
     def place(self, theta_m: float, omega_m: float = 0.0, twist: float = 0.0) -> None:
         """Put the motor at `theta_m` rad and `omega_m` rad/s, the load at its share of that speed, φ at `twist` rad.
 
         The energy ledger starts anew; the drive's torque is zero.
         """
-        value, slope = kernel.kinematic_error(theta_m, self.vector)
+        value, slope, per_load = kernel.kinematic_error(theta_m, 0.0, self.vector)
         ratio = self.parameters.gear.ratio
         self.state[:] = 0.0
         self.state[[kernel.THETA_M, kernel.OMEGA_M]] = theta_m, omega_m
         self.state[[kernel.THETA_L, kernel.OMEGA_L]] = theta_m / ratio - value + twist, omega_m * (1.0 / ratio - slope)
-        self.state[[kernel.VALUE, kernel.SLOPE]] = value, slope
+        self.state[[kernel.VALUE, kernel.SLOPE, kernel.PER_LOAD]] = value, slope, per_load
         self._start = self.energy()
         self.advance(0.0, 0.0)
         self.state[kernel.FILTERED] = self.state[kernel.TAU_L]
@@ -81,9 +93,7 @@ class Plant:
 
         Raises PlantFailure when the state cannot be followed; it is then left as it was.
         """
-        status, motor, load, shaft = kernel.advance(
-            self.state, self.vector, dt, tau, self.tau_ext, self.locked, xi_m, xi_l
-        )
+        status, motor, load, shaft = self._pass(self.state, self.vector, dt, tau, self.tau_ext, self.locked, xi_m, xi_l)
         if status:
             raise PlantFailure(f"the twin's plant has failed: {FAILURES[status]} ({self.truth()}, {tau:g} N·m asked)")
         self.motor, self.load, self.shaft = motor, load, shaft
@@ -96,46 +106,16 @@ class Plant:
 
     def energy(self) -> float:
         """T + V now [J]."""
-        x = self.truth()
-        return stored(self.parameters.gear, x.omega_m, x.omega_l, x.phi)
+        x, gear = self.truth(), self.parameters.gear
+        moving = 0.5 * (gear.J_m * x.omega_m**2 + gear.J_l * x.omega_l**2)
+        return moving + potential(self.parameters, x.theta_m, x.theta_l, x.phi, self.hidden())
+
+    def hidden(self) -> Hidden:
+        """The states behind the motion."""
+        creep_1, creep_2 = self.state[[kernel.CREEP_1, kernel.CREEP_2]].tolist()
+        return Hidden(creep_1, creep_2, tuple(self.state[kernel.STATE_SIZE :].tolist()))
 
     def ledger(self) -> Ledger:
         """Energy in, lost and stored since the start."""
-        entries = self.state[kernel.IN_MOTOR : kernel.LOST_LOAD + 1].tolist()
+        entries = self.state[kernel.IN_MOTOR : kernel.IN_SCHEDULE + 1].tolist()
         return Ledger(*[*entries, self.energy() - self._start])
-
-
-def pack(parameters: TwinParameters, refine: float) -> npt.NDArray[np.float64]:
-    """The kernel's parameter vector."""
-    gear = parameters.gear
-    a, b, n = np.asarray(gear.kinematic_error.a), np.asarray(gear.kinematic_error.b), gear.kinematic_error.orders
-    numbers: dict[int, float] = {
-        kernel.PER_N: 1.0 / gear.ratio,
-        kernel.PER_J_M: 1.0 / gear.J_m,
-        kernel.PER_J_L: 1.0 / gear.J_l,
-        kernel.K: gear.K,
-        kernel.B_M: gear.B_m,
-        kernel.B_L: gear.B_l,
-        kernel.B_ML: gear.B_ml,
-        kernel.B_SP: gear.B_sp,
-        kernel.SIGMA: gear.sigma,
-        kernel.TAU_C: gear.tau_c,
-        kernel.TAU_S: gear.tau_s,
-        kernel.PER_OMEGA_S: 1.0 / gear.omega_s,
-        kernel.F_CL: gear.F_cl,
-        kernel.T_DRIVE: max(parameters.tau_drive, AT_ONCE),
-        kernel.T_SENSOR: 1.0 / (2.0 * math.pi * parameters.sensor_lowpass_hz),
-        kernel.WANDER: parameters.friction_noise,
-        kernel.T_WANDER: parameters.friction_noise_s,
-        kernel.MODE_RATE: fastest_rate(gear),
-        kernel.TERMS: len(n),
-        kernel.REFINE: refine,
-    }
-    head = [numbers[place] for place in range(kernel.SERIES)]
-    return np.concatenate([head, np.stack([a, b, n * a, n * b], axis=1).ravel()])
-
-
-def fastest_rate(gear: Gear) -> float:
-    """The fastest linear rate [1/s]: the torsional mode's frequency, its damping, the drag of either side."""
-    damping = 2.0 * damping_ratio(gear) * natural_frequency(gear)
-    return max(natural_frequency(gear), damping, (gear.B_m + gear.B_ml) / gear.J_m, (gear.B_l + gear.B_ml) / gear.J_l)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
+from sim.assembly import assembled
 from sim.energy import Ledger
 from sim.noise import generator, normal
 from sim.parameters import TwinParameters
@@ -28,8 +29,9 @@ class World(Clock):
     """
 
     def __init__(self, parameters: TwinParameters, seed: int) -> None:
-        self.parameters = parameters
+        self.parameters = self._as_made = parameters
         self.seed = seed
+        self._assemblies = 0  # since then
         self.t = 0.0  # s, now
         turns = float(generator(seed, "start").uniform(0.0, parameters.gear.ratio))  # of the motor: one of the output
         self.plant = Plant(parameters, theta_m=2.0 * math.pi * turns)
@@ -103,6 +105,21 @@ class World(Clock):
     def unlock_output(self) -> None:
         """Let the output turn again; a wound-up spring will move it."""
         self.plant.locked = False
+
+    def reassemble(self, depth_mm: float) -> None:
+        """Take the gear apart and together again, wave generator `depth_mm` mm from the reference depth.
+
+        What chance makes of the kinematic error this time comes from the seed; `parameters` then says it. The spring is
+        relaxed afterwards, so angles read before do not compare; the energy ledger starts anew. Raises UsageError while
+        it turns.
+        """
+        x = self.truth()
+        if x.omega_m != 0.0 or x.omega_l != 0.0:
+            raise UsageError(f"the motor turns at {x.omega_m:.3g} rad/s, the gear can be reassembled at rest only")
+        self._assemblies += 1
+        chance = generator(self.seed, f"assembly {self._assemblies}")
+        self.parameters = assembled(self._as_made, depth_mm, chance)
+        self.plant.rebuild(self.parameters)
 
     def truth(self) -> Truth:
         """What really happens now, SI."""
