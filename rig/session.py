@@ -14,17 +14,10 @@ from types import TracebackType
 from typing import Any
 
 from rig.bench import Bench, ClockName
-from rig.changes import (
-    band_at_rest,
-    judge_lock,
-    judge_tare,
-    judge_weight,
-    refuse_unfit,
-    wait_for_rest,
-)
+from rig.changes import band_at_rest, judge_lock, judge_tare, judge_weight, refuse_unfit, wait_for_rest
 from rig.control.filter import SpeedFilter
-from rig.core.errors import Exit, HdrigError, NotReady, RecorderError, UsageError
-from rig.core.operator import Change, HangWeight, LockOutput, Operator, Rigging
+from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
+from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -32,8 +25,10 @@ from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import Proof, SignAndScale
+from rig.procedures.unwind import Unwind
 from rig.procedures.weigh import Weigh, Weighing
 from rig.recorder import Recorder
+from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_rigging
 from rig.runfile.events import EventLog
 from rig.runfile.finalise import finalise
 from rig.runfile.folder import create
@@ -41,7 +36,7 @@ from rig.software import software
 from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
 
-LONGEST = 31 * 86400.0  # s
+LET_OUT = 3.0  # N·m wound up in a locked gear: more is let out before anybody pulls the pin
 Watch = Callable[[Sample], None]
 
 
@@ -64,6 +59,7 @@ class Session:
     note: str = ""
     hand: Operator | None = None  # the person who makes changes; the twin has a hand of its own
     rigging: Rigging = field(default_factory=Rigging)  # weight, lock pin, depth: as last shown by the sensors
+    facts: dict[str, Any] = field(default_factory=dict)  # further keys of every manifest: the campaign a run belongs to
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
     _proof: Proof | None = None
     _tare: Weighing | None = None
@@ -116,27 +112,68 @@ class Session:
 
         Raises NotReady: nobody to make it, it does not fit, or it cannot be seen; no run starts before one was.
         """
-        operator = self.instruments.operator or self.hand
-        if operator is None:
-            raise NotReady(f"nobody is there to {change.words()}: start hdrig on a terminal")
-        breakaway = (self._proof or self.prove()).breakaway
-        if isinstance(change, HangWeight) and self._tare is None:
-            self.tare()
-        refuse_unfit(change, self.rigging, self.bench.file.gear.N, breakaway, self.bench.limits.shaft_torque)
+        operator = self._operator(change)
+        self._prepare(change)
         wait_for_rest(self.instruments)
         self.unsure = change.words()
         operator.make(change)
-        wait_for_rest(self.instruments)
+        wait_for_rest(self.instruments)  # what was touched swings
         self.rigging = change.applied(self.rigging)
         shown = self._show(change)
         self.unsure = ""
         return shown
 
+    def clear_fault(self) -> None:
+        """After a trip: somebody has looked, the fault is cleared, every check is made anew. Raises NotReady."""
+        change = ClearFault(self.supervisor.fault)
+        operator = self._operator(change)
+        wait_for_rest(self.instruments)
+        operator.make(change)
+        self.instruments.drive.reset_fault()
+        self.supervisor.act(Act.RESET)
+        self._proof = None
+
+    def restore(self, made: list[Change], rigging: Rigging) -> None:
+        """Take up a rig that was left as `rigging`; on a twin, which begins anew, what was `made` is made again."""
+        if self.instruments.operator is not None:
+            for change in made:
+                self.instruments.operator.make(change)
+                wait_for_rest(self.instruments)
+        self.rigging = rigging
+
+    def _operator(self, change: Change) -> Operator:
+        operator = self.instruments.operator or self.hand
+        if operator is None:
+            raise NotReady(f"nobody is there who could do this: {change.words()}; start hdrig on a terminal")
+        return operator
+
+    def _prepare(self, change: Change) -> None:
+        """Whatever has to be known or undone before anybody touches the rig. Raises NotReady when it does not fit."""
+        limit, ratio = self.bench.limits.shaft_torque, self.bench.file.gear.N
+        match change:
+            case HangWeight(tau_ext) if tau_ext:
+                refuse_unfit(change, self.rigging, ratio, (self._proof or self.prove()).breakaway, limit)
+                if self._tare is None and not self.rigging.tau_ext:
+                    self.tare()
+            case LockOutput():
+                refuse_unfit(change, self.rigging, ratio, (self._proof or self.prove()).breakaway, limit)
+            case FreeOutput() if abs(self._wound_up()) > LET_OUT:
+                self._found(Unwind())
+
+    def _wound_up(self) -> float:
+        """N·m at the torque sensor, at rest; 0 without a sensor."""
+        wait_for_rest(self.instruments)
+        tau = self.instruments.read(self.instruments.clock.now()).tau_l
+        return 0.0 if math.isnan(tau) else tau
+
     def _show(self, change: Change) -> str:
         """What the sensors say of a change. Raises NotReady when it is not what was asked for."""
         match change:
             case HangWeight(tau_ext):
-                assert self._tare is not None
+                if self._proof is None:
+                    self.prove()
+                if self._tare is None:  # taken off before it was known what nothing weighs
+                    return self.tare()
                 zero, band = self._tare.torque, band_at_rest(tau_ext, self._tare.friction)
                 return judge_weight(self._found(Weigh(tau_ext, zero, band)), tau_ext, zero)
             case LockOutput():
@@ -238,6 +275,7 @@ class Session:
             conditions["note"] = self.note
         return {
             **manifest,
+            **self.facts,
             "conditions": conditions,
             "label": procedure.label or None,
             "devices": {name: identity._asdict() for name, identity in self.identities.items()},
@@ -255,45 +293,6 @@ class Ended(HdrigError):
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)
         self.exit = exit
-
-
-def refuse_rigging(rigging: Rigging, procedure: Procedure) -> None:
-    """Raises NotReady when the lock pin is not as the procedure needs it."""
-    if procedure.output_locked is not rigging.output_locked:
-        words = {True: "locked", False: "free"}
-        raise NotReady(
-            f"{procedure.title()} needs a {words[procedure.output_locked]} output, "
-            f"and it is {words[rigging.output_locked]}"
-        )
-
-
-def refuse_endless(bench: Bench, procedure: Procedure) -> None:
-    """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
-    try:
-        envelope = procedure.envelope(bench.setting(lambda text: None))
-        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
-    except (OverflowError, ZeroDivisionError):
-        finite = False
-    if not finite or not 0 < envelope.duration < LONGEST:
-        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
-
-
-def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady when the procedure asks for more than the bench allows."""
-    for what, asked, limit, unit, scale in margins(bench, procedure):
-        if asked > limit:
-            wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-            raise NotReady(f"{procedure.title()} asks for {what} {wanted}, the bench allows {allowed}")
-
-
-def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:
-    """(what, asked, limit, unit shown, SI → shown) of everything the procedure will ask for at most."""
-    envelope, limits = procedure.envelope(bench.setting(lambda text: None)), bench.limits
-    return [
-        ("travel", envelope.travel, limits.travel, "deg", 57.29577951308232),
-        ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
-        ("torque", envelope.torque, limits.torque, "N·m", 1.0),
-    ]
 
 
 def operator() -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rig.core.errors import NotReady
-from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
+from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
 from sim.world import World
 
 
@@ -24,5 +24,7 @@ class TwinOperator(Operator):
                 self.world.unlock_output()
             case Reassemble(depth_mm):
                 self.world.reassemble(depth_mm)
+            case ClearFault():
+                return  # nothing of the twin breaks
             case _:
                 raise NotReady(f"the twin cannot do this: {change.words()}")

@@ -64,7 +64,7 @@ def parameters_of(assignments: list[str]) -> dict[str, Any]:
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     """What a dry run prints: travel, speed, torque, energy, duration, bytes, and the margins to every limit."""
     from rig.core.channels import CHANNELS
-    from rig.session import margins
+    from rig.refusals import margins
 
     envelope = procedure.envelope(bench.setting(lambda text: None))
     rows = int(envelope.duration * bench.file.loop.rate)

@@ -10,7 +10,7 @@ from rig.commands.perform import perform
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.procedures import CATALOGUE, procedure_class
-from rig.session import refuse_beyond_limits, refuse_endless
+from rig.refusals import refuse_beyond_limits, refuse_endless
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

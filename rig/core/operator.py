@@ -102,6 +102,21 @@ class Reassemble(Change):
         return replace(rigging, depth_mm=self.depth_mm, assembly=rigging.assembly + 1)
 
 
+@dataclass(frozen=True)
+class ClearFault(Change):
+    """Look at a rig that tripped, and take responsibility for going on: nothing re-enables by itself."""
+
+    why: str = ""
+
+    def words(self) -> str:
+        """What happened, what to look at."""
+        return f"the rig tripped: {self.why}; see that it is whole and free to turn, then clear the fault"
+
+    def applied(self, rigging: Rigging) -> Rigging:
+        """As before."""
+        return rigging
+
+
 class Operator(ABC):
     """Whoever makes changes by hand."""
 

@@ -1,0 +1,147 @@
+"""What a campaign would do: per run and in total, with the margin to every limit. Writes nothing, moves nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rig.campaign.changes import ByHand, Deed, Measure, deeds
+from rig.campaign.planner import RPM, Campaign
+from rig.campaign.steps import Item
+from rig.campaign.swing import declared_gear, resonance_speed
+from rig.core.channels import CHANNELS
+from rig.core.operator import HangWeight, LockOutput, Rigging
+from rig.core.procedure import Procedure
+from rig.procedures.lock_check import LockCheck
+from rig.procedures.sign_and_scale import SignAndScale
+from rig.procedures.weigh import Weigh
+
+SHARE = 1.4  # journal as it is, archive at about 0.4 of it
+CHANGE = 60.0  # s a person takes for one, a guess for the total; the twin's hand takes none
+TURN = 2 * math.pi
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Of one run. SI, motor side unless said otherwise."""
+
+    duration: float  # s
+    travel: float  # rad
+    speed: float  # rad/s
+    torque: float  # N·m at most, clamped there
+    energy: float  # J stored at most: in motion, and wound up in the gear
+    swing: float  # N·m at the torque sensor, predicted amplitude of order 2
+    shaft_torque: float  # N·m at the torque sensor, weight or lock test and swing
+    bytes: float
+
+
+def figures(campaign: Campaign, item: Item) -> Figures:
+    """What one run asks for at most."""
+    envelope, bench, gear = campaign.envelope(item), campaign.bench, campaign.bench.file.gear
+    shaft = campaign.shaft_torque(item)
+    inertia = gear.J_m + (0.0 if item.rigging.output_locked else gear.J_l / gear.N**2)
+    return Figures(
+        duration=envelope.duration,
+        travel=envelope.travel,
+        speed=envelope.speed,
+        torque=envelope.torque,
+        energy=0.5 * inertia * envelope.speed**2 + 0.5 * shaft**2 / gear.K,
+        swing=campaign.swing(item),
+        shaft_torque=shaft,
+        bytes=rows_bytes(envelope.duration * bench.file.loop.rate),
+    )
+
+
+def rows_bytes(rows: float) -> float:
+    """On disk."""
+    return rows * 8 * len(CHANNELS) * SHARE
+
+
+def check_of(deed: ByHand) -> Procedure:
+    """The run that shows a change."""
+    match deed.change:
+        case HangWeight(tau_ext):
+            return Weigh(tau_ext)
+        case LockOutput():
+            return LockCheck()
+        case _:
+            return SignAndScale()
+
+
+def lines(campaign: Campaign) -> Iterator[str]:
+    """The table, the totals, what has to be known beforehand."""
+    bench, plan = campaign.bench, campaign.plan.file
+    todo = list(deeds(list(enumerate(campaign.items)), Rigging()))
+    simulated = " (SIMULATED)" if bench.simulated else ""
+    yield f"campaign {plan.name} on {bench.file.name}{simulated}: {plan.title}".rstrip(": ")
+    order = f"random within a rigging, seed {campaign.seed}" if plan.order == "random" else "as written"
+    yield f"order {order}; a failed run: {plan.on_failure}; nothing is moved or written"
+    yield ""
+    heads = (("run", 4), ("duration", 10), ("travel", 13), ("speed", 11), ("torque ≤", 11), ("stored ≤", 10))
+    more = (("swing ±", 11), ("shaft ≤", 11), ("size", 8))
+    yield "".join(f"{head:>{width}s}" for head, width in (*heads, *more))
+    yield "  -   sign-and-scale proof, then the unloaded torque sensor is weighed"
+    for deed in todo:
+        yield from _told(campaign, deed)
+    yield ""
+    yield from totals(campaign, todo)
+
+
+def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:
+    match deed:
+        case ByHand(change):
+            yield f"  -   by hand: {change.words()}; then shown by {check_of(deed).title()}"
+        case Measure(index, item):
+            f = figures(campaign, item)
+            moves = f"{f.travel / TURN:7.1f} turns {f.speed / RPM:6.1f} rpm"
+            loads = f"{f.torque:6.2f} N·m {f.energy:7.3f} J {f.swing:6.2f} N·m {f.shaft_torque:6.2f} N·m"
+            yield f"{index + 1:4d} {f.duration:7.1f} s {moves} {loads} {f.bytes / 1e6:4.0f} MB  {item.words()}"
+            for remark in item.procedure.remarks(campaign.bench.setting(lambda text: None)):
+                yield f"      {remark}"
+
+
+def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
+    """Sums, the least margins, and what was assumed."""
+    bench, limits = campaign.bench, campaign.bench.limits
+    found = [figures(campaign, item) for item in campaign.items]
+    setting = bench.setting(lambda text: None)
+    by_hand = [deed for deed in todo if isinstance(deed, ByHand)]
+    checks = [SignAndScale(), *([Weigh()] if limits.shaft_torque else []), *(check_of(deed) for deed in by_hand)]
+    checking = sum(check.envelope(setting).duration for check in checks)
+    duration = sum(f.duration for f in found)
+    hand = 0.0 if bench.simulated else CHANGE * len(by_hand)
+    size = sum(f.bytes for f in found) + rows_bytes(checking * bench.file.loop.rate)
+    yield f"total       {len(found)} runs, {len(by_hand)} changes by hand, {len(checks)} checks"
+    yield (
+        f"duration    {_time(duration + checking + hand)}: {_time(duration)} of runs, {_time(checking)} of checks"
+        + (f", about {_time(hand)} by hand" if hand else " of rig time")
+    )
+    yield f"size        about {size / 1e6:.0f} MB"
+    yield _margin("travel", max(f.travel for f in found) / TURN, limits.travel / TURN, "turns")
+    yield _margin("speed", max(f.speed for f in found) / RPM, limits.speed / RPM, "rpm")
+    yield f"torque      at most {max(f.torque for f in found):g} N·m (clamped), limit {limits.torque:g} N·m"
+    if limits.shaft_torque is not None:
+        yield _margin("shaft", max(f.shaft_torque for f in found), limits.shaft_torque, "N·m")
+    yield f"stored      at most {max(f.energy for f in found):.3f} J, in motion and wound up in the gear"
+    at = resonance_speed(declared_gear(bench)) / RPM
+    yield (
+        f"predicted   the swing, from the declared gear (order 2 resonates at {at:.0f} rpm of the motor) and "
+        f"{campaign.plan.file.order_2_arcmin:g} arcmin of order 2, zero to peak; damping and inertias as declared"
+    )
+    heaviest = max(abs(item.rigging.tau_ext) for item in campaign.items)
+    if heaviest:
+        loaded = [f.travel for f, item in zip(found, campaign.items, strict=True) if item.rigging.tau_ext]
+        turns = 2 * max(loaded) / TURN / bench.file.gear.N
+        yield (
+            f"weights     at most {heaviest:g} N·m, {heaviest / bench.file.gear.N:.2f} N·m at the motor: refused if "
+            f"the proof finds a gear that might not hold it; it travels {turns:.2f} turns of the output at most"
+        )
+
+
+def _margin(what: str, asked: float, limit: float, unit: str) -> str:
+    return f"{what:11s} at most {asked:.1f} of {limit:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds / 60:.1f} min" if seconds >= 120 else f"{seconds:.0f} s"

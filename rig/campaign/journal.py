@@ -1,0 +1,180 @@
+"""`campaign.json`: what was planned, what became of it, what was changed by hand. Replaced as a whole at every step."""
+
+from __future__ import annotations
+
+import json
+import re
+import uuid
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rig.campaign.plan import digest
+from rig.campaign.planner import Campaign
+from rig.core.errors import NotReady, UsageError
+from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
+from rig.runfile.manifest import parse, sync_folder, told, utc_now, write_atomic
+from rig.runfile.process import is_being_made, this_process
+
+NAME = "campaign.json"
+SCHEMA = "hdrig.campaign/1"
+SETTLED = ("done", "skipped")  # statuses a resumed campaign leaves alone
+KINDS: dict[str, type[Change]] = {k.__name__: k for k in (HangWeight, LockOutput, FreeOutput, Reassemble)}
+
+
+class Journal:
+    """One campaign's book. Every method that changes it has it safe on disk when it returns. Raises NotReady."""
+
+    def __init__(self, folder: Path, book: dict[str, Any]) -> None:
+        self.folder = folder
+        self.book = book
+
+    @property
+    def rigging(self) -> Rigging:
+        """The rig as it was last shown to be."""
+        return Rigging(**self.book["rigging"])
+
+    @property
+    def pending(self) -> Change | None:
+        """A change that was asked for and not shown."""
+        return None if self.book["pending"] is None else change_of(self.book["pending"])
+
+    @property
+    def made(self) -> list[Change]:
+        """Every change so far, in order."""
+        return [change_of(entry["change"]) for entry in self.book["changes"]]
+
+    def open_runs(self) -> list[int]:
+        """Numbers of the runs still to be made, in order, from 0."""
+        return [k for k, entry in enumerate(self.book["runs"]) if entry["status"] not in SETTLED]
+
+    def begin(self, index: int) -> None:
+        """A run is about to be started."""
+        self.book["runs"][index]["status"] = "running"
+        self._save()
+
+    def end(self, index: int, status: str, sentence: str, run: str = "") -> None:
+        """`status` done, failed, stopped or interrupted; `run` is its folder, relative. Every attempt is kept."""
+        entry = self.book["runs"][index]
+        entry["attempts"].append({"utc": utc_now(), "status": status, "sentence": sentence, "run": run})
+        entry |= {"status": status, "sentence": sentence, "run": run}
+        self._save()
+
+    def figure(self, index: int, sentence: str) -> None:
+        """What the analysis says of a run."""
+        self.book["runs"][index]["figure"] = sentence
+        self._save()
+
+    def skip(self, index: int, by: str) -> None:
+        """A run that will not be made, and who said so."""
+        self.book["runs"][index] |= {"status": "skipped", "by": by, "sentence": f"skipped by {by}"}
+        self._save()
+
+    def ask(self, change: Change) -> None:
+        """A change is about to be asked for."""
+        self.book["pending"] = record_of(change)
+        self._save()
+
+    def show(self, change: Change, rigging: Rigging, sentence: str) -> None:
+        """The sensors have shown it."""
+        self.book["changes"].append({"utc": utc_now(), "change": record_of(change), "shown": sentence})
+        self.book |= {"pending": None, "rigging": rigging.conditions()}
+        self._save()
+
+    def tell(self, text: str) -> None:
+        """Something worth keeping: proof, tare, a trip, an end."""
+        self.book["notes"].append({"utc": utc_now(), "text": text})
+        self._save()
+
+    def close(self, status: str, sentence: str) -> None:
+        """The campaign has come to an end for now: completed, stopped or failed."""
+        self.book |= {"status": status, "sentence": sentence, "ended_utc": utc_now(), "process": None}
+        self._save()
+
+    def reopen(self) -> None:
+        """Go on with it in this process. Raises NotReady while another one does."""
+        if is_being_made(self.book):
+            pid = self.book["process"]["pid"]
+            raise NotReady(f"{self.folder} is being made by process {pid}; stop that first")
+        self.book |= {"status": "running", "sentence": "", "process": this_process()}
+        self.book["sessions"].append(utc_now())
+        self._save()
+
+    def _save(self) -> None:
+        data = json.dumps(self.book, indent=1, ensure_ascii=False).encode(errors="replace") + b"\n"
+        with told(NotReady, f"{self.folder / NAME} cannot be written"):
+            write_atomic(self.folder / NAME, data)
+
+
+def new_journal(root: Path, campaign: Campaign, clock: str, overrides: Sequence[str]) -> Journal:
+    """Make the campaign's folder under `root` with its plan and bench in it. Raises NotReady; nothing has moved."""
+    uid, now = uuid.uuid4().hex, utc_now()
+    bench, plan = campaign.bench, campaign.plan
+    serial = re.sub(r"[^A-Za-z0-9._-]+", "-", bench.file.gear.serial)
+    folder = root / f"{now[:10]}-{now[11:13]}{now[14:16]}-campaign-{plan.file.name}-{serial}-{uid[:4]}"
+    book: dict[str, Any] = {
+        "schema": SCHEMA, "uid": uid, "name": plan.file.name, "title": plan.file.title, "status": "running",
+        "sentence": "", "started_utc": now, "backend": "sim" if bench.simulated else "rig", "clock": clock,
+        "seed": campaign.seed, "plan": {"source": plan.source, "sha256": plan.sha256},
+        "bench": {"source": bench.source, "sha256": digest(bench.text), "overrides": list(overrides)},
+        "process": this_process(), "sessions": [now], "rigging": Rigging().conditions(), "pending": None,
+        "runs": [entry_of(item.record()) for item in campaign.items], "changes": [], "notes": [],
+    }  # fmt: skip
+    with told(NotReady, f"no campaign folder can be made in {root}"):
+        folder.mkdir(parents=True)
+        write_atomic(folder / "plan.toml", plan.text.encode())
+        write_atomic(folder / "bench.toml", bench.text.encode())
+        sync_folder(root)
+    journal = Journal(folder, book)
+    journal._save()
+    return journal
+
+
+def entry_of(record: Mapping[str, Any]) -> dict[str, Any]:
+    """A run that was planned."""
+    return {**record, "status": "planned", "sentence": "", "run": "", "attempts": []}
+
+
+def read_journal(folder: Path) -> Journal:
+    """The campaign in `folder`. Raises UsageError when there is none."""
+    path = folder / NAME
+    try:
+        book = parse(path.read_bytes())
+    except FileNotFoundError:
+        raise UsageError(f"{folder} is not a campaign folder: it has no {NAME}") from None
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise UsageError(f"{path} is not JSON: {error}") from None
+    if not isinstance(book, dict) or book.get("schema") != SCHEMA:
+        raise UsageError(f'{path} is not of schema "{SCHEMA}"')
+    return Journal(folder, book)
+
+
+def refuse_other_campaign(journal: Journal, campaign: Campaign) -> None:
+    """Raises UsageError when plan, bench or hdrig's own planning are not those the campaign began with."""
+    book, folder = journal.book, journal.folder
+    for what, now in (("plan", campaign.plan.sha256), ("bench", digest(campaign.bench.text))):
+        if book[what]["sha256"] != now:
+            raise UsageError(
+                f"the {what} is not the one this campaign began with ({book[what]['source']} has changed, or other "
+                f"options were given): what it began with is {folder / (what + '.toml')}; or start a new campaign"
+            )
+    # as JSON has it: a tuple comes back as a list
+    planned = json.loads(json.dumps([item.record() for item in campaign.items]))
+    begun = [{key: entry[key] for key in record} for entry, record in zip(book["runs"], planned, strict=False)]
+    if len(book["runs"]) != len(planned) or begun != planned:
+        raise UsageError(f"this hdrig plans other runs than {folder} began with; go on with the version that began it")
+
+
+def record_of(change: Change) -> dict[str, Any]:
+    """A change as campaign.json has it."""
+    return {"kind": type(change).__name__, "words": change.words(), **vars(change)}
+
+
+def change_of(record: Mapping[str, Any]) -> Change:
+    """And back. Raises UsageError for one no hdrig writes."""
+    kind = KINDS.get(str(record.get("kind")))
+    if kind is None:
+        raise UsageError(f"campaign.json names a change '{record.get('kind')}' that does not exist")
+    return kind(**{key: value for key, value in record.items() if key not in ("kind", "words")})

@@ -1,0 +1,37 @@
+"""Let out what a locked gear still holds: after a trip or a halt, friction may keep it wound up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
+from rig.procedures.stiffness_lock import StiffnessLock
+
+MOST = 45.0  # N·m a locked gear may hold: friction of the motor times N, and the sensors of such rigs end at 50 N·m
+
+
+@dataclass(frozen=True)
+class Unwind(Procedure):
+    """Turn the motor of a locked gear back along a ramp until the shaft shows no torque; then the pin may be pulled."""
+
+    name: ClassVar[str] = "other"
+    label: ClassVar[str] = "unwind"
+    needs: ClassVar[tuple[str, ...]] = ("theta_m", "tau_l")
+    output_locked: ClassVar[bool] = True
+
+    rate: float = 5.0  # N·m/s at the shaft
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """For the most a gear may hold; it ends as soon as nothing is left."""
+        wind_up = setting.ratio * MOST / setting.stiffness
+        duration = 3 * MOST / self.rate + 2.0  # three times what it should take, as the lock test allows itself
+        return Envelope(duration, 2 * wind_up, wind_up * self.rate / MOST, setting.control.torque_limit)
+
+    def conditions(self) -> dict[str, Any]:
+        """For the manifest."""
+        return {"output_locked": True, "note": "unwinding before the lock pin is pulled"}
+
+    def steps(self, setting: Setting) -> Steps:
+        """As the lock test does when it is stopped."""
+        return StiffnessLock(unwind_rate=self.rate).to_rest(setting)

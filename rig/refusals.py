@@ -1,0 +1,51 @@
+"""What a bench does not allow a procedure, told before anything moves."""
+
+from __future__ import annotations
+
+import math
+
+from rig.bench import Bench
+from rig.core.errors import NotReady, UsageError
+from rig.core.operator import Rigging
+from rig.core.procedure import Procedure
+
+LONGEST = 31 * 86400.0  # s
+
+
+def refuse_rigging(rigging: Rigging, procedure: Procedure) -> None:
+    """Raises NotReady when the lock pin is not as the procedure needs it."""
+    if procedure.output_locked is not rigging.output_locked:
+        words = {True: "locked", False: "free"}
+        raise NotReady(
+            f"{procedure.title()} needs a {words[procedure.output_locked]} output, "
+            f"and it is {words[rigging.output_locked]}"
+        )
+
+
+def refuse_endless(bench: Bench, procedure: Procedure) -> None:
+    """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
+    try:
+        envelope = procedure.envelope(bench.setting(lambda text: None))
+        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
+    except (OverflowError, ZeroDivisionError):
+        finite = False
+    if not finite or not 0 < envelope.duration < LONGEST:
+        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
+
+
+def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
+    """Raises NotReady when the procedure asks for more than the bench allows."""
+    for what, asked, limit, unit, scale in margins(bench, procedure):
+        if asked > limit:
+            wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
+            raise NotReady(f"{procedure.title()} asks for {what} {wanted}, the bench allows {allowed}")
+
+
+def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:
+    """(what, asked, limit, unit shown, SI → shown) of everything the procedure will ask for at most."""
+    envelope, limits = procedure.envelope(bench.setting(lambda text: None)), bench.limits
+    return [
+        ("travel", envelope.travel, limits.travel, "deg", 57.29577951308232),
+        ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
+        ("torque", envelope.torque, limits.torque, "N·m", 1.0),
+    ]
