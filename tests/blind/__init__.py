@@ -1,0 +1,1 @@
+"""Blind test of the tracer."""

@@ -1,0 +1,153 @@
+"""One case: what is hidden in which campaign, simulated, sized and described. Suites are lists of cases."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from tests.blind import rig as rigs
+from tests.blind.builder import Builder
+from tests.blind.campaign import Taken, simulate
+from tests.blind.forms import EFFECTS, LIBRARY, OUTSIDE, Form, form_of, forms_of
+from tests.blind.plans import PLANS
+from tests.blind.sensors import draw_noise
+from tests.blind.strength import Stage, calibrate, over_floor, shape_rng, short, size
+
+Truth = dict[str, object]
+KINDS = ("single", "single_other", "crowded", "pair", "clean", "outside", "ambiguous")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What to make: a kind, optionally a named effect and form, a plan, a seed, a strength over the floor (0: draw it)."""
+
+    kind: str
+    seed: int
+    plan: str = "complete"
+    effect: str = ""
+    form: str = ""
+    over_floor: float = 0.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A campaign and what is hidden in it."""
+
+    stage: Stage
+    runs: list[Taken]
+    truth: Truth
+
+
+def any_of(rng: np.random.Generator, forms: tuple[Form, ...]) -> Form:
+    """First an effect, then one of its forms: effects with many forms come no more often."""
+    names = tuple(dict.fromkeys(form.effect for form in forms))
+    name = names[int(rng.integers(len(names)))]
+    own = [form for form in forms if form.effect == name]
+    return own[int(rng.integers(len(own)))]
+
+
+def asked(request: Request, rng: np.random.Generator, pool: tuple[Form, ...]) -> Form:
+    """The form a request names, or one drawn from the pool."""
+    if request.form:
+        return form_of(request.effect, request.form)
+    if request.effect:
+        named = tuple(form for form in pool if form.effect == request.effect)
+        return any_of(rng, named or forms_of(request.effect))
+    return any_of(rng, pool)
+
+
+def textbook(known: bool) -> tuple[Form, ...]:
+    return tuple(form for form in LIBRARY if form.textbook == known)
+
+
+def mains(request: Request, rng: np.random.Generator) -> list[Form]:
+    """Forms that are to be found, by kind."""
+    if request.kind == "clean":
+        return []
+    if request.kind == "outside":
+        return [asked(request, rng, OUTSIDE)]
+    if request.kind == "ambiguous":
+        undecided = ("quadratic_drag", "thermal_friction_drift")
+        return [asked(request, rng, tuple(form for form in LIBRARY if form.effect in undecided))]
+    if request.kind == "single_other":
+        return [asked(request, rng, textbook(False))]
+    if request.kind == "single":
+        return [asked(request, rng, textbook(True))]
+    first = asked(request, rng, LIBRARY)
+    if request.kind == "crowded":
+        return [first]
+    while True:
+        second = any_of(rng, LIBRARY)
+        if second.effect != first.effect and compatible([first, second]):
+            return [first, second]
+
+
+def compatible(forms: list[Form]) -> bool:
+    """Whether the plant can hold these forms at once."""
+    builder = Builder(rigs.draw(np.random.default_rng(0), 10.0, 30.0))
+    try:
+        for place, form in enumerate(forms):
+            form.build(builder, shape_rng(0, place), 0.5)
+    except ValueError:
+        return False
+    return True
+
+
+def small_ones(main: Form, rng: np.random.Generator) -> list[tuple[Form, float]]:
+    """Eight other effects at 2 to 6 % of their typical size: there, and not worth a name."""
+    chosen: list[Form] = []
+    skip = {main.effect, "missed_counts", "torsional_mode", "presliding_friction"}  # these have no small size
+    for name in rng.permutation([name for name in EFFECTS if name not in skip]):
+        form = any_of(rng, forms_of(str(name)))
+        if compatible([main, *chosen, form]):
+            chosen.append(form)
+        if len(chosen) == 8:
+            break
+    return [(form, float(rng.uniform(0.02, 0.06))) for form in chosen]
+
+
+def make(request: Request) -> Case:
+    """Draw, size, simulate. The same request gives the same case."""
+    rng = np.random.default_rng([request.seed, 1])
+    plan = PLANS[request.plan]()
+    stage = Stage(rigs.draw(rng, *plan.resonance_hz), draw_noise(rng), plan, request.seed)
+    found = mains(request, rng)
+    clean = simulate(Builder(stage.rig), plan, stage.noise, stage.seed)
+    kept = {run.name for run in short(plan).runs}
+    brief = [run for run in clean if run.plan.name in kept]
+    parts: list[tuple[Form, float, str]] = []
+    for place, form in enumerate(found):
+        target = request.over_floor or float(np.exp(rng.uniform(np.log(1.3), np.log(20.0))))
+        parts.append((form, calibrate(stage, form, place, target, brief), "main"))
+    if request.kind == "crowded":
+        parts += [(form, share, "small") for form, share in small_ones(found[0], rng)]
+    return assemble(request, stage, parts, clean)
+
+
+def assemble(request: Request, stage: Stage, parts: list[tuple[Form, float, str]], clean: list[Taken]) -> Case:
+    """Put all parts into one plant, run it, and write down what was done."""
+    builder, described = Builder(stage.rig), []
+    for place, (form, strength, role) in enumerate(parts):
+        parameters = form.build(builder, shape_rng(stage.seed, place), strength)
+        described.append(describe(form, strength, role) | {"parameters": {k: float(v) for k, v in parameters.items()}})
+    runs = clean if not parts else simulate(builder, stage.plan, stage.noise, stage.seed)
+    excess = over_floor(runs, clean)
+    inside = [d["effect"] for d in described if d["role"] == "main" and not d["coordinates"]]
+    truth: Truth = {
+        "kind": request.kind, "plan": stage.plan.name, "seed": request.seed, "effects": inside, "hidden": described,
+        "over_floor": excess, "size": size(excess), "rig": stage.rig.as_truth(), "noise": asdict(stage.noise),
+        "resonance_hz": stage.rig.resonance_hz(),
+    }  # fmt: skip
+    return Case(stage, runs, truth)
+
+
+def describe(form: Form, strength: float, role: str) -> dict[str, object]:
+    return {
+        "effect": form.effect,
+        "form": form.name,
+        "textbook": form.textbook,
+        "role": role,
+        "strength": strength,
+        "coordinates": list(form.coordinates),
+    }

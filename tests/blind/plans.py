@@ -1,0 +1,121 @@
+"""Which runs a campaign holds, in the order they are taken, with the clock time at which each starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+SLOW_DT, FAST_DT = 4e-3, 1e-3  # s between rows
+STROKE_SPEED = 1.0053  # rad/s = 9.6 rpm, the paper's slow speed
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """One run. `lead_s` seconds pass before the first row; `amplitude` is of the triangle, rad at the motor."""
+
+    name: str
+    procedure: str
+    duration_s: float
+    dt: float
+    lead_s: float
+    amplitude: float = 0.0
+    tau_ext: float = 0.0
+    locked: bool = False
+    speed_rpm: float = 0.0
+    one_way: bool = False
+    start_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A named list of runs; `channels` are those the loggers write."""
+
+    name: str
+    runs: tuple[RunPlan, ...]
+    channels: tuple[str, ...] = ("theta_m", "theta_l", "tau_l", "tau_m")
+    resonance_hz: tuple[float, float] = (
+        16.2,
+        21.5,
+    )  # rigs whose resonance no steady speed of the plan excites by order 2
+
+
+def slow(repeat: str) -> RunPlan:
+    return RunPlan(f"slow_ke_{repeat}", "kinematic_error", 100.0, SLOW_DT, 0.0, amplitude=25.1327)
+
+
+def loaded(torque: float, repeat: str) -> RunPlan:
+    return RunPlan(
+        f"load_{torque:g}nm_{repeat}", "kinematic_error", 44.0, SLOW_DT, 6.0, amplitude=12.5664, tau_ext=-torque
+    )
+
+
+def lock(degrees: int, repeat: str) -> RunPlan:
+    amplitude = degrees * 3.14159265 / 180 * 0.98
+    return RunPlan(f"lock_{degrees}_{repeat}", "stiffness_lock", 50.0, SLOW_DT, 0.0, amplitude=amplitude, locked=True)
+
+
+def steady(rpm: int, repeat: str) -> RunPlan:
+    sign = "minus" if rpm < 0 else ""
+    return RunPlan(f"speed_{sign}{abs(rpm)}rpm_{repeat}", "constant_torque", 10.0, FAST_DT, 4.0, speed_rpm=float(rpm))
+
+
+STANDSTILL = RunPlan("standstill", "standstill", 10.0, SLOW_DT, 0.0)
+BOTH = ("1", "2")
+
+
+def started(runs: list[RunPlan], gap_s: float) -> tuple[RunPlan, ...]:
+    """The runs one after another with a pause of `gap_s` between them."""
+    clock, out = 0.0, []
+    for run in runs:
+        out.append(replace(run, start_s=clock))
+        clock += run.lead_s + run.duration_s + gap_s
+    return tuple(out)
+
+
+def sentinel(letter: str) -> RunPlan:
+    return steady(120, f"sentinel_{letter}")
+
+
+def full_list() -> list[RunPlan]:
+    """36 runs, the shape of the reference campaigns: slow and loaded triangles, speeds both ways, locks, sentinels."""
+    runs = [STANDSTILL, sentinel("a"), *(slow(k) for k in BOTH)]
+    runs += [loaded(torque, k) for torque in (2.5, 5.0, 10.0, 20.0, 40.0) for k in BOTH]
+    runs += [sentinel("b")]
+    runs += [steady(rpm, k) for rpm in (60, 120, 200, 300, 400, -60, -200, -400) for k in BOTH]
+    return [*runs, *(lock(d, k) for d in (60, 20) for k in BOTH), sentinel("c")]
+
+
+def complete() -> Plan:
+    return Plan("complete", started(full_list(), 18.0))
+
+
+def paper() -> Plan:
+    """Only what the paper took: triangle, 120/300/310/500 rpm at constant torque, one lock test; each twice."""
+    runs = [slow(k) for k in BOTH]
+    runs += [steady(rpm, k) for rpm in (120, 300, 310, 500) for k in BOTH] + [lock(60, k) for k in BOTH]
+    return Plan("paper", started(runs, 18.0), resonance_hz=(18.6, 24.5))
+
+
+def noreps() -> Plan:
+    """One run per condition: no repeat to take a floor from."""
+    return Plan("noreps", started([run for run in full_list() if not run.name.endswith("_2")], 18.0))
+
+
+def one_direction() -> Plan:
+    """Nothing turns back but the lock tests: slow and loaded runs are ramps forward, speeds are positive."""
+    runs = [run for run in full_list() if "minus" not in run.name]
+    return Plan(
+        "one_direction", started([replace(run, one_way=run.procedure == "kinematic_error") for run in runs], 18.0)
+    )
+
+
+def no_torque_sensor() -> Plan:
+    return replace(complete(), name="no_torque_sensor", channels=("theta_m", "theta_l", "tau_m"))
+
+
+PLANS = {
+    "complete": complete,
+    "paper": paper,
+    "noreps": noreps,
+    "one_direction": one_direction,
+    "no_torque_sensor": no_torque_sensor,
+}
