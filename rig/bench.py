@@ -248,6 +248,7 @@ def twin_parameters(f: BenchFile) -> Any:
 
     from rig.model.fourier import FourierSeries
     from rig.model.gear import Gear
+    from sim.effects import Effects
     from sim.parameters import TwinParameters
 
     twin, gear = f.twin, f.gear
@@ -277,4 +278,5 @@ def twin_parameters(f: BenchFile) -> Any:
         latch_m=twin.latch_m,
         latch_l=twin.latch_l,
         latch_tau=twin.latch_tau,
+        effects=Effects.of(twin.effects.model_dump()),
     )

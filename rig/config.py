@@ -7,70 +7,25 @@ Units are compared with the expected one, never converted.
 
 from __future__ import annotations
 
-import difflib
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, ValidationError, model_validator
 
+from rig.config_effects import EffectsSection
 from rig.core.errors import UsageError
-
-PROVENANCE = ("paper", "catalogue", "assumed", "measured", "declared")
-QUANTITY_KEYS = {"value", "unit", "from", "note"}
-LARGEST = 10**300  # an integer beyond this is no measurement
-PLAIN_UNITS = {"N.m": "N·m", "Nm": "N·m", "kg.m2": "kg·m²", "kg m^2": "kg·m²"}  # spellings of the same unit
-
-
-def _quantity(unit: str, **limits: Any) -> Any:
-    return Field(json_schema_extra={"unit": unit}, **limits)
-
-
-Positive = {"gt": 0, "allow_inf_nan": False}
-NotNegative = {"ge": 0, "allow_inf_nan": False}
-
-
-class Strict(BaseModel):
-    """Unknown keys and wrong units are refused; values do not change once read."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _strip_quantities(cls, raw: Any) -> Any:
-        return {k: cls._plain(k, v) for k, v in raw.items()} if isinstance(raw, dict) else raw
-
-    @classmethod
-    def _plain(cls, key: str, raw: Any) -> Any:
-        field = cls.model_fields.get(key)
-        wanted = (field.json_schema_extra or {}).get("unit") if field else None  # type: ignore[union-attr]
-        if wanted is None:
-            return raw
-        value = raw
-        if isinstance(raw, dict):
-            for other in raw.keys() - QUANTITY_KEYS:
-                raise ValueError(f"unknown key '{other}' in {key}; {nearest(other, QUANTITY_KEYS)}")
-            if "value" not in raw:
-                raise ValueError(f'{key} has no value; expected {{ value = …, unit = "{wanted}", from = … }}')
-            unit = raw.get("unit", wanted)
-            if not isinstance(unit, str) or PLAIN_UNITS.get(unit, unit) != wanted:
-                raise ValueError(f"{key} = {raw['value']} {unit}: expected the unit {wanted}")
-            if raw.get("from", "declared") not in PROVENANCE:
-                raise ValueError(f"{key} is from '{raw['from']}'; expected one of {', '.join(PROVENANCE)}")
-            value = raw["value"]
-        if field is not None and field.annotation is float and isinstance(value, int) and not isinstance(value, bool):
-            if abs(value) > LARGEST:
-                raise ValueError(f"{key} has {len(str(abs(value)))} digits; expected a number in {wanted}")
-            return float(value)
-        return value
+from rig.quantities import NotNegative, Positive, quantity
+from rig.quantities import Strict as Strict  # these two also for readers of other files of the same kind
+from rig.quantities import nearest as nearest
 
 
 class LoopSection(Strict):
     """[loop]"""
 
-    rate: Annotated[float, _quantity("Hz", ge=10, le=10_000)]
-    speed_filter: Annotated[float, _quantity("s", **Positive)]
-    latch_lead: Annotated[float, _quantity("s", **NotNegative)] = 0.0  # SYNC goes out so long before the tick
+    rate: Annotated[float, quantity("Hz", ge=10, le=10_000)]
+    speed_filter: Annotated[float, quantity("s", **Positive)]
+    latch_lead: Annotated[float, quantity("s", **NotNegative)] = 0.0  # SYNC goes out so long before the tick
 
 
 class BusSection(Strict):
@@ -78,9 +33,9 @@ class BusSection(Strict):
 
     interface: str = Field(min_length=1)
     channel: str = Field(min_length=1)
-    bitrate: Annotated[int | None, _quantity("bit/s", gt=0, le=8_000_000)] = None
+    bitrate: Annotated[int | None, quantity("bit/s", gt=0, le=8_000_000)] = None
     host_node: int = Field(default=127, ge=0, le=127)  # CANopen number of this host; 0: it sends no heartbeat
-    options: dict[str, str | int | float | bool] = {}  # handed to python-can as they are
+    options: dict[str, str | int | float | bool] = Field(default_factory=dict)  # handed to python-can as they are
 
 
 class DeviceSection(Strict):
@@ -90,10 +45,10 @@ class DeviceSection(Strict):
     bus: str | None = None  # [bus.NAME] it is on
     node: int | None = Field(default=None, ge=1, le=127)
     port: str | None = None  # serial port
-    baud: Annotated[int | None, _quantity("bit/s", gt=0)] = None
+    baud: Annotated[int | None, quantity("bit/s", gt=0)] = None
     direction: Literal[1, -1] = 1  # -1 turns the sign of its readings (and commands) over
-    watchdog: Annotated[float, _quantity("s", ge=0.01, le=10)] = 0.1  # the drive stops after this without its host
-    delay: Annotated[float, _quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
+    watchdog: Annotated[float, quantity("s", ge=0.01, le=10)] = 0.1  # the drive stops after this without its host
+    delay: Annotated[float, quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
 
     def options(self) -> dict[str, Any]:
         """For the driver: the keys as they are, without those not given."""
@@ -113,58 +68,58 @@ class GearSection(Strict):
 
     serial: str = Field(min_length=1, max_length=64)
     output: Literal["flexspline", "circular_spline"]
-    N: Annotated[float, _quantity("1", gt=1, le=1000)]
-    K: Annotated[float, _quantity("N·m/rad", **Positive)]
-    J_m: Annotated[float, _quantity("kg·m²", **Positive)]
-    J_l: Annotated[float, _quantity("kg·m²", **Positive)]
-    B_m: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
-    B_ml: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
-    B_l: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
-    B_sp: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
-    fourier_terms: Annotated[int, _quantity("1", ge=1, le=100)]
+    N: Annotated[float, quantity("1", gt=1, le=1000)]
+    K: Annotated[float, quantity("N·m/rad", **Positive)]
+    J_m: Annotated[float, quantity("kg·m²", **Positive)]
+    J_l: Annotated[float, quantity("kg·m²", **Positive)]
+    B_m: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+    B_ml: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+    B_l: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+    B_sp: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+    fourier_terms: Annotated[int, quantity("1", ge=1, le=100)]
 
 
 class MotorSection(Strict):
     """[motor]"""
 
-    torque_rated: Annotated[float, _quantity("N·m", **Positive)]
-    torque_limit: Annotated[float, _quantity("N·m", **Positive)]
-    counts_per_turn: Annotated[int, _quantity("counts", gt=0, le=2**40)]
+    torque_rated: Annotated[float, quantity("N·m", **Positive)]
+    torque_limit: Annotated[float, quantity("N·m", **Positive)]
+    counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
 
 
 class EncoderSection(Strict):
     """[load_encoder]"""
 
-    counts_per_turn: Annotated[int, _quantity("counts", gt=0, le=2**40)]
+    counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
 
 
 class TorqueSensorSection(Strict):
     """[torque_sensor]"""
 
-    range: Annotated[float, _quantity("N·m", **Positive)]
+    range: Annotated[float, quantity("N·m", **Positive)]
 
 
 class LimitsSection(Strict):
     """[limits]: what the guard holds every run to."""
 
-    speed_rpm: Annotated[float, _quantity("rpm", **Positive)]
-    torque: Annotated[float, _quantity("N·m", **Positive)]
-    shaft_torque: Annotated[float, _quantity("N·m", **Positive)]
-    travel_turns: Annotated[float, _quantity("turns", **Positive)]
-    following_deg: Annotated[float, _quantity("deg", **Positive)]
-    following_s: Annotated[float, _quantity("s", **NotNegative)]
-    twist_deg: Annotated[float, _quantity("deg", **Positive)]
-    stale_s: Annotated[float, _quantity("s", **Positive)]
+    speed_rpm: Annotated[float, quantity("rpm", **Positive)]
+    torque: Annotated[float, quantity("N·m", **Positive)]
+    shaft_torque: Annotated[float, quantity("N·m", **Positive)]
+    travel_turns: Annotated[float, quantity("turns", **Positive)]
+    following_deg: Annotated[float, quantity("deg", **Positive)]
+    following_s: Annotated[float, quantity("s", **NotNegative)]
+    twist_deg: Annotated[float, quantity("deg", **Positive)]
+    stale_s: Annotated[float, quantity("s", **Positive)]
 
 
 class ControlSection(Strict):
     """[control]: gains of the host's position loop, motor side."""
 
-    Kp: Annotated[float, _quantity("N·m/rad", **NotNegative)]
-    Ki: Annotated[float, _quantity("N·m/(rad·s)", **NotNegative)]
-    Kd: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
-    integrator_limit: Annotated[float, _quantity("N·m", **NotNegative)]
-    feedforward: Annotated[float, _quantity("N·m·s/rad", **NotNegative)]
+    Kp: Annotated[float, quantity("N·m/rad", **NotNegative)]
+    Ki: Annotated[float, quantity("N·m/(rad·s)", **NotNegative)]
+    Kd: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+    integrator_limit: Annotated[float, quantity("N·m", **NotNegative)]
+    feedforward: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
 
 
 class TwinKinematicError(Strict):
@@ -197,24 +152,25 @@ class TwinSection(Strict):
     """[twin]: what the simulated plant has; the analysis is never told."""
 
     seed: int = Field(ge=0)
-    tau_c: Annotated[float, _quantity("N·m", **NotNegative)]
-    tau_s: Annotated[float, _quantity("N·m", **NotNegative)]
-    omega_s: Annotated[float, _quantity("rad/s", **Positive)]
-    F_cl: Annotated[float, _quantity("N·m", **NotNegative)]
-    friction_noise: Annotated[float, _quantity("1", ge=0, le=0.3)]
-    friction_noise_s: Annotated[float, _quantity("s", ge=0.001, le=1e6)]
-    tau_drive: Annotated[float, _quantity("s", **NotNegative)]
-    torque_resolution: Annotated[float, _quantity("N·m", **NotNegative)]
-    torque_noise: Annotated[float, _quantity("N·m", **NotNegative)]
-    watchdog: Annotated[float, _quantity("s", **Positive)]
-    sensor_noise: Annotated[float, _quantity("N·m", **NotNegative)]
-    sensor_zero: Annotated[float, _quantity("N·m", allow_inf_nan=False)]
-    sensor_lowpass_hz: Annotated[float, _quantity("Hz", **Positive)]
-    sensor_resolution: Annotated[float, _quantity("N·m", **NotNegative)]
-    latch_m: Annotated[float, _quantity("s", **NotNegative)]
-    latch_l: Annotated[float, _quantity("s", **NotNegative)]
-    latch_tau: Annotated[float, _quantity("s", **NotNegative)]
+    tau_c: Annotated[float, quantity("N·m", **NotNegative)]
+    tau_s: Annotated[float, quantity("N·m", **NotNegative)]
+    omega_s: Annotated[float, quantity("rad/s", **Positive)]
+    F_cl: Annotated[float, quantity("N·m", **NotNegative)]
+    friction_noise: Annotated[float, quantity("1", ge=0, le=0.3)]
+    friction_noise_s: Annotated[float, quantity("s", ge=0.001, le=1e6)]
+    tau_drive: Annotated[float, quantity("s", **NotNegative)]
+    torque_resolution: Annotated[float, quantity("N·m", **NotNegative)]
+    torque_noise: Annotated[float, quantity("N·m", **NotNegative)]
+    watchdog: Annotated[float, quantity("s", **Positive)]
+    sensor_noise: Annotated[float, quantity("N·m", **NotNegative)]
+    sensor_zero: Annotated[float, quantity("N·m", allow_inf_nan=False)]
+    sensor_lowpass_hz: Annotated[float, quantity("Hz", **Positive)]
+    sensor_resolution: Annotated[float, quantity("N·m", **NotNegative)]
+    latch_m: Annotated[float, quantity("s", **NotNegative)]
+    latch_l: Annotated[float, quantity("s", **NotNegative)]
+    latch_tau: Annotated[float, quantity("s", **NotNegative)]
     kinematic_error: TwinKinematicError
+    effects: EffectsSection = EffectsSection()
 
 
 class BenchFile(Strict):
@@ -223,7 +179,7 @@ class BenchFile(Strict):
     schema_name: Literal["hdrig.bench/1"] = Field(alias="schema")
     name: str = Field(min_length=1, max_length=64)
     loop: LoopSection
-    bus: dict[str, BusSection] = {}
+    bus: dict[str, BusSection] = Field(default_factory=dict)
     devices: DevicesSection
     gear: GearSection
     motor: MotorSection
@@ -254,13 +210,6 @@ def load_text(path: Path) -> str:
         raise UsageError(f"{path} is not UTF-8 text; expected a TOML file") from None
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from None
-
-
-def nearest(wrong: str, valid: Any) -> str:
-    """ "did you mean 'x'?", or the list of what exists."""
-    names = sorted(valid)
-    close = difflib.get_close_matches(wrong, names, n=1, cutoff=0.5)
-    return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:

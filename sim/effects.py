@@ -6,7 +6,9 @@ to; orders are cycles per turn of that shaft. Laws and sizes: `sim/kernel`, `sim
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any, get_type_hints
 
 
 @dataclass(frozen=True)
@@ -158,6 +160,12 @@ class Effects:
     motor: Motor = field(default_factory=Motor)
     load: Load = field(default_factory=Load)
     sensors: Sensors = field(default_factory=Sensors)
+
+    @classmethod
+    def of(cls, sections: Mapping[str, Mapping[str, Any]]) -> Effects:
+        """As the sections of a bench file say. Raises KeyError or TypeError for what is no effect."""
+        kinds = get_type_hints(cls)
+        return cls(**{name: kinds[name](**numbers) for name, numbers in sections.items()})
 
     @property
     def in_the_plant(self) -> bool:

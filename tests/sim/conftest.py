@@ -13,6 +13,7 @@ import pytest
 import rig
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
+from sim.effects import Effects
 from sim.parameters import TwinParameters
 
 BENCH = Path(rig.__file__).parent / "benches" / "twin.toml"
@@ -30,6 +31,7 @@ def read_twin() -> TwinParameters:
     gear, twin = plain(bench["gear"]), plain(bench["twin"])
     error = twin.pop("kinematic_error")
     twin.pop("seed")
+    sections = {name: plain(section) for name, section in twin.pop("effects").items()}
     series = FourierSeries.from_polar(np.radians(error["C_deg"]), np.radians(error["psi_deg"]))
     friction = {name: twin.pop(name) for name in ("tau_c", "tau_s", "omega_s", "F_cl")}
     numbers = {name: gear[name] for name in ("J_m", "J_l", "K", "B_m", "B_l", "B_ml", "B_sp")}
@@ -39,6 +41,7 @@ def read_twin() -> TwinParameters:
         motor_counts_per_turn=plain(bench["motor"])["counts_per_turn"],
         load_counts_per_turn=plain(bench["load_encoder"])["counts_per_turn"],
         sensor_range=plain(bench["torque_sensor"])["range"],
+        effects=Effects.of(sections),
         **twin,
     )
 
