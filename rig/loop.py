@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -14,6 +15,7 @@ from rig.core.sample import Sample, Torque
 from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
+from rig.realtime import RealTime
 from rig.supervisor import Act, Supervisor
 from rig.timing import LoopTiming
 
@@ -71,12 +73,10 @@ class Loop:
             why = "stopped by the operator before anything was energised"
             return Ending("stopped", why, self.interrupts.exit)
         try:
-            self.instruments.start()
-            self.supervisor.act(Act.ENABLE)
-            self.instruments.drive.enable()
-            self.supervisor.act(Act.RUN, procedure.name)
-            self.running = True
-            ending = self._tick(procedure, setting)
+            # locking memory takes its time: done before anything is energised
+            with nullcontext() if self.timing.virtual else RealTime() as real_time:
+                self.timing.scheduling = real_time.granted if real_time else ""
+                ending = self._energised(procedure, setting)
         except BaseException as error:
             self.instruments.safe()
             refused = isinstance(error, NotReady)
@@ -85,6 +85,14 @@ class Loop:
         finally:
             confirmed = self.instruments.safe()
         return self._leave(ending, confirmed)
+
+    def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
+        self.instruments.start()
+        self.supervisor.act(Act.ENABLE)
+        self.instruments.drive.enable()
+        self.supervisor.act(Act.RUN, procedure.name)
+        self.running = True
+        return self._tick(procedure, setting)
 
     def _tick(self, procedure: Procedure, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write

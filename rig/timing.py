@@ -15,6 +15,7 @@ class LoopTiming:
         self.missed = 0  # cycles skipped, never replayed
         self.late_events = 0  # times at least one cycle was skipped
         self.worst = 0.0  # s
+        self.scheduling = ""  # what the operating system granted, in words
         self._bins = [0] * (CEILING + 1)
 
     def add(self, lateness: float) -> None:
@@ -51,6 +52,7 @@ class LoopTiming:
             "lateness_p99": self.quantile(0.99),
             "lateness_p999": self.quantile(0.999),
             "lateness_max": self.worst,
+            "scheduling": self.scheduling,
             "how": "a virtual clock is never late"
             if self.virtual
             else "wake-up against the absolute deadline on the monotonic clock, every tick, 1 µs bins",
