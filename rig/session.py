@@ -61,6 +61,7 @@ class Session:
     rigging: Rigging = field(default_factory=Rigging)  # weight, lock pin, depth: as last shown by the sensors
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of every manifest: the campaign a run belongs to
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
+    folder: Path | None = None  # of the newest run; None when it got none
     _proof: Proof | None = None
     _tare: Weighing | None = None
     _early: list[tuple[str, str]] = field(default_factory=list)  # events before there is a folder for them
@@ -196,13 +197,14 @@ class Session:
         return self._run(procedure, watch)
 
     def _run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
+        self.folder = None
         self.check(procedure)
         refuse_rigging(self.rigging, procedure)
         if self.interrupts.count:
             raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
-        folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
+        folder = self.folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
         self._log = EventLog(folder)
         for kind, text in self._early:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import uuid
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -48,14 +49,18 @@ class Journal:
         """Numbers of the runs still to be made, in order, from 0."""
         return [k for k, entry in enumerate(self.book["runs"]) if entry["status"] not in SETTLED]
 
+    def count(self) -> dict[str, int]:
+        """How many runs are in which status."""
+        return dict(Counter(entry["status"] for entry in self.book["runs"]))
+
     def begin(self, index: int) -> None:
         """A run is about to be started."""
         self.book["runs"][index]["status"] = "running"
         self._save()
 
-    def end(self, index: int, status: str, sentence: str, run: str = "") -> None:
-        """`status` done, failed, stopped or interrupted; `run` is its folder, relative. Every attempt is kept."""
-        entry = self.book["runs"][index]
+    def end(self, index: int, status: str, sentence: str, folder: Path | None = None) -> None:
+        """`status` done, failed, stopped or interrupted; `folder` is the run's, if it got one. All attempts are kept."""
+        entry, run = self.book["runs"][index], "" if folder is None else str(folder.relative_to(self.folder))
         entry["attempts"].append({"utc": utc_now(), "status": status, "sentence": sentence, "run": run})
         entry |= {"status": status, "sentence": sentence, "run": run}
         self._save()

@@ -8,6 +8,7 @@ from __future__ import annotations
 CATALOGUE: dict[str, tuple[str, str]] = {
     "demo": ("rig.commands.demo", "the main job on the twin: proof, slow run, analysis, report"),
     "run": ("rig.commands.run", "run one procedure on a bench, analyse it, write its report"),
+    "campaign": ("rig.commands.campaign", "many runs by one plan, in order, with changes by hand; resumable"),
     "tune": ("rig.commands.tune", "find gains that turn the motor smoothly at the slow speed"),
     "analyse": ("rig.commands.analyse", "figures and report of recorded runs, again and again, no hardware"),
     "import": ("rig.commands.import_", "turn a file of another logger into a run folder"),

@@ -13,6 +13,7 @@ from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 
 DEG = math.pi / 180
+OVERSHOOT = 2.0  # of the wind-up, and 3 N·m: stick-slip, or a gear that was wound up before
 
 
 class LockProof(NamedTuple):
@@ -43,9 +44,12 @@ class LockCheck(Procedure):
         return Trapezoid(self.angle_deg * DEG, 6 * DEG, 60 * DEG)
 
     def envelope(self, setting: Setting) -> Envelope:
-        """The guard's following error keeps the wind-up small, whatever holds the motor."""
+        """The guard keeps the wind-up small, by the shaft torque and by the following error."""
         duration = 2 * self.move.duration + 3 * self.hold
-        return Envelope(duration, self.angle_deg * DEG, self.move.speed, setting.control.torque_limit)
+        wound = setting.stiffness * self.angle_deg * DEG / setting.ratio
+        shaft = OVERSHOOT * wound + 3.0 if wound > 0 else math.inf  # NaN: no stiffness declared
+        torque = setting.control.torque_limit
+        return Envelope(duration, self.angle_deg * DEG, self.move.speed, torque, shaft_torque=shaft)
 
     def conditions(self) -> dict[str, object]:
         """For the manifest."""

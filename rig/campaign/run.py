@@ -1,0 +1,155 @@
+"""A campaign from its first run to its end: every step written down before and after, so that it can be resumed."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from contextlib import AbstractContextManager
+from dataclasses import replace
+from pathlib import Path
+
+from rig.campaign.changes import changes_between
+from rig.campaign.journal import Journal
+from rig.campaign.planner import Campaign
+from rig.campaign.steps import Item
+from rig.core.errors import Exit, HdrigError
+from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Rigging
+from rig.session import Done, Session, Watch
+from rig.supervisor import State
+
+
+class Desk(ABC):
+    """Who looks on: told what happens, and asked for the figures of a run."""
+
+    @abstractmethod
+    def say(self, text: str) -> None:
+        """One line for the person."""
+
+    @abstractmethod
+    def watching(self, item: Item, duration: float) -> AbstractContextManager[Watch]:
+        """What is shown while a run goes on, for about `duration` s of rig time."""
+
+    @abstractmethod
+    def figure(self, folder: Path) -> str:
+        """Analyse a run; its main figure in one sentence. Raises HdrigError."""
+
+
+def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
+    """Make every run of `journal` that is not settled yet. Its folder is closed, with its status, on every way out.
+
+    Returns the exit code: PASS when every run was made, or skipped by somebody.
+    """
+    exit = Exit.INTERNAL
+    try:
+        _settle(session, journal, desk)
+        exit = _runs(session, campaign, journal, desk)
+        status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
+        journal.close(status, _closing(journal))
+    except HdrigError as error:
+        exit = error.exit
+        desk.say(str(error))
+        journal.close("stopped" if session.interrupts.count else "failed", str(error))
+    return exit
+
+
+def _closing(journal: Journal) -> str:
+    count = journal.count()
+    return ", ".join(f"{number} {status}" for status, number in count.items())
+
+
+def _settle(session: Session, journal: Journal, desk: Desk) -> None:
+    """From a rig as it was left to one with nothing on it, proven and tared."""
+    session.restore(journal.made, journal.rigging)
+    for change in to_bare(journal.rigging, journal.pending):
+        _by_hand(session, journal, desk, change)
+    for told in (f"sign and scale: {session.prove().sentence}", *_tare(session)):
+        desk.say(told)
+        journal.tell(told)
+
+
+def _tare(session: Session) -> list[str]:
+    return [session.tare()] if session.instruments.torque_sensor is not None else []
+
+
+def to_bare(rigging: Rigging, pending: Change | None) -> list[Change]:
+    """What takes weight and pin off; of a change that was asked for and not shown nobody knows whether it was made."""
+    found = changes_between(rigging, replace(rigging, tau_ext=0.0, output_locked=False))
+    match pending:
+        case HangWeight() if not rigging.tau_ext:
+            return [HangWeight(0.0)]
+        case LockOutput() | FreeOutput() if not rigging.output_locked:
+            return [FreeOutput(), *found]
+        case _:  # a wave generator half fitted: the next run asks for it again, in an assembly of its own
+            return found
+
+
+def _runs(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
+    worst = Exit.PASS
+    for index in journal.open_runs():
+        item = campaign.items[index]
+        for change in changes_between(session.rigging, item.rigging):
+            _by_hand(session, journal, desk, change)
+        desk.say(f"run {index + 1} of {len(campaign.items)}: {item.words()}")
+        exit = _measure(session, campaign, journal, desk, index)
+        if exit is Exit.PASS:
+            continue
+        worst = worst or exit
+        if session.interrupts.count or campaign.plan.file.on_failure == "stop":
+            return exit
+        if session.supervisor.state is State.FAULT:
+            _clear(session, journal, desk)
+    return worst
+
+
+def _clear(session: Session, journal: Journal, desk: Desk) -> None:
+    """After a trip somebody looks at the rig, pin and weight come off, and the proof is made anew."""
+    why = session.supervisor.fault
+    session.clear_fault()
+    journal.tell(f"fault cleared by hand: {why}")
+    for change in to_bare(session.rigging, None):
+        _by_hand(session, journal, desk, change)
+    desk.say(f"sign and scale: {session.prove().sentence}")
+
+
+def _by_hand(session: Session, journal: Journal, desk: Desk, change: Change) -> None:
+    """Raises NotReady when it is not made or not shown: no plan goes on from there."""
+    desk.say(f"by hand: {change.words()}")
+    journal.ask(change)
+    shown = session.change(change)
+    journal.show(change, session.rigging, shown)
+    desk.say(shown)
+
+
+def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk, index: int) -> Exit:
+    """One run, whatever becomes of it written down."""
+    item = campaign.items[index]
+    session.note = item.note
+    session.facts = {"campaign": {"uid": journal.book["uid"], "run": index + 1, "kind": item.kind,
+                                  "repeat": item.repeat, "of": item.of}}  # fmt: skip
+    journal.begin(index)
+    try:
+        with desk.watching(item, campaign.envelope(item).duration) as watch:
+            done = session.run(item.procedure, watch)
+    except HdrigError as error:
+        status = "stopped" if session.interrupts.count else "failed"
+        journal.end(index, status, str(error), session.folder)
+        desk.say(f"run {status}: {error}")
+        return error.exit
+    finally:
+        session.note, session.facts = "", {}
+    return _ended(journal, desk, index, done)
+
+
+def _ended(journal: Journal, desk: Desk, index: int, done: Done) -> Exit:
+    statuses = {"completed": "done", "stopped": "stopped"}
+    status = statuses.get(done.ending.status, "failed")
+    journal.end(index, status, done.ending.reason, done.folder)
+    if status != "done":
+        desk.say(f"run {status}: {done.ending.reason}")
+        return done.ending.exit
+    try:
+        told = desk.figure(done.folder)
+    except HdrigError as error:  # the run is whole; what it says can be asked again
+        told = f"not analysed: {error}"
+    journal.figure(index, told)
+    desk.say(told)
+    return Exit.PASS
