@@ -12,6 +12,7 @@ from rig.core.errors import Exit, UsageError
 from rig.realtime import RealTime
 
 FOLDER = Path("/tmp/hdrig-twin")
+MOST_LINES = 900.0  # lines/s, 12 bytes each, that a line of 115 200 baud carries
 MOTOR_CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin's plant has no current
 
 
@@ -20,6 +21,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bench", default="twin", metavar="FILE", help="bench file with a [twin] section")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
     parser.add_argument("--bus", type=Path, default=FOLDER / "can", metavar="PATH", help="socket of the CAN bus")
+    parser.add_argument("--serial", type=Path, metavar="DIR", help="also serial devices: links DIR/torque and DIR/qsb")
+    parser.add_argument("--rate", type=float, default=100.0, metavar="HZ", help="lines/s of the serial torque sensor")
+    parser.add_argument("--slcan", type=Path, metavar="PATH", help="also a serial CAN adapter, a link to its pty")
+    parser.add_argument("--socketcand", type=int, metavar="PORT", help="also the bus over TCP; 0: a free port")
     parser.add_argument("--control", type=Path, default=FOLDER / "control", metavar="PATH", help="command channel")
     parser.add_argument("--bitrate", type=float, default=1e6, metavar="BIT/S", help="of the bus; inf: takes no time")
     parser.add_argument("--for", type=float, default=math.inf, dest="seconds", metavar="SECONDS", help="then stop")
@@ -29,16 +34,19 @@ def run(args: argparse.Namespace) -> int:
     """Serve until SIGTERM, SIGINT, `stop` on the command channel or the time is up."""
     if not args.bitrate > 0.0:
         raise UsageError(f"--bitrate {args.bitrate:g}: expected more than 0 bit/s, for example 1e6")
+    if not 0.0 <= args.rate <= MOST_LINES:
+        raise UsageError(f"--rate {args.rate:g}: expected 0 to {MOST_LINES:g} lines/s")
     bench = read(args.bench, args.set)
     if bench.file.twin is None:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
     from sim.wire.assembly import Assembly
     from sim.wire.motor import Rating
-    from sim.wire.process import Process
+    from sim.wire.process import Doors, Process
 
     rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
-    process = Process(assembly, args.bus, args.control)
+    doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate)
+    process = Process(assembly, doors)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())
     assembly.agenda.at(args.seconds, process.reactor.stop)

@@ -43,7 +43,7 @@ def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
             raise UsageError(f"no command '{name}'; expected one of {', '.join(sorted(verbs))}")
         inspect.signature(verbs[name]).bind(**asked)
         return {"ok": True, **(verbs[name](**asked) or {})}
-    except (HdrigError, ValueError, TypeError) as error:
+    except (HdrigError, ValueError, TypeError, OverflowError) as error:
         return {"ok": False, "error": str(error)}
 
 

@@ -3,39 +3,88 @@
 from __future__ import annotations
 
 import gc
+import math
 from pathlib import Path
-from typing import final
+from typing import NamedTuple, final
 
+from sim.wire import qsb, serial_torque
 from sim.wire.assembly import Assembly
 from sim.wire.control import Control
+from sim.wire.faults import fault_verbs
 from sim.wire.frame import Frame
 from sim.wire.hub import Hub
+from sim.wire.pty import LineDevice, SerialLine
 from sim.wire.reactor import Reactor, Source
+from sim.wire.slcan import SerialCan
+from sim.wire.socketcand import SocketCand
 from sim.wire.verbs import plant_verbs
 
-
 SETTLED = 0.1  # s, modelled: the nodes have booted when the first host comes
+
+
+class Doors(NamedTuple):
+    """Where the twin can be reached; None: not that way."""
+
+    bus: Path
+    control: Path
+    serial: Path | None = None  # folder of the links `torque` and `qsb`
+    slcan: Path | None = None
+    socketcand: int | None = None
+    torque_rate: float = 100.0  # lines/s of the serial torque sensor
 
 
 @final
 class Process:
     """Listens from the moment it is made. `lines` tell a person how to reach it."""
 
-    def __init__(self, assembly: Assembly, bus: Path, control: Path) -> None:
+    def __init__(self, assembly: Assembly, doors: Doors) -> None:
         self.assembly = assembly
         _ = Frame(0, bytes(8)).bits  # compiled code is loaded now, not between the first two frames
         assembly.agenda.run_until(SETTLED)
         self.reactor = Reactor(assembly.agenda)
-        self.doors: list[Source] = [
-            Hub(assembly.bus, self.reactor, bus, self.reactor.stamp),
-            Control(self.reactor, control, plant_verbs(assembly, self.reactor)),
-        ]
-        nodes = ", ".join(f"{node.id} {node.identity.name}" for node in assembly.nodes)
-        rate = f"{assembly.bus.bitrate / 1e3:g} kbit/s"
-        self.lines = [
-            f'CAN      can.Bus(interface="hdrig-unix", channel="{bus}"), {rate}, {nodes}',
-            f'control  {control}, one JSON object a line, for example {{"do": "help"}}',
-        ]
+        self.serial: dict[str, SerialLine] = {}
+        self.lines: list[str] = []
+        self._doors: list[Source] = []
+        self._open(doors)
+
+    def _open(self, doors: Doors) -> None:
+        bus = self.assembly.bus
+        nodes = ", ".join(f"{node.id} {node.identity.name}" for node in self.assembly.nodes)
+        self._add(Hub(bus, self.reactor, doors.bus, self.reactor.stamp))
+        self._tell("CAN", f'can.Bus(interface="hdrig-unix", channel="{doors.bus}"), {bus.bitrate / 1e3:g} kbit/s')
+        self._tell("nodes", nodes)
+        if doors.socketcand is not None:
+            server = SocketCand(bus, self.reactor, doors.socketcand)
+            self._add(server)
+            self._tell("CAN", f'can.Bus(interface="socketcand", host="127.0.0.1", port={server.port}, channel="can0")')
+        if doors.slcan is not None:
+            self._line("slcan", doors.slcan, SerialCan(bus), math.inf)
+            self._tell("CAN", f'can.Bus(interface="slcan", channel="{doors.slcan}")')
+        if doors.serial is not None:
+            self._serial(doors.serial, doors.torque_rate)
+        verbs = {
+            **plant_verbs(self.assembly, self.reactor),
+            **fault_verbs(self.assembly, self.reactor, self.serial),
+        }
+        self._add(Control(self.reactor, doors.control, verbs))
+        self._tell("control", f'{doors.control}, one JSON object a line, for example {{"do": "help"}}')
+
+    def _serial(self, folder: Path, rate: float) -> None:
+        agenda, world = self.assembly.agenda, self.assembly.world
+        self._line("torque", folder / "torque", serial_torque.AsciiTorque(agenda, world, rate), serial_torque.BAUD)
+        self._line("qsb", folder / "qsb", qsb.Qsb(agenda, world), qsb.BAUD)
+        self._tell("serial", f"{folder}/torque, ASCII torque sensor, {serial_torque.BAUD} baud, {rate:g} lines/s")
+        self._tell("serial", f"{folder}/qsb, US Digital QSB at the load encoder, {qsb.BAUD} baud")
+
+    def _line(self, name: str, path: Path, device: LineDevice, baud: float) -> None:
+        self.serial[name] = SerialLine(self.assembly.agenda, self.reactor, path, device, baud)
+        self._add(self.serial[name])
+
+    def _add(self, door: Source) -> None:
+        self._doors.append(door)
+
+    def _tell(self, what: str, how: str) -> None:
+        self.lines.append(f"{what:8s} {how}")
 
     def run(self) -> None:
         """Serve until the reactor is stopped; then everything is closed."""
@@ -43,5 +92,5 @@ class Process:
         try:
             self.reactor.run()
         finally:
-            for door in self.doors:
+            for door in self._doors:
                 door.close()

@@ -1,0 +1,114 @@
+"""Faults of the wire: tampering with frames, cables, stations that should not be there."""
+
+from __future__ import annotations
+
+import math
+from typing import final
+
+from rig.core.errors import UsageError
+from sim.wire.assembly import Assembly
+from sim.wire.bus import Port, Tamper
+from sim.wire.faults.words import Number, number
+from sim.wire.frame import EXTENDED, Frame
+from sim.wire.tampers import Delay, Drop, Duplicate, Reorder, Resize
+
+
+@final
+class BusFaults:
+    """Of the wire: tampering with frames, cables, stations that should not be there."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._bus = assembly.bus
+        self._ghosts: list[Port] = []
+
+    def heal(self) -> None:
+        """All sound."""
+        self._bus.tampers = []
+        for port in self._bus.ports:
+            port.reconnect()
+        for ghost in self._ghosts:
+            ghost.leave()
+        self._ghosts = []
+
+    def drop(self, identifier: Number = None, count: float = math.inf) -> None:
+        """Frames are lost"""
+        self._tamper(Drop(_which(identifier), count))
+
+    def delay(self, seconds: float, identifier: Number = None, count: float = math.inf) -> None:
+        """Frames arrive late"""
+        self._tamper(Delay(_which(identifier), float(seconds), count))
+
+    def duplicate(self, identifier: Number = None, count: float = math.inf) -> None:
+        """Frames arrive twice"""
+        self._tamper(Duplicate(_which(identifier), count))
+
+    def reorder(self, identifier: Number = None, count: float = math.inf) -> None:
+        """Frames change places in pairs"""
+        self._tamper(Reorder(_which(identifier), count))
+
+    def resize(self, size: int, identifier: Number = None, count: float = math.inf) -> None:
+        """Frames are torn off or filled up to `size` bytes"""
+        if not 0 <= size <= 8:
+            raise UsageError(f"a frame of {size} bytes: expected 0 to 8")
+        self._tamper(Resize(_which(identifier), size, count))
+
+    def cut(self, station: str = "hosts", keeps: bool = False) -> None:
+        """The cable of a station is out; keeps: what it sends meanwhile goes out when it is back"""
+        for port in self._stations(station):
+            port.disconnect(keeps)
+
+    def join(self, station: str = "hosts") -> None:
+        """The cable is back"""
+        for port in self._stations(station):
+            port.reconnect()
+
+    def send(
+        self,
+        identifier: int | str,
+        data: str = "",
+        every: float = 0.0,
+        count: float = 1,
+        extended: bool = False,
+    ) -> None:
+        """Somebody else sends a frame: once or `count` times `every` s; a babbler, a second master, a double"""
+        try:
+            frame = Frame(number(identifier) | (EXTENDED if extended else 0), bytes.fromhex(data))
+        except ValueError:
+            raise UsageError(f"data '{data}': expected hexadecimal digits in pairs") from None
+        if len(frame.data) > 8:
+            raise UsageError(f"{len(frame.data)} data bytes: a CAN frame has 8 at most")
+        if count > 1 and not every > 0.0:
+            raise UsageError(f"every {every:g} s: expected more than 0 s between {count:g} frames")
+        ghost = self._bus.attach("ghost", lambda frame, t: None)
+        self._ghosts.append(ghost)
+        self._repeat(ghost, frame, every, count)
+
+    def babble(self, identifier: int | str = 0, every: float = 135e-6, seconds: float = 1.0) -> None:
+        """A station that never stops: by default the whole bus of 1 Mbit/s, before all others"""
+        self.send(identifier, "aaaaaaaaaaaaaaaa", every, max(1.0, seconds / every))
+
+    def second_master(self, node: int = 1, every: float = 0.005, count: float = 200) -> None:
+        """Another program reads 1000h of a node by SDO all the time: its answers mix with ours"""
+        self.send(0x600 + node, "4000100000000000", every, count)
+
+    def _repeat(self, ghost: Port, frame: Frame, every: float, left: float) -> None:
+        if ghost not in self._ghosts:
+            return
+        if not ghost.queue:  # who does not get the bus does not queue either
+            ghost.send(frame)
+        if left > 1:
+            self._bus.agenda.after(every, lambda: self._repeat(ghost, frame, every, left - 1))
+
+    def _tamper(self, tamper: Tamper) -> None:
+        self._bus.tampers.append(tamper)
+
+    def _stations(self, name: str) -> list[Port]:
+        ports = self._bus.ports
+        found = [p for p in ports if p.name == name or (name == "hosts" and not p.name.startswith("node"))]
+        if not found:
+            raise UsageError(f"no station '{name}'; expected hosts, {', '.join(port.name for port in ports)}")
+        return found
+
+
+def _which(identifier: Number) -> int | None:
+    return None if identifier is None else number(identifier)

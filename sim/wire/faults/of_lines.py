@@ -1,0 +1,60 @@
+"""Faults of the serial lines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import final
+
+from sim.wire.faults.words import named
+from sim.wire.pty import SerialLine, Spoiler
+from sim.wire.spoilers import Cut, Garbage, Glued, Mute, Torn
+
+
+@final
+class LineFaults:
+    """Of the serial lines."""
+
+    def __init__(self, lines: Mapping[str, SerialLine]) -> None:
+        self._lines = lines
+
+    def heal(self) -> None:
+        """All sound and plugged in."""
+        for line in self._lines.values():
+            line.spoiler, line.latency = Spoiler(), 0.0
+            line.plug()
+
+    def unplug(self, line: str) -> None:
+        """The plug is pulled"""
+        self._line(line).unplug()
+
+    def plug(self, line: str) -> None:
+        """It is back, as another pty behind the same link; the device starts anew"""
+        self._line(line).plug()
+
+    def torn(self, line: str, seconds: float = 0.005) -> None:
+        """Every message arrives in two pieces"""
+        self._line(line).spoiler = Torn(float(seconds))
+
+    def glued(self, line: str) -> None:
+        """Two messages are one: the end of line between them is lost"""
+        self._line(line).spoiler = Glued()
+
+    def shortened(self, line: str, size: int = 2, count: float = math.inf) -> None:
+        """Bytes before the end of line are lost"""
+        self._line(line).spoiler = Cut(size, count)
+
+    def garbage(self, line: str, size: int = 5) -> None:
+        """Bytes that mean nothing before every message"""
+        self._line(line).spoiler = Garbage(size)
+
+    def mute(self, line: str) -> None:
+        """Nothing arrives any more"""
+        self._line(line).spoiler = Mute()
+
+    def latency(self, line: str, seconds: float = 0.016) -> None:
+        """The adapter hands over what it has only every so often"""
+        self._line(line).latency = float(seconds)
+
+    def _line(self, name: str) -> SerialLine:
+        return named(self._lines, name, "serial line")

@@ -1,0 +1,80 @@
+"""Faults of nodes: reboot, emergency, lost enable, wrong numbers in the dictionary, slow answers."""
+
+from __future__ import annotations
+
+import struct
+from typing import final
+
+from rig.core.errors import UsageError
+from sim.wire.assembly import Assembly
+from sim.wire.faults.words import named, number
+from sim.wire.node import Node
+from sim.wire.objects import Abort, Entry
+
+
+@final
+class NodeFaults:
+    """Of a node: reboot, emergency, lost enable, wrong numbers in its dictionary, slow answers."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+
+    def heal(self) -> None:
+        """Inputs of the drive as they should be."""
+        drive = self._assembly.drive
+        drive.mode_stuck = drive.incurable = False
+        if drive.sto_active:
+            drive.sto(False, False)
+
+    def reboot(self, device: str) -> None:
+        """Its power fails for a moment: mapping and, without a battery, position are lost"""
+        self._node(device).power_up()
+
+    def emergency(self, device: str, code: int | str, register: int = 0x80) -> None:
+        """It sends an EMCY and goes on"""
+        self._node(device).emergency(number(code), register)
+
+    def trip(self, code: int | str, again: bool = False) -> None:
+        """The drive's own protection acts; again: it comes back when it is reset"""
+        self._assembly.drive.incurable = bool(again)
+        self._assembly.drive.fault(number(code))
+
+    def sto(self, active: bool = True, fault: bool = False) -> None:
+        """Safe torque off, as a loss of enable or as a fault"""
+        self._assembly.drive.sto(bool(active), bool(fault))
+
+    def mode_stuck(self, active: bool = True) -> None:
+        """6061 no longer follows 6060"""
+        self._assembly.drive.mode_stuck = bool(active)
+
+    def put(self, device: str, index: int | str, value: float, sub: int = 0) -> None:
+        """Another tool writes an object: scale, unit, limit, mapping; read-only ones too"""
+        entry = self._entry(device, index, sub)
+        if entry.write is not None and entry.writable:
+            try:
+                entry.accept(entry.kind.pack(value))
+            except (Abort, struct.error) as abort:
+                raise UsageError(f"{device} refuses {value} in {index}:{sub}: {abort}") from None
+        entry.value, entry.read = value, None if not entry.writable else entry.read
+
+    def position(self, offset: int) -> None:
+        """The motor's position register is `offset` counts further from now on: another zero, or close to a wrap"""
+        self._assembly.drive.motor.offset += int(offset)
+
+    def slow_sdo(self, device: str, seconds: float) -> None:
+        """SDO answers take so long"""
+        self._node(device).sdo_turnround = float(seconds)
+
+    def _node(self, device: str) -> Node:
+        nodes: dict[str, Node] = {
+            "drive": self._assembly.drive,
+            "encoder": self._assembly.encoder,
+            "torque": self._assembly.torque,
+        }
+        return named(nodes, device, "device")
+
+    def _entry(self, device: str, index: int | str, sub: int) -> Entry:
+        try:
+            return self._node(device).objects.find(number(index), sub)
+        except Abort as abort:
+            raise UsageError(f"{device} has no object {index}:{sub}: {abort}") from None

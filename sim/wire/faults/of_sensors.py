@@ -1,0 +1,59 @@
+"""Faults of what is measured, on the CAN side: motor encoder, load encoder, torque."""
+
+from __future__ import annotations
+
+from typing import final
+
+from sim.drive import TwinDrive
+from sim.faults import Fault, Frozen, Jump, Overload, Scale, Silent
+from sim.sensors import TwinLoadEncoder, TwinTorqueSensor
+from sim.wire.assembly import Assembly
+from sim.wire.faults.words import named
+
+
+@final
+class SensorFaults:
+    """Of what is measured, on the CAN side: encoder of the drive, load encoder, torque."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+
+    def heal(self) -> None:
+        """All sound."""
+        self._put("drive", None)
+        self._put("encoder", None)
+        self._put("torque", None)
+        self._assembly.torque.broken = False
+
+    def frozen(self, device: str) -> None:
+        """The value stays what it is"""
+        self._put(device, Frozen())
+
+    def silent(self, device: str) -> None:
+        """The sensor gives nothing new behind a node that goes on"""
+        self._put(device, Silent())
+
+    def jump(self, device: str, by: float) -> None:
+        """A slipped coupling, a shifted zero: rad or N·m"""
+        self._put(device, Jump(float(by)))
+
+    def scale(self, device: str, factor: float) -> None:
+        """The wrong scale; negative: the wrong way round"""
+        self._put(device, Scale(float(factor)))
+
+    def overload(self, sign: int = 1) -> None:
+        """The torque sensor is at the end of its range"""
+        self._put("torque", Overload(sign))
+
+    def broken_cable(self, active: bool = True) -> None:
+        """The torque sensor's cable to its amplifier is out: not a number"""
+        self._assembly.torque.broken = bool(active)
+
+    def _put(self, device: str, fault: Fault | None) -> None:
+        a = self._assembly
+        sensors: dict[str, TwinDrive | TwinLoadEncoder | TwinTorqueSensor] = {
+            "drive": a.drive.motor.sensors,
+            "encoder": a.encoder.encoder,
+            "torque": a.torque.sensor,
+        }
+        named(sensors, device, "device").fault = fault
