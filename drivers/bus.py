@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import struct
-import time
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -102,9 +101,9 @@ class Bus:
 
     def wait(self, seconds: float, done: Callable[[], bool]) -> bool:
         """Take frames for up to `seconds` until `done` says so; what it says at the end. Not for use in a tick."""
-        until = time.monotonic() + seconds
+        until = self.clock.now() + seconds
         while not done():
-            remaining = until - time.monotonic()
+            remaining = until - self.clock.now()
             if remaining <= 0 or self.dead:
                 return False
             self.take(remaining)

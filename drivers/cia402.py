@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import struct
-import time
 from typing import ClassVar
 
 from drivers.node import Mapped, Node, emergency_text
@@ -196,11 +195,11 @@ class Cia402(Drive):
 
     def _walk(self, controlword: int, wanted: str) -> None:
         self.bus.send(self._identifiers[0], encode_command(controlword, 0))
-        until = time.monotonic() + STEP_PATIENCE
+        until = self.bus.clock.now() + STEP_PATIENCE
         while (state := state_of(self.node.read_uint(0x6041))) != wanted:
             if state.startswith("fault"):
                 raise NotReady(f"{self.node.who} is in {state}: {self._error()}")
-            if time.monotonic() > until:
+            if self.bus.clock.now() > until:
                 raise NotReady(f"{self.node.who} stays in '{state}', expected '{wanted}' within {STEP_PATIENCE:g} s")
             self.bus.send(self._identifiers[0], encode_command(controlword, 0))
 
@@ -270,9 +269,9 @@ class Cia402(Drive):
         for _ in range(2):  # one may meet a full queue
             self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
         try:
-            until = time.monotonic() + 0.2
+            until = self.bus.clock.now() + 0.2
             while state_of(self.node.read_uint(0x6041)) in ("operation enabled", "quick stop active"):
-                if time.monotonic() > until:
+                if self.bus.clock.now() > until:
                     return False
                 self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
             self._disarm()

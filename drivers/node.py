@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 import queue
 import struct
-import time
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -187,7 +186,7 @@ class Node:
     def pause(self) -> None:
         """Pre-operational: PDOs off, while it is being configured. Raises NotReady."""
         self.bus.nmt(PRE_OPERATIONAL, self.number)
-        time.sleep(0.002)  # it has no answer; some nodes drop an SDO that follows at once
+        self.bus.wait(0.002, lambda: False)  # it has no answer; some nodes drop an SDO that follows at once
 
     def _nmt(self, command: int, wanted: int) -> None:
         self.state = None
