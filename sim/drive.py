@@ -8,6 +8,7 @@ from rig.core.devices import Drive, DriveReading, Identity
 from rig.core.errors import HdrigError, NotReady
 from rig.core.sample import Setpoint
 from sim.channel import DRIVE_SATURATED, FINEST, SIMULATED, UNREAD, Counter, new
+from sim.encoder import motor_scale
 from sim.faults import Fault
 from sim.noise import normal
 from sim.world import World
@@ -17,7 +18,7 @@ class TwinDrive(Drive):
     """Torque-controlled: rounds to its resolution, clips at its limit, lets go when nobody talks to it.
 
     The encoder counts from power-up, so that the phase of the kinematic error differs from seed to seed;
-    `encoder.zero` is the motor's true angle there. The torque follows through a first-order loop in the plant.
+    `encoder.zero` is the motor's angle there, as the scale shows it. The torque follows through a first-order loop in the plant.
     """
 
     name = "drive"
@@ -26,7 +27,8 @@ class TwinDrive(Drive):
         p = world.parameters
         self.world = world
         self._plant = world.plant
-        self.encoder = Counter(p.motor_counts_per_turn, world.plant.motor[0])
+        self.scale = motor_scale(p.effects.sensors)
+        self.encoder = Counter(p.motor_counts_per_turn, self.scale.shown(world.plant.motor[0]))
         self.fault: Fault | None = None  # of its encoder
         self.deaf = False  # commands no longer arrive
         self.trouble = ""  # the drive's own fault, latched, in words
@@ -34,6 +36,7 @@ class TwinDrive(Drive):
         self._limit = p.torque_limit
         self._watchdog = p.watchdog
         self._latch = p.latch_m
+        self._latched = p.latch_m + p.effects.sensors.motor_skew  # s after the tick, in truth
         self._noise = normal(world.seed, "drive torque", p.torque_noise)
         self._connected = False
         self._enabled = False
@@ -73,14 +76,18 @@ class TwinDrive(Drive):
         if not self._connected:
             self._expect_connection()
         theta, omega, acceleration = self._plant.motor
-        dt = self._latch
+        dt = self._latched
         theta += dt * (omega + 0.5 * dt * acceleration)
         encoder = self.encoder
+        if self.scale:
+            theta = self.scale.shown(theta)
         if self.fault is not None:
             theta = encoder.distorted(theta, self.fault.value)
         counts = encoder.count(theta)
         tau = self._resolution * round((self._plant.shaft[0] + self._noise()) / self._resolution)
-        reading = new(DriveReading, (world.t + dt, counts * encoder.step, counts, tau, self._flags, self.trouble))
+        reading = new(
+            DriveReading, (world.t + self._latch, counts * encoder.step, counts, tau, self._flags, self.trouble)
+        )
         if self.fault is not None:
             reading = self.fault.reading(reading, self._last or reading)
         self._last, self._read_at = reading, world.t

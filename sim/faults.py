@@ -53,6 +53,23 @@ class Jump(Fault):
         return x + self.by
 
 
+class MissedCounts(Fault):
+    """Edges that came too close together: one count of `step` rad lost for every `every` rad travelled."""
+
+    def __init__(self, step: float, every: float) -> None:
+        self._step, self._every = step, every
+        self._last: float | None = None
+        self._travelled, self._behind = 0.0, 0.0  # rad
+
+    def value(self, x: float) -> float:
+        step = x - (x if self._last is None else self._last)
+        self._last = x
+        before = self._travelled // self._every
+        self._travelled += abs(step)
+        self._behind += math.copysign(self._step * (self._travelled // self._every - before), step)
+        return x - self._behind
+
+
 @dataclass(frozen=True)
 class Scale(Fault):
     """A wrong ratio or counts per turn: `factor` times the value. −1 is a reversed channel."""

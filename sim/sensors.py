@@ -7,22 +7,27 @@ import math
 from rig.core.devices import AngleReading, Encoder, Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from sim.channel import FINEST, SENSOR_SATURATED, SIMULATED, UNREAD, Counter, new
+from sim.encoder import load_scale
 from sim.faults import Fault
 from sim.noise import normal
+from sim.torque_aside import TorqueAside
 from sim.world import World
 
 
 class TwinLoadEncoder(Encoder):
-    """Counts from power-up; `encoder.zero` is the load's true angle there."""
+    """Counts from power-up; `encoder.zero` is the load's angle there, as the scale shows it."""
 
     name = "load_encoder"
 
     def __init__(self, world: World) -> None:
         self.world = world
         self._plant = world.plant
-        self.encoder = Counter(world.parameters.load_counts_per_turn, world.plant.load[0])
+        p = world.parameters
+        self.scale = load_scale(p.effects.sensors)
+        self.encoder = Counter(p.load_counts_per_turn, self.scale.shown(world.plant.load[0]))
         self.fault: Fault | None = None
-        self._latch = world.parameters.latch_l
+        self._latch = p.latch_l
+        self._latched = p.latch_l + p.effects.sensors.load_skew  # s after the tick, in truth
         self._connected = False
         self._read_at = UNREAD
         self._last: AngleReading | None = None
@@ -44,13 +49,15 @@ class TwinLoadEncoder(Encoder):
         if not self._connected:
             raise NotReady("the twin's load encoder is not connected")
         theta, omega, acceleration = self._plant.load
-        dt = self._latch
+        dt = self._latched
         theta += dt * (omega + 0.5 * dt * acceleration)
         encoder = self.encoder
+        if self.scale:
+            theta = self.scale.shown(theta)
         if self.fault is not None:
             theta = encoder.distorted(theta, self.fault.value)
         counts = encoder.count(theta)
-        reading = new(AngleReading, (world.t + dt, counts * encoder.step, counts, SIMULATED))
+        reading = new(AngleReading, (world.t + self._latch, counts * encoder.step, counts, SIMULATED))
         if self.fault is not None:
             reading = self.fault.reading(reading, self._last or reading)
         self._last, self._read_at = reading, world.t
@@ -60,7 +67,8 @@ class TwinLoadEncoder(Encoder):
 class TwinTorqueSensor(TorqueSensor):
     """All the gear gives to the load, behind a first-order low-pass, with zero offset, noise, resolution and range.
 
-    The low-pass runs in the plant; between tick and latch its input is taken as a straight line.
+    The low-pass runs in the plant; between tick and latch its input is taken as a straight line. Bending of the shaft,
+    a warming zero and pickup come on top as `effects.sensors` says.
     """
 
     name = "torque_sensor"
@@ -71,8 +79,10 @@ class TwinTorqueSensor(TorqueSensor):
         self._plant = world.plant
         self.fault: Fault | None = None
         self._latch = p.latch_tau
+        self._latched = p.latch_tau + p.effects.sensors.torque_skew  # s after the tick, in truth
+        self._aside = TorqueAside(p.effects.sensors)
         self._time_constant = 1.0 / (2.0 * math.pi * p.sensor_lowpass_hz)  # s
-        self._keep = math.exp(-p.latch_tau / self._time_constant)
+        self._keep = math.exp(-max(self._latched, 0.0) / self._time_constant)
         self._zero = p.sensor_zero
         self._range = p.sensor_range
         self._resolution = max(p.sensor_resolution, FINEST)
@@ -98,8 +108,10 @@ class TwinTorqueSensor(TorqueSensor):
         if not self._connected:
             raise NotReady("the twin's torque sensor is not connected")
         _, tau_l, rate, filtered = self._plant.shaft
-        lag = rate * self._time_constant
-        tau = tau_l + rate * self._latch - lag + (filtered - tau_l + lag) * self._keep + self._zero + self._noise()
+        dt, lag = self._latched, rate * self._time_constant
+        tau = tau_l + rate * dt - lag + (filtered - tau_l + lag) * self._keep + self._zero + self._noise()
+        if self._aside:
+            tau += self._aside.torque(world.t + dt, self._plant.load[0])
         if self.fault is not None:
             tau = self.fault.value(tau)
         flags, limit = SIMULATED, self._range
