@@ -11,11 +11,13 @@ from rig.analysis.angle import TURN
 from rig.analysis.constant_torque import add_constant_torque
 from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
+from rig.analysis.full_turn import add_full_turn
 from rig.analysis.lock import add_lock
 from rig.analysis.overview import add_overview
 from rig.analysis.result import Result
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.speed import Speed, motor_speed
+from rig.analysis.speed_convergence import add_speed_convergence
 from rig.analysis.standstill import add_standstill
 from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
@@ -47,6 +49,16 @@ def _constant_torque(found: Findings, run: Source, motion: Motion, speed: Speed 
     add_constant_torque(found, run, motion)
 
 
+def _full_turn(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_turning(found, run, motion, speed, slow=True)
+    if not found.rejected:
+        add_full_turn(found, run, motion)
+
+
+def _speed_convergence(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_speed_convergence(found, run, motion)
+
+
 def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
     add_standstill(found, run, motion)
 
@@ -73,8 +85,8 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
 
 PROCEDURES: Mapping[str, Part] = {
     "kinematic_error": _slow,
-    "speed_convergence": _slow,
-    "full_turn": _slow,
+    "speed_convergence": _speed_convergence,
+    "full_turn": _full_turn,
     "load_sweep": _slow,
     "assembly_sweep": _slow,
     "constant_torque": _constant_torque,

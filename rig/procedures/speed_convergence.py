@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, ClassVar
 
 from rig.control.pid import Pid
@@ -31,13 +31,14 @@ class SpeedConvergence(Procedure):
 
     speeds_rpm: str = "60,40,30,20,15,9.6,4.8"  # of the motor, falling
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
-    cycles: int = 1  # at each speed
+    cycles: int = 1  # at each speed, at least
+    least: float = 60.0  # s at each speed, at least: where speed tells most, strokes are short
     settle: float = 0.5  # s at rest before each
     tolerance: float = 0.02  # of the waveform's rms: what counts as no longer changing
 
     def __post_init__(self) -> None:
         speeds = self.speeds
-        if len(speeds) < FEWEST or any(not a >= APART * b for a, b in pairwise(speeds)):
+        if len(speeds) < FEWEST or any(not a >= APART * b for a, b in itertools.pairwise(speeds)):
             raise UsageError(
                 f"speeds_rpm = {self.speeds_rpm}: expected at least {FEWEST} falling speeds in rpm, each at least "
                 f"{APART:g} times the next, for example 60,40,30,20,15,9.6,4.8"
@@ -56,15 +57,22 @@ class SpeedConvergence(Procedure):
 
     @property
     def waves(self) -> tuple[Triangle, ...]:
-        """One for each speed."""
+        """One for each speed. Every second one begins backwards: between two speeds the motor turns round, so that no
+        stroke holds both.
+        """
         amplitude = self.amplitude_deg * DEG
-        return tuple(Triangle(amplitude, speed * RPM / (4.0 * amplitude), self.cycles) for speed in self.speeds)
+        signs = itertools.cycle((1.0, -1.0))
+        return tuple(self._wave(sign * amplitude, speed) for sign, speed in zip(signs, self.speeds, strict=False))
+
+    def _wave(self, amplitude: float, speed_rpm: float) -> Triangle:
+        frequency = speed_rpm * RPM / abs(4.0 * amplitude)
+        return Triangle(amplitude, frequency, max(self.cycles, math.ceil(self.least * frequency)))
 
     def envelope(self, setting: Setting) -> Envelope:
         """All triangles have the same travel; the first is the fastest."""
         waves = self.waves
         duration = sum(wave.duration + self.settle for wave in waves) + self.settle
-        return Envelope(duration, self.amplitude_deg * DEG, waves[0].speed, setting.control.torque_limit)
+        return Envelope(duration, self.amplitude_deg * DEG, abs(waves[0].speed), setting.control.torque_limit)
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""
