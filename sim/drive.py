@@ -18,7 +18,8 @@ class TwinDrive(Drive):
     """Torque-controlled: rounds to its resolution, clips at its limit, lets go when nobody talks to it.
 
     The encoder counts from power-up, so that the phase of the kinematic error differs from seed to seed;
-    `encoder.zero` is the motor's angle there, as the scale shows it. The torque follows through a first-order loop in the plant.
+    `encoder.zero` is the motor's angle there, as the scale shows it. The torque follows through a first-order loop in
+    the plant.
     """
 
     name = "drive"
