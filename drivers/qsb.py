@@ -26,8 +26,8 @@ NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for an answer
 LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
 TURN = 2 * math.pi
-QUADRATURE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
-X4 = 0x03  # mode: quadrature, four counts a line
+KIND, MODE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x00, 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
+X4 = 0x03  # of MODE: four counts a line
 
 
 def decode_answer(line: bytes) -> tuple[str, int, int] | None:
@@ -61,7 +61,8 @@ class Qsb(Encoder):
         self.port.write(b"\r\n")  # ends whatever half a command stood in its buffer
         self._lines.feed(b"\r\n")  # an answer has a shape of its own: the first need not be thrown away
         version = self._ask(b"R%02X" % VERSION)
-        self._ask(b"W00%08X" % X4)
+        self._ask(b"W%02X%08X" % (KIND, 0))  # 0: quadrature
+        self._ask(b"W%02X%08X" % (MODE, X4))
         self._ask(b"W%02X%08X" % (THRESHOLD, 0))  # 0: also while nothing moves, or rest would look like silence
         self._ask(b"W%02X%08X" % (INTERVAL, 0))
         value = self._ask(b"R%02X" % ENCODER)

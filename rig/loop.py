@@ -104,10 +104,13 @@ class Loop:
         while True:
             k += 1
             deadline = start + k * period
-            if latch is not None:
-                clock.wait_until(deadline - lead)
+            if latch is None:
+                now = clock.wait_until(deadline)
+            else:
+                woken = clock.wait_until(deadline - lead)
                 latch()
-            now = clock.wait_until(deadline)
+                # who woke late still gives the devices their time to answer, or would read the reading before
+                now = clock.wait_until(max(deadline, woken + lead))
             lateness = now - deadline
             late(lateness if lateness > 0.0 else 0.0)
             skipped = 0
