@@ -7,6 +7,13 @@ REFERENCES: dict[str, str] = {
     "ASME J. Dynamic Systems, Measurement and Control 107 (1985) 100-103",
     "armstrong1994": "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and "
     "compensation methods for the control of machines with friction, Automatica 30 (1994) 1083-1138",
+    "fuller1987": "W. A. Fuller, Measurement Error Models, Wiley (1987)",
+    "liang1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, "
+    "Biometrika 73 (1986) 13-22",
+    "preisig1993": "H. A. Preisig, D. W. T. Rippin, Theory and application of the modulating function method, "
+    "Computers & Chemical Engineering 17 (1993) 1-16",
+    "paule1982": "R. C. Paule, J. Mandel, Consensus values and weighting factors, "
+    "J. Research of the National Bureau of Standards 87 (1982) 377-385",
     "gum": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement",
     "tuttle1992": "T. D. Tuttle, Understanding and modeling the behavior of a harmonic drive gear transmission, "
     "MIT Artificial Intelligence Laboratory, Technical Report 1365 (1992)",

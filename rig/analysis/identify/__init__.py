@@ -1,0 +1,7 @@
+"""Identification: runs of a campaign to the parameters of equations 6-8, with intervals, and what stays undecided."""
+
+from rig.analysis.identify.fit import Fits, fit
+from rig.analysis.identify.identified import Identified, identified, order_amplitudes
+from rig.analysis.identify.recording import Recording, recording
+
+__all__ = ["Fits", "Identified", "Recording", "fit", "identified", "order_amplitudes", "recording"]

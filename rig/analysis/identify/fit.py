@@ -1,0 +1,143 @@
+"""All runs of a campaign to one gear: the equations solved in turn, each leaning on what the others have found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from rig.analysis.identify.dynamics import J_L, J_M, LAG, load_fit, motor_fit, spring_columns, spring_fit
+from rig.analysis.identify.friction import LoadFriction, MotorFriction, load_friction, motor_friction
+from rig.analysis.identify.gram import Known
+from rig.analysis.identify.locked import locked_rows
+from rig.analysis.identify.means import Mean, mean_of
+from rig.analysis.identify.recording import Plateau, Recording, plateaus
+from rig.analysis.identify.slow import SlowSeries, slow_rows, slow_series
+from rig.analysis.identify.solve import Solved
+from rig.analysis.identify.windows import Projected, project
+from rig.analysis.result import Array
+from rig.model.fourier import FourierSeries
+
+PASSES = 4  # of the spring's fit: θ̃_p enters its own damping term
+MATTERS = 5e-5  # s of delay between the encoders: less is taken off by the fit itself to a part in 10⁴
+SURE = 4.0  # standard errors
+
+
+@dataclass(frozen=True)
+class Fits:
+    """What each equation gave; None where the campaign has nothing for it. SI."""
+
+    terms: int
+    ratio: float
+    series: FourierSeries
+    slow: tuple[SlowSeries, ...]
+    means: tuple[Mean, ...]
+    windows: tuple[Projected, ...]
+    spring: Solved | None  # columns of dynamics.spring_columns
+    lock_only: Solved | None  # the same without the turning runs
+    running_only: Solved | None  # the same without the lock runs
+    load: Solved | None
+    motor: Solved | None
+    motor_friction: MotorFriction | None
+    load_friction: LoadFriction | None
+    locked: tuple[str, ...]  # names of the lock runs used
+    taken_off: float = 0.0  # s by which the load encoder's readings were moved before the final fit
+
+
+def fit(runs: Sequence[Recording], terms: int, progress: Callable[[str], None] = lambda text: None) -> Fits:
+    """Solve the campaign. `terms` orders of θ̃_p; `progress` is told what is being done."""
+    ratio = runs[0].ratio
+    progress("slow runs")
+    slow = tuple(s for r in runs if (s := slow_series(r, terms)) is not None)
+    level = list(chain.from_iterable(plateaus(r) for r in runs))
+    series = _mean_series(slow, terms)
+    fits = _once(runs, level, slow, series, terms, ratio, progress)
+    late = _late(fits)
+    if late:  # a delay too long for the straight line it was found with: read the load encoder when it was meant
+        runs = [r.with_load_late_by(late) for r in runs]
+        slow = tuple(s for r in runs if (s := slow_series(r, terms)) is not None)
+        level = list(chain.from_iterable(plateaus(r) for r in runs))
+    if late or (not slow and fits.spring is not None):  # or the lever of the shaft torque was not known yet
+        fits = _once(runs, level, slow, fits.series, terms, ratio, progress)
+    return replace(fits, taken_off=late)
+
+
+def _late(fits: Fits) -> float:
+    """How late the load encoder reads [s], 0 when too little to matter or too uncertain."""
+    if fits.spring is None or not fits.windows:
+        return 0.0
+    place = spring_columns(fits.terms)[2]
+    delay, u = float(fits.spring.coefficients[place]), fits.spring.u(place)
+    return delay if abs(delay) > max(MATTERS, SURE * u) else 0.0
+
+
+def _once(
+    runs: Sequence[Recording], level: Sequence[Plateau], slow: tuple[SlowSeries, ...], series: FourierSeries,
+    terms: int, ratio: float, progress: Callable[[str], None],
+) -> Fits:  # fmt: skip
+    progress(f"{len(level)} stretches of constant speed")
+    means = [mean_of(p, series, 0.0, 0.0) for p in level]
+    friction_l = load_friction(means, ratio)
+    slopes = {id(r): series.slope(r.theta_m) for r in runs}
+    windows = [w for p in level if (w := project(p, terms, slopes[id(p.run)])) is not None]
+    drag_l = None if friction_l is None else (friction_l.solved.coefficients[friction_l.B_l], friction_l.solved.u(0))
+    load = load_fit(windows, drag_l)
+    progress("spring")
+    between, J_l = (load.coefficients[LAG], load.coefficients[J_L]) if load is not None else (0.0, 0.0)
+    locked = [r for r in runs if r.locked]
+    spring = _spring(windows, slow, locked, terms, between, J_l, series)
+    lock_only = _spring([], slow, locked, terms, between, J_l, series) if locked and slow else None
+    running_only = _spring(windows, slow, [], terms, between, J_l, series) if windows else None
+    if spring is not None:
+        series = _series(spring, terms)
+    lag = between + (spring.coefficients[spring_columns(terms)[2]] if spring is not None else 0.0)
+    progress("motor")
+    friction_m = motor_friction(means)
+    J_m, motor = 0.0, None
+    if friction_m is not None:
+        drag_m = (friction_m.solved.coefficients[friction_m.B], friction_m.solved.u(friction_m.B))
+        motor = motor_fit(windows, ratio, lag, drag_m)
+        J_m = motor.coefficients[J_M] if motor is not None else 0.0
+    means = [mean_of(p, series, J_m, J_l) for p in level]
+    used = tuple(r.name for r in locked if r.tau_l is not None)
+    return Fits(
+        terms, ratio, series, slow, tuple(means), tuple(windows), spring, lock_only, running_only, load, motor,
+        motor_friction(means), load_friction(means, ratio), used,
+    )  # fmt: skip
+
+
+def _spring(
+    windows: Sequence[Projected], slow: Sequence[SlowSeries], locked: Sequence[Recording],
+    terms: int, between: float, J_l: float, series: FourierSeries,
+) -> Solved | None:  # fmt: skip
+    at_K, _, at_delay, size = spring_columns(terms)
+    c = np.zeros(size)
+    c[: 2 * terms] = [*series.a, *series.b]
+    found: Solved | None = None
+    for _ in range(PASSES):
+        K = 1.0 / c[at_K] if c[at_K] > 0 else 0.0
+        fixed: list[Known] = [slow_rows(s, terms, size, K, J_l) for s in slow]
+        fixed += [k for r in locked if (k := locked_rows(r, terms, size, at_K, c)) is not None]
+        found = spring_fit(windows, fixed, terms, between + c[at_delay], c[: 2 * terms])
+        if found is None:
+            return None
+        c = found.coefficients
+    return found
+
+
+def _mean_series(slow: Sequence[SlowSeries], terms: int) -> FourierSeries:
+    """The slow runs' coefficients, weighted; zeros without any."""
+    if not slow:
+        return FourierSeries((0.0,) * terms, (0.0,) * terms)
+    weights = np.array([1.0 / np.maximum(s.u, 1e-12) ** 2 for s in slow])
+    return _from(np.sum(weights * np.array([s.coefficients for s in slow]), axis=0) / np.sum(weights, axis=0), terms)
+
+
+def _series(spring: Solved, terms: int) -> FourierSeries:
+    return _from(spring.coefficients[: 2 * terms], terms)
+
+
+def _from(c: Array, terms: int) -> FourierSeries:
+    return FourierSeries(tuple(map(float, c[:terms])), tuple(map(float, c[terms : 2 * terms])))

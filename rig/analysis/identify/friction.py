@@ -1,0 +1,131 @@
+"""Friction of both sides from the plateaus' means: straight lines of torque against speed, one sign each way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.identify.means import Mean, variances
+from rig.analysis.identify.solve import Solved, random_effects
+from rig.analysis.result import Array
+
+STRIBECK = np.geomspace(0.1, 30.0, 40)  # rad/s tried for ω_s
+CLEAR = 12.0  # of χ²: a Stribeck term must explain this much to be believed, two parameters at odds of 400
+SLOW = 5.0  # rad/s, 48 rpm: a fall of friction is looked for below, straight drag above
+CONTRADICTS = 4.0  # standard errors by which slow plateaus must miss the line of the fast ones
+
+
+@dataclass(frozen=True)
+class MotorFriction:
+    """τ_f = [τ_c + fall·exp(−(ω/ω_s)²)]·sgn ω + B·ω + offset, seen at the motor beside the shaft torque, SI."""
+
+    solved: Solved  # columns: B, τ_c, then offset where both directions were seen, then fall where it is clear
+    B: int
+    tau_c: int
+    offset: int | None
+    fall: int | None
+    omega_s: float  # rad/s, NaN without a fall
+    both_ways: bool
+    rows: tuple[Mean, ...]
+    doubt: str = ""  # what the slow plateaus say against the line, "" when nothing
+
+
+@dataclass(frozen=True)
+class LoadFriction:
+    """F = F_cl·sgn ω + B_l·ω_l + zero of the torque sensor, SI."""
+
+    solved: Solved
+    B_l: int
+    F_cl: int
+    zero: int | None
+    both_ways: bool
+    rows: tuple[Mean, ...]
+
+
+def unloaded(means: Sequence[Mean]) -> list[Mean]:
+    """Those without a weight, where there are enough of them: friction may depend on the load."""
+    free = [m for m in means if m.tau_ext == 0.0]
+    return free if len(free) >= 4 else list(means)
+
+
+def motor_friction(means: Sequence[Mean]) -> MotorFriction | None:
+    """None with fewer than four plateaus or a single speed: drag and Coulomb friction are then one number.
+
+    The straight line is fitted above SLOW where that gives one by itself and the slow plateaus contradict it.
+    """
+    rows = [m for m in unloaded(means) if np.isfinite(m.motor)]
+    if not _speeds_differ(rows):
+        return None
+    v = variances([m.motor_scatter for m in rows], [m.pieces for m in rows], [m.duration for m in rows])
+    if not np.isfinite(v).all():
+        return None
+    omega, y = np.array([m.omega for m in rows]), np.array([m.motor for m in rows])
+    both = _both_ways(rows)
+    plain, offset, doubt = _columns(omega, both), 2 if both else None, ""
+    straight, fast = random_effects(plain, y, v), np.abs(omega) >= SLOW
+    if not fast.all() and _speeds_differ([m for m, f in zip(rows, fast, strict=True) if f]):
+        line = random_effects(plain[fast], y[fast], v[fast])
+        excess = np.sign(omega) * (y - plain @ line.coefficients)
+        slow = float(np.mean(excess[~fast]))
+        u = float(np.sqrt(np.mean(v[~fast] + line.between**2) / max((~fast).sum(), 1) + line.u(1) ** 2))
+        if abs(slow) > CONTRADICTS * u:
+            fall, speed = _stribeck(plain, omega, y, v, line)
+            if fall is not None:
+                return MotorFriction(fall, 0, 1, offset, plain.shape[1], speed, both, tuple(rows))
+            straight = line
+            doubt = (
+                f"Below {SLOW * 9.55:.0f} rpm the motor's friction is {slow:+.4f} N·m off the line of the faster runs "
+                f"(1 σ {u:.4f} N·m): tau_c and the drag are those above; how it gets there takes three slow speeds."
+            )
+    return MotorFriction(straight, 0, 1, offset, None, float("nan"), both, tuple(rows), doubt)
+
+
+def load_friction(means: Sequence[Mean], ratio: float) -> LoadFriction | None:
+    """None with fewer than four plateaus or a single speed."""
+    rows = [m for m in means if m.tau_ext == 0.0 and np.isfinite(m.load)]
+    if not _speeds_differ(rows):
+        return None
+    v = variances([m.load_scatter for m in rows], [m.pieces for m in rows], [m.duration for m in rows])
+    if not np.isfinite(v).all():
+        return None
+    omega_l, y = np.array([m.omega for m in rows]) / ratio, np.array([m.load for m in rows])
+    both = _both_ways(rows)
+    solved = random_effects(_columns(omega_l, both), y, v)
+    return LoadFriction(solved, 0, 1, 2 if both else None, both, tuple(rows))
+
+
+def _columns(omega: Array, both: bool) -> Array:
+    columns = [omega, np.sign(omega)]
+    return np.column_stack([*columns, np.ones(omega.size)] if both else columns)
+
+
+def _both_ways(rows: Sequence[Mean]) -> bool:
+    return {m.way for m in rows} == {1.0, -1.0}
+
+
+def _speeds_differ(rows: Sequence[Mean]) -> bool:
+    speeds = sorted(abs(m.omega) for m in rows)
+    return len(rows) >= 4 and speeds[-1] > 2.0 * speeds[0]
+
+
+def _stribeck(plain: Array, omega: Array, y: Array, v: Array, straight: Solved) -> tuple[Solved | None, float]:
+    """The fit with a falling part, and its speed, where three slow speeds ask for it clearly."""
+    slow = np.unique(np.round(np.abs(omega[np.abs(omega) < SLOW]), 1))
+    if slow.size < 3:
+        return None, float("nan")
+    spread = v + straight.between**2
+    base = float(np.sum((y - plain @ straight.coefficients) ** 2 / spread))
+    best = base - CLEAR
+    found: tuple[Solved | None, float] = (None, float("nan"))
+    for speed in STRIBECK:
+        column = np.sign(omega) * np.exp(-((omega / speed) ** 2))
+        if np.max(np.abs(column)) < 1e-3:
+            continue
+        X = np.column_stack((plain, column))
+        solved = random_effects(X, y, v)
+        chi2 = float(np.sum((y - X @ solved.coefficients) ** 2 / spread))
+        if chi2 < best and solved.coefficients[-1] > 0.0:
+            best, found = chi2, (solved, float(speed))
+    return found

@@ -1,0 +1,106 @@
+"""Normal equations that add up: rows of several runs, each with its own noise, and what each run alone says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.identify.solve import Solved
+from rig.analysis.result import Array
+
+Complex = npt.NDArray[np.complex128]
+BAND = 2  # orders on either side whose noise is taken as the same: one run has few windows, its noise is smooth
+PASSES = 4  # solve, take the noise from what is left, solve again
+SURE = 3.0  # standard errors by which runs must disagree before intervals are widened for it
+FLOOR = 1e-12  # of the rows' own mean square: noise is never taken as less (noiseless data)
+
+
+@dataclass(frozen=True)
+class Rows:
+    """One run's equations at its orders: X (W, n, p), y (W, n), phasors; variance of W windows is `inflation` up."""
+
+    run: str
+    X: Complex
+    y: Complex
+    inflation: float
+
+
+@dataclass(frozen=True)
+class Known:
+    """Rows already reduced to normal equations, from elsewhere: a lock test, a slow run, a measured friction."""
+
+    run: str
+    H: Array  # (p, p) Σ x·xᵀ/σ²
+    g: Array  # (p,) Σ x·y/σ²
+
+
+def known(run: str, X: Array, y: Array, variance: Array | float) -> Known:
+    """Real rows X (n, p), y (n,) of the given variance."""
+    w = 1.0 / np.broadcast_to(np.asarray(variance, dtype=np.float64), y.shape)
+    return Known(run, (X * w[:, None]).T @ X, (X * w[:, None]).T @ y)
+
+
+def solve(rows: Sequence[Rows], fixed: Sequence[Known], size: int) -> Solved | None:
+    """Least squares over all rows; each run's noise from its own residuals, band by band. None without enough rows.
+
+    Runs that disagree by more than chance allows widen every interval they disagree on (Birge's ratio, per
+    coefficient): a model that lacks something is not more certain for having been asked often.
+    """
+    if not rows and not fixed:
+        return None
+    noise = [np.full(r.y.shape[1], max(float(np.mean(np.abs(r.y) ** 2)), 1e-300)) for r in rows]
+    c, parts = np.zeros(size), [*fixed]
+    H = np.zeros((size, size))
+    for _ in range(PASSES):
+        parts = [*fixed, *(_reduced(r, v) for r, v in zip(rows, noise, strict=True))]
+        H, g = sum((k.H for k in parts), np.zeros((size, size))), sum((k.g for k in parts), np.zeros(size))
+        c = _inverse(H) @ g
+        noise = [_noise(r, c, size, len(rows)) for r in rows]
+    covariance = _inverse(H)
+    birge = _disagreement(parts, c, covariance)
+    count = sum(2.0 * r.y.size / r.inflation for r in rows) + 30.0 * len(fixed)
+    scale = np.sqrt(birge)
+    widened = covariance * np.outer(scale, scale)
+    return Solved(c, widened, max(count - size, 1.0), 0.0, float(np.sqrt(np.max(birge))))
+
+
+def _inverse(H: Array) -> Array:
+    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
+    inner = np.linalg.pinv(H / np.outer(scale, scale), rcond=1e-13, hermitian=True)
+    return np.asarray(inner / np.outer(scale, scale))
+
+
+def _reduced(rows: Rows, noise: Array) -> Known:
+    """σ² = E|r|² of a phasor row is half in each of its parts."""
+    w = 2.0 / (noise * rows.inflation)
+    weighted = np.conj(rows.X) * w[None, :, None]
+    H = np.einsum("wnp,wnq->pq", weighted, rows.X, optimize=True).real
+    return Known(rows.run, H, np.einsum("wnp,wn->p", weighted, rows.y, optimize=True).real)
+
+
+def _noise(rows: Rows, c: Array, size: int, runs: int) -> Array:
+    """E|r|² of each order (n,), over the windows and the orders beside it."""
+    power = np.mean(np.abs(rows.y - rows.X @ c) ** 2, axis=0)
+    pooled = np.array([np.mean(power[max(i - BAND, 0) : i + BAND + 1]) for i in range(power.size)])
+    free = 1.0 - size * rows.inflation / max(2.0 * rows.y.size * runs, 1.0)
+    least = FLOOR * float(np.mean(np.abs(rows.y) ** 2))
+    return np.asarray(np.maximum(pooled / max(free, 0.5), max(least, 1e-300)))
+
+
+def _disagreement(parts: Sequence[Known], c: Array, covariance: Array) -> Array:
+    """(p,) factor ≥ 1 on each coefficient's variance: scatter of what the runs alone say, over what is expected."""
+    size = c.size
+    total, expected, count = np.zeros(size), np.zeros(size), np.zeros(size)
+    for part in parts:
+        pulled, own = covariance @ (part.g - part.H @ c), np.diag(covariance @ part.H @ covariance)
+        share = own / np.maximum(np.diag(covariance), 1e-300)  # of the coefficient's information that this run gave
+        counts = share > 0.02
+        total += np.where(counts, pulled**2 / np.maximum(own, 1e-300), 0.0)
+        expected += np.where(counts, np.maximum(1.0 - share, 0.0), 0.0)
+        count += counts
+    ratio = total / np.maximum(expected, 1e-300)
+    limit = 1.0 + SURE * np.sqrt(2.0 / np.maximum(expected, 1.0))
+    return np.where((count >= 3) & (ratio > limit), ratio, 1.0)

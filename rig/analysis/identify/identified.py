@@ -1,0 +1,240 @@
+"""The identified gear: parameters with intervals, what they come from, and what the campaign cannot tell apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.flexibility import declared
+from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
+from rig.analysis.identify.fit import Fits
+from rig.analysis.identify.solve import Solved
+from rig.analysis.intervals import t95
+from rig.core.errors import DataError
+from rig.model.gearfile import SIGMA, UNITS, GearFile, MeasuredSeries, Parameter
+
+AGREE = 3.0  # standard errors by which lock and turning runs may differ in stiffness
+WORTH_TELLING = 0.005  # of K: a smaller difference is within what sensors and windows distort
+BREAKAWAY = 1.0  # τ_s/τ_c assumed where nothing was seen of it: no fall of friction, so no stick-slip is predicted
+STRIBECK = 1.0  # rad/s, written beside it; without a fall it has no effect
+NEEDS = {
+    "J_l": "runs at several speeds with torque sensor and load encoder",
+    "K": "a lock run, or runs at several speeds, with torque sensor and load encoder",
+    "J_m": "runs at several speeds with the drive's torque",
+}
+
+
+@dataclass(frozen=True)
+class Identified:
+    """Parameters by name (those of the gear file and B_sum, omega_n, zeta, lag, skew), θ̃_p, and what cannot be told."""
+
+    parameters: Mapping[str, Parameter]
+    series: MeasuredSeries
+    cannot: tuple[str, ...]
+    fits: Fits
+
+    def gear_file(self, output: str, serial: str, simulated: bool, made: str) -> GearFile:
+        """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared."""
+        missing = [name for name in ("J_m", "J_l", "K") if name not in self.parameters]
+        if missing:
+            raise DataError(
+                f"{missing[0]} is neither measured here nor declared in the runs: no gear file; take "
+                f"{NEEDS[missing[0]]}"
+            )
+        kept = {name: self.parameters[name] for name in UNITS}
+        return GearFile(kept, self.series, output, serial, simulated, made, self.cannot)
+
+
+def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
+    """From the fits to parameters; what they lack is taken from the runs' `declared`, else assumed and said so."""
+    said = manifest.get("declared") or {}
+    sigma = SIGMA.get(str((manifest.get("gear") or {}).get("output", "flexspline")), 1)
+    found: dict[str, Parameter] = {"N": Parameter(fits.ratio, origin="declared")}
+    cannot: list[str] = []
+    _spring(found, cannot, fits)
+    _load(found, cannot, fits)
+    _motor(found, cannot, fits, said, sigma)
+    for name in ("J_m", "J_l", "K", "B_sp", "B_m", "B_l"):
+        if name not in found and (value := declared(said, name)) is not None:
+            found[name] = Parameter(value, origin="declared", note="not measured by these runs")
+    for name in ("B_sp", "B_m", "B_l", "B_ml", "tau_c", "F_cl"):
+        if name not in found:
+            found[name] = Parameter(0.0, origin="assumed", note="not measured by these runs, nor declared")
+    if "tau_s" not in found:
+        note = "no fall of friction with speed was seen: none assumed"
+        found["tau_s"] = Parameter(BREAKAWAY * found["tau_c"].value, origin="assumed", note=note)
+        found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
+    _mode(found)
+    cannot += _always(found)
+    return Identified(found, _series(fits, cannot), tuple(cannot), fits)
+
+
+def _measured(value: float, u: float, solved: Solved, runs: tuple[str, ...], note: str = "") -> Parameter:
+    half = t95(solved.dof) * u
+    return Parameter(float(value), (float(value - half), float(value + half)), "measured", runs, note)
+
+
+def _spring(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
+    """K, B_sp and how late the load encoder reads."""
+    spring, (at_K, at_damping, at_delay, _) = fits.spring, spring_columns(fits.terms)
+    if spring is None or spring.coefficients[at_K] <= 0.0 or not spring.u(at_K) < 0.1 * spring.coefficients[at_K]:
+        cannot.append(f"Stiffness K: nothing here shows it; it takes {NEEDS['K']}.")
+        return
+    c, K = spring.coefficients, 1.0 / spring.coefficients[at_K]
+    running = tuple(dict.fromkeys(w.run for w in fits.windows))
+    found["K"] = _stiffness(fits, K, cannot, (*fits.locked, *running))
+    if fits.windows and fits.load is not None:
+        grad = np.zeros(c.size)
+        grad[[at_damping, at_delay]] = K
+        grad[at_K] = -c[at_damping] * K * K
+        u = float(np.sqrt(grad @ spring.covariance @ grad + (K * fits.load.u(LAG)) ** 2))
+        found["B_sp"] = _measured(c[at_damping] * K, u, spring, running)
+        found["skew"] = _measured(c[at_delay] + fits.taken_off, spring.u(at_delay), spring, running)
+    else:
+        cannot.append("B_sp: only runs at several speeds show the damping of the spring.")
+
+
+def _stiffness(fits: Fits, K: float, cannot: list[str], runs: tuple[str, ...]) -> Parameter:
+    """K; where lock and turning runs contradict each other the interval spans both."""
+    at_K = spring_columns(fits.terms)[0]
+    assert fits.spring is not None
+    half = fits.spring.half(at_K) * K * K
+    low, high, note = K - half, K + half, ""
+    a, b = fits.lock_only, fits.running_only
+    if a is not None and b is not None and min(a.coefficients[at_K], b.coefficients[at_K]) > 0.0:
+        apart = abs(a.coefficients[at_K] - b.coefficients[at_K]) / float(np.hypot(a.u(at_K), b.u(at_K)))
+        at_rest, turning = 1.0 / a.coefficients[at_K], 1.0 / b.coefficients[at_K]
+        if apart > AGREE and abs(at_rest / turning - 1.0) > WORTH_TELLING:
+            low, high = min(low, at_rest, turning), max(high, at_rest, turning)
+            note = f"lock {at_rest:.0f}, turning {turning:.0f} N·m/rad: they contradict each other"
+            cannot.append(
+                f"Stiffness: the lock runs say {at_rest:.0f} N·m/rad, the turning runs {turning:.0f} N·m/rad, "
+                f"{apart:.0f} standard errors apart: the spring is no straight line (soft wind-up, hysteresis, an "
+                "error that depends on load), and K stands for both only roughly."
+            )
+    return Parameter(float(K), (float(low), float(high)), "measured", runs, note)
+
+
+def _load(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
+    """J_l, B_l, F_cl, the sensor's lag behind the load encoder."""
+    if fits.load is not None:
+        running = tuple(dict.fromkeys(w.run for w in fits.windows))
+        found["J_l"] = _measured(fits.load.coefficients[J_L], fits.load.u(J_L), fits.load, running)
+        found["lag"] = _measured(fits.load.coefficients[LAG], fits.load.u(LAG), fits.load, running)
+    else:
+        cannot.append(f"J_l: it takes {NEEDS['J_l']}.")
+    friction = fits.load_friction
+    if friction is None:
+        cannot.append("B_l and F_cl: they take the shaft torque at four plateaus of at least two speeds, unloaded.")
+        return
+    s, runs = friction.solved, tuple(dict.fromkeys(m.run for m in friction.rows))
+    found["B_l"] = _measured(s.coefficients[friction.B_l], s.u(friction.B_l), s, runs)
+    if friction.zero is None:
+        cannot.append("F_cl: only one direction was run, the zero of the torque sensor looks the same.")
+    else:
+        found["F_cl"] = _measured(s.coefficients[friction.F_cl], s.u(friction.F_cl), s, runs)
+        found["zero"] = _measured(s.coefficients[friction.zero], s.u(friction.zero), s, runs)
+
+
+def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Mapping[str, Any], sigma: int) -> None:
+    """J_m, the motor's drag as a sum, Coulomb and falling friction."""
+    friction = fits.motor_friction
+    if friction is None:
+        cannot.append("Motor friction: it takes both torques at four plateaus of at least two speeds, unloaded.")
+        return
+    s, runs = friction.solved, tuple(dict.fromkeys(m.run for m in friction.rows))
+    total, u = float(s.coefficients[friction.B]), s.u(friction.B)
+    found["B_sum"] = _measured(total, u, s, runs, "B_m + B_ml·(1 + σ/N)²")
+    B_ml = declared(said, "B_ml") or 0.0
+    share = B_ml * (1.0 + sigma / fits.ratio) ** 2
+    if share >= total:
+        B_ml, share = 0.0, 0.0
+    found["B_ml"] = Parameter(B_ml, origin="declared" if B_ml else "assumed", note="cannot be told from B_m")
+    found["B_m"] = _measured(total - share, u, s, runs, "the measured sum less the share of B_ml")
+    found["tau_c"] = _measured(s.coefficients[friction.tau_c], s.u(friction.tau_c), s, runs)
+    if not friction.both_ways:
+        cannot.append("tau_c: only one direction was run, a constant offset of the drive's torque looks the same.")
+    if friction.fall is not None:
+        top = s.coefficients[friction.tau_c] + s.coefficients[friction.fall]
+        cov = s.covariance
+        both = cov[friction.tau_c, friction.tau_c] + cov[friction.fall, friction.fall]
+        both += 2.0 * cov[friction.tau_c, friction.fall]
+        note = "extrapolated to standstill along the curve; breakaway itself may differ"
+        found["tau_s"] = _measured(top, float(np.sqrt(max(both, 0.0))), s, runs, note)
+        found["omega_s"] = Parameter(friction.omega_s, runs=runs, note="chosen from a grid, no interval")
+    elif friction.doubt:
+        cannot.append(friction.doubt)
+    if fits.motor is not None:
+        running = tuple(dict.fromkeys(w.run for w in fits.windows))
+        found["J_m"] = _measured(fits.motor.coefficients[J_M], fits.motor.u(J_M), fits.motor, running)
+    else:
+        cannot.append(f"J_m: it takes {NEEDS['J_m']}.")
+
+
+def _mode(found: dict[str, Parameter]) -> None:
+    """ω_n and ζ of the free-free mode with what their parts leave uncertain      [ghorbel2001, Eqs. 6-7]"""
+    if not {"J_m", "J_l", "K"} <= found.keys():
+        return
+
+    def mode(p: Mapping[str, float]) -> tuple[float, float]:
+        reflected = found["N"].value ** 2 * p["J_m"]
+        inertia = p["J_l"] * reflected / (p["J_l"] + reflected)
+        omega = math.sqrt(p["K"] / inertia)
+        return omega, p["B_sp"] / (2.0 * omega * inertia)
+
+    values = {name: found[name].value for name in ("J_m", "J_l", "K", "B_sp")}
+    best, variance = mode(values), [0.0, 0.0]
+    for name in values:
+        half = found[name].half
+        if math.isfinite(half):
+            up = mode({**values, name: values[name] + half})
+            variance = [v + (b - a) ** 2 for v, a, b in zip(variance, best, up, strict=True)]
+    for name, value, square in zip(("omega_n", "zeta"), best, variance, strict=True):
+        half = math.sqrt(square) if square else math.nan
+        found[name] = Parameter(value, (value - half, value + half), "measured", found["K"].runs)
+
+
+def _series(fits: Fits, cannot: list[str]) -> MeasuredSeries:
+    size, runs = 2 * fits.terms, tuple(s.run for s in fits.slow) + tuple(dict.fromkeys(w.run for w in fits.windows))
+    if fits.spring is None:
+        cannot.append("Kinematic error: no slow run and no run at speed gives it.")
+        return MeasuredSeries(fits.series, np.full((size, size), np.nan), "assumed")
+    return MeasuredSeries(fits.series, fits.spring.covariance[:size, :size], "measured", runs)
+
+
+def order_amplitudes(series: MeasuredSeries) -> list[tuple[int, float, float]]:
+    """(n, C_n, 1 σ), rad at the output."""
+    s, V, k = series.series, series.covariance, len(series.series.a)
+    out = []
+    for n in range(k):
+        size = float(np.hypot(s.a[n], s.b[n])) or 1e-300
+        g = np.array([s.a[n], s.b[n]]) / size
+        part = V[np.ix_([n, n + k], [n, n + k])]
+        out.append((n + 1, size, float(np.sqrt(max(g @ part @ g, 0.0)))))
+    return out
+
+
+def _always(found: Mapping[str, Parameter]) -> list[str]:
+    """What no such campaign can tell apart, each pair named."""
+    said = [
+        "B_m and B_ml: both drag on the motor alike; what is measured is their sum B_m + B_ml·(1 + σ/N)². "
+        "A friction run with the wave generator out gives B_m alone.",
+        "B_ml and a delay between the encoders: both add to the mean of θ̃ in proportion to the speed; neither is "
+        "taken from it.",
+        "B_l and what B_ml drags behind the torque sensor: the sensor sees only what passes through it.",
+        "K of the gear and of what lies in series (torque sensor, couplings, lock): K is of the whole path.",
+        "K, J_l, B_l, B_sp, F_cl and the gain of the torque sensor: all of them scale with it. Likewise J_m, B_m, "
+        "tau_c and the torque constant of the drive. Gains were taken as exact.",
+        "Order 1 of the wave generator and an eccentric motor encoder: re-clock the encoder to tell them apart.",
+        "a_0: the zero of the encoders is arbitrary, the constant of θ̃_p was left out.",
+    ]
+    if found["tau_s"].origin != "measured":
+        said.append(
+            "tau_s and omega_s: breakaway and the speed over which friction falls need at least three speeds below "
+            "60 rpm at which friction is seen to fall."
+        )
+    return said
