@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.angle import TURN
 from rig.analysis.result import Array
 
+Complex = npt.NDArray[np.complex128]
 BINS = 64  # pieces a turn of the wave generator: order 15 has four of them a period
-SMOOTH = 31  # orders of the wave generator on either side of which nothing but noise is left
+FINER = 4  # points a piece at which the curve of the lines is looked at: order 2 then loses 0.1 % of its peak at most
+LINE = 12.0  # times the local noise power that a bin of the spectrum must have to be a line; noise does in 1e-5 bins
+AROUND = 25  # bins on either side from which the local noise is taken: half an order of the wave generator at N = 50
 DRAWS = 400  # Monte Carlo draws: the 95 % limits then repeat to a few per cent
 
 
@@ -18,9 +22,10 @@ DRAWS = 400  # Monte Carlo draws: the 95 % limits then repeat to a few per cent
 class Accuracy:
     """θ̃ over one turn of the output, arcsec."""
 
-    value: float  # greatest less least, freed of what noise adds
+    value: float  # greatest less least of what repeats with the gear
     low: float  # 95 % interval
     high: float
+    recorded: float  # greatest less least of the curve as it is, noise included
     theta_l_deg: Array  # (B,) output angle from where the turn begins
     curve: Array  # (B,) θ̃ less its mean, mean over the turns
     levelled: Array  # (n,) θ̃ of all rows less the drift between the turns
@@ -31,21 +36,21 @@ def accuracy(theta_m: Array, error: Array, ratio: float, turns: int) -> Accuracy
     """Over `turns` whole turns of the output in one direction; `theta_m` rad and `error` arcsec, both (n,).
 
     With several turns a drift between them is taken off first (one turn cannot tell it from an error once per turn).
-    The curve's noise is what changes faster than the wave generator's orders do: from it, shifted along the turn by
-    chance, come the interval and the bias, for a greatest less least of noisy values is too large.
+    What repeats with the gear stands as lines in the curve's spectrum; the rest is noise (friction that wanders,
+    counts), which makes the greatest less least of the curve itself too large. Interval and bias: the noise beside each
+    line, drawn into it.
     """
     way = np.abs(theta_m - theta_m[0]) / (TURN * ratio)  # turns of the output
     level = _without_drift(way, error, turns)
-    bins = max(int(BINS * ratio), 16)
-    place = np.minimum(((way % 1.0) * bins).astype(np.int64), bins - 1)
-    rows = np.bincount(place, minlength=bins)
-    mean = np.bincount(place, level, bins) / np.maximum(rows, 1)
-    if (rows == 0).any():
-        here = rows > 0
-        mean = np.interp(np.arange(bins), np.flatnonzero(here), mean[here], period=bins)
-    mean -= mean.mean()
-    smooth = _below(mean, int(SMOOTH * ratio))
-    return _with_noise(mean, smooth, _noise(mean, ratio), level)
+    bins = max(int(BINS * ratio), 4 * AROUND)
+    curve = _in_bins(way % 1.0, level, bins)
+    spectrum = np.fft.rfft(curve)
+    noise = _local_noise(np.abs(spectrum) ** 2)
+    lines = np.where(np.abs(spectrum) ** 2 > LINE * noise, spectrum, 0.0)
+    lines[0] = 0.0
+    value, half = _greatest_less_least(lines, noise, bins)
+    angle = (np.arange(bins) + 0.5) / bins * 360.0
+    return Accuracy(value, max(value - half, 0.0), value + half, float(np.ptp(curve)), angle, curve, level, BINS)
 
 
 def _without_drift(way: Array, error: Array, turns: int) -> Array:
@@ -59,34 +64,35 @@ def _without_drift(way: Array, error: Array, turns: int) -> Array:
     return np.asarray(level - slope * (way - 0.5 * turns))
 
 
-def _below(curve: Array, harmonics: int) -> Array:
-    """The part of a periodic curve with at most that many periods a turn."""
-    spectrum = np.fft.rfft(curve)
-    spectrum[harmonics + 1 :] = 0.0
-    return np.asarray(np.fft.irfft(spectrum, curve.size))
+def _in_bins(place: Array, y: Array, bins: int) -> Array:
+    """Means of `y` in equal pieces of a turn, `place` in 0..1; empty ones from their neighbours; less the mean."""
+    index = np.minimum((place * bins).astype(np.int64), bins - 1)
+    rows = np.bincount(index, minlength=bins)
+    here = np.flatnonzero(rows)
+    mean = np.bincount(index, y, bins)[here] / rows[here]
+    full = np.interp(np.arange(bins), here, mean, period=bins)
+    return np.asarray(full - full.mean())
 
 
-def _noise(curve: Array, ratio: float) -> Array:
-    """What is left of `curve` without the orders a gear makes: n, n ± k/N for k ≤ 2n, and 1 to 8 per output turn."""
-    spectrum = np.fft.rfft(curve)
-    keep = np.ones(spectrum.size, dtype=bool)
-    keep[: min(9, keep.size)] = False
-    for n in range(1, 16):
-        centre, width = round(n * ratio), min(2 * n, round(0.4 * ratio))
-        keep[max(centre - width, 0) : centre + width + 1] = False
-    share = max(float(keep.mean()), 1e-3)
-    noise = np.fft.irfft(np.where(keep, spectrum, 0.0), curve.size)
-    return np.asarray(noise / np.sqrt(share))  # as strong as if the orders left out had their share of it
+def _local_noise(power: Array) -> Array:
+    """Mean noise power around each bin, from the median of its neighbours, which lines do not lift."""
+    ends = np.pad(power[1:], AROUND, mode="reflect")
+    noise = np.median(np.lib.stride_tricks.sliding_window_view(ends, 2 * AROUND + 1), axis=1) / np.log(2.0)
+    return np.concatenate(([0.0], np.maximum(noise, 1e-300)))
 
 
-def _with_noise(mean: Array, smooth: Array, noise: Array, level: Array) -> Accuracy:
+def _greatest_less_least(lines: Complex, noise: Array, bins: int) -> tuple[float, float]:
+    """Of the curve that the `lines` make, freed of bias, and half its 95 % interval, arcsec."""
+    at = np.flatnonzero(lines)
+    flat = np.sinc(at / bins)  # what averaging over a piece takes from each line
     rng = np.random.default_rng(0)  # the same run gives the same interval
-    plain = float(np.ptp(mean))
-    draws = np.array(
-        [np.ptp(smooth + rng.choice((-1.0, 1.0)) * np.roll(noise, rng.integers(noise.size))) for _ in range(DRAWS)]
-    )
-    bias = float(draws.mean()) - float(np.ptp(smooth))
-    half = 1.96 * float(draws.std())
-    value = max(plain - max(bias, 0.0), 0.0)
-    angle = (np.arange(mean.size) + 0.5) / mean.size * 360.0
-    return Accuracy(value, max(value - half, 0.0), value + half, angle, mean, level, BINS)
+
+    def size(values: Complex) -> float:
+        spectrum = np.zeros(FINER * bins // 2 + 1, dtype=np.complex128)
+        spectrum[at] = FINER * values / flat
+        return float(np.ptp(np.fft.irfft(spectrum, FINER * bins)))
+
+    plain = size(lines[at])
+    draws = rng.standard_normal((DRAWS, at.size)) + 1j * rng.standard_normal((DRAWS, at.size))
+    sizes = np.array([size(lines[at] + np.sqrt(0.5 * noise[at]) * draw) for draw in draws])
+    return max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0), 1.96 * float(sizes.std())

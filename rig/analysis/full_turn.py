@@ -53,8 +53,8 @@ def _accuracy(found: Findings, result: Accuracy, stroke: Stroke, turns: int) -> 
     how = (
         f"Greatest less least θ̃ over one turn of the output, {way} only, as makers define it, "
         + (f"of the mean of {turns} turns" if turns > 1 else "one turn")
-        + f"; means of {result.bins} pieces a turn of the wave generator; interval and upward bias by noise from the "
-        "rest that no line explains"
+        + f"; what repeats with the gear: the lines that stand out of the noise of {result.bins} pieces a turn of the "
+        f"wave generator, whose noise gives the interval (with it the curve spans {result.recorded:.4g} arcsec)"
         + ("; a steady drift between the turns is taken off." if turns > 1 else "; drift with time is in it.")
     )
     ci95 = (result.low, result.high)
