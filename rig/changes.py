@@ -10,7 +10,6 @@ from rig.instruments import Instruments
 from rig.procedures.lock_check import LockProof
 from rig.procedures.weigh import Weighing
 
-HALTED_SHARE = 0.6  # of breakaway: friction while turning is half to two thirds of it, and a halted motor must stop
 WEIGHT_SHARE = 0.05  # of the weight: masses, pulley radius, gain of the sensor
 WEIGHT_FLOOR = 0.15  # N·m: tells 0.5 N·m from nothing and from 1 N·m
 ZERO_SHARE = 0.02  # of the sensor's limit: a sensor that was tared shows less with nothing on it
@@ -41,25 +40,32 @@ def wait_for_rest(instruments: Instruments) -> None:
             )
 
 
-def refuse_unfit(change: Change, rigging: Rigging, ratio: float, breakaway: float, shaft_limit: float | None) -> None:
+def refuse_unfit(change: Change, rigging: Rigging, shaft_limit: float | None) -> None:
     """Raises NotReady for a change that no run should follow, before anybody is asked for it.
 
-    `breakaway` N·m at the motor as the proof measured it, `shaft_limit` N·m at the torque sensor.
+    `shaft_limit` N·m at the torque sensor.
     """
     match change:
         case HangWeight(tau_ext) if tau_ext and rigging.output_locked:
             raise NotReady(f"{tau_ext:+g} N·m on a locked output loads the lock pin, not the gear: free it first")
         case HangWeight(tau_ext) if shaft_limit is not None and abs(tau_ext) > shaft_limit:
             raise NotReady(f"{tau_ext:+g} N·m is beyond the torque sensor's limit of ±{shaft_limit:g} N·m")
-        case HangWeight(tau_ext) if abs(tau_ext) > (most := HALTED_SHARE * breakaway * ratio):
-            raise NotReady(
-                f"{tau_ext:+g} N·m on the output are {abs(tau_ext) / ratio:.2f} N·m at the motor, which breaks away at "
-                f"{breakaway:.2f} N·m: without torque it might not stop. At most {most:.1f} N·m are hung on this gear"
-            )
         case LockOutput() if rigging.tau_ext:
             raise NotReady(f"{rigging.tau_ext:+g} N·m hang on the output: take them off before it is locked")
         case _:
             return
+
+
+def refuse_driving(tau_ext: float, ratio: float, drag: float) -> None:
+    """Raises NotReady for a weight that would keep turning a motor whose torque was taken off while it turned.
+
+    `drag` N·m at the motor is what friction takes from it while it turns slowly, unloaded; at rest it holds more.
+    """
+    if abs(tau_ext) >= drag * ratio:
+        raise NotReady(
+            f"{tau_ext:+g} N·m on the output are {abs(tau_ext) / ratio:.2f} N·m at the motor, and friction takes "
+            f"{drag:.2f} N·m from it: halted while it turns it would not stop. Hang less than {drag * ratio:.1f} N·m"
+        )
 
 
 def band_at_rest(tau_ext: float, friction: float) -> float:

@@ -14,10 +14,10 @@ from types import TracebackType
 from typing import Any
 
 from rig.bench import Bench, ClockName
-from rig.changes import band_at_rest, judge_lock, judge_tare, judge_weight, refuse_unfit, wait_for_rest
+from rig.changes import band_at_rest, judge_lock, judge_tare, judge_weight, refuse_driving, refuse_unfit, wait_for_rest
 from rig.control.filter import SpeedFilter
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
-from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Rigging
+from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -103,10 +103,18 @@ class Session:
         """Weigh the unloaded output: the torque sensor's zero, for the weights to come. Raises NotReady."""
         if self.rigging.tau_ext:
             raise NotReady(f"{self.rigging.tau_ext:+g} N·m hang on the output: the torque sensor is tared without")
+        if self._proof is None:
+            self.prove()
         found: Weighing = self._found(Weigh())
         told = judge_tare(found, self.bench.limits.shaft_torque or math.inf)
         self._tare = found
         return told
+
+    def _tared(self) -> Weighing:
+        if self._tare is None:
+            self.tare()
+        assert self._tare is not None
+        return self._tare
 
     def change(self, change: Change) -> str:
         """Torque off, at rest, asked for, made by hand, shown by the sensors; the sentence says what they showed.
@@ -150,14 +158,12 @@ class Session:
 
     def _prepare(self, change: Change) -> None:
         """Whatever has to be known or undone before anybody touches the rig. Raises NotReady when it does not fit."""
-        limit, ratio = self.bench.limits.shaft_torque, self.bench.file.gear.N
+        refuse_unfit(change, self.rigging, self.bench.limits.shaft_torque)
         match change:
             case HangWeight(tau_ext) if tau_ext:
-                refuse_unfit(change, self.rigging, ratio, (self._proof or self.prove()).breakaway, limit)
-                if self._tare is None and not self.rigging.tau_ext:
-                    self.tare()
-            case LockOutput():
-                refuse_unfit(change, self.rigging, ratio, (self._proof or self.prove()).breakaway, limit)
+                refuse_driving(tau_ext, self.bench.file.gear.N, self._tared().drag)
+            case LockOutput() if self._proof is None:
+                self.prove()
             case FreeOutput() if abs(self._wound_up()) > LET_OUT:
                 self._found(Unwind())
 
@@ -171,8 +177,6 @@ class Session:
         """What the sensors say of a change. Raises NotReady when it is not what was asked for."""
         match change:
             case HangWeight(tau_ext):
-                if self._proof is None:
-                    self.prove()
                 if self._tare is None:  # taken off before it was known what nothing weighs
                     return self.tare()
                 zero, band = self._tare.torque, band_at_rest(tau_ext, self._tare.friction)
@@ -180,6 +184,10 @@ class Session:
             case LockOutput():
                 check = LockCheck()
                 return judge_lock(self._found(check), math.radians(check.angle_deg))
+            case Reassemble() if (
+                self.instruments.torque_sensor is not None
+            ):  # what was taken apart has a zero of its own
+                return f"{self.prove().sentence}; {self.tare()}"
             case _:  # turns, and the output follows by the ratio
                 return self.prove().sentence
 
@@ -275,8 +283,12 @@ class Session:
         conditions = {**procedure.conditions(), **self.rigging.conditions()}
         if self.note:
             conditions["note"] = self.note
+        simulated = any(identity.simulated for identity in self.identities.values())
         return {
             **manifest,
+            # the twin over a real wire is a simulation all the same
+            "backend": "sim" if simulated else manifest["backend"],
+            "transport": manifest["backend"],
             **self.facts,
             "conditions": conditions,
             "label": procedure.label or None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rig.campaign.steps import Item
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
@@ -47,10 +47,20 @@ def changes_between(now: Rigging, wanted: Rigging) -> list[Change]:
     return found
 
 
+def bare(rigging: Rigging) -> Rigging:
+    """The same assembly with nothing on it and the output free."""
+    return replace(rigging, tau_ext=0.0, output_locked=False)
+
+
 def deeds(runs: Sequence[tuple[int, Item]], now: Rigging) -> Iterator[Deed]:
-    """Everything to be done for `runs` (number in the campaign, run), in order, from the rig as it is `now`."""
+    """Everything to be done for `runs` (number in the campaign, run), in order, from the rig as it is `now`.
+
+    The rig is left bare at the end: nobody comes upon a weight or a pin he does not know of.
+    """
     for index, item in runs:
         for change in changes_between(now, item.rigging):
             yield ByHand(change)
         yield Measure(index, item)
         now = item.rigging
+    for change in changes_between(now, bare(now)):
+        yield ByHand(change)

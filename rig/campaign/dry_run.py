@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rig.campaign.changes import ByHand, Deed, Measure, deeds
@@ -11,7 +11,7 @@ from rig.campaign.planner import RPM, Campaign
 from rig.campaign.steps import Item
 from rig.campaign.swing import declared_gear, resonance_speed
 from rig.core.channels import CHANNELS
-from rig.core.operator import HangWeight, LockOutput, Rigging
+from rig.core.operator import Change, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
@@ -58,21 +58,27 @@ def rows_bytes(rows: float) -> float:
     return rows * 8 * len(CHANNELS) * SHARE
 
 
-def check_of(deed: ByHand) -> Procedure:
-    """The run that shows a change."""
-    match deed.change:
+def checks_of(change: Change) -> list[Procedure]:
+    """The runs that show a change."""
+    match change:
         case HangWeight(tau_ext):
-            return Weigh(tau_ext)
+            return [Weigh(tau_ext)]
         case LockOutput():
-            return LockCheck()
+            return [LockCheck()]
+        case Reassemble():
+            return [SignAndScale(), Weigh()]
         case _:
-            return SignAndScale()
+            return [SignAndScale()]
 
 
-def lines(campaign: Campaign) -> Iterator[str]:
-    """The table, the totals, what has to be known beforehand."""
+def lines(campaign: Campaign, runs: Sequence[int] | None = None) -> Iterator[str]:
+    """The table, the totals, what has to be known beforehand; of the runs numbered `runs` from 0, or all of them."""
     bench, plan = campaign.bench, campaign.plan.file
-    todo = list(deeds(list(enumerate(campaign.items)), Rigging()))
+    numbers = range(len(campaign.items)) if runs is None else runs
+    todo = list(deeds([(k, campaign.items[k]) for k in numbers], Rigging()))
+    if not numbers:
+        yield "every run is made: nothing is left to do"
+        return
     simulated = " (SIMULATED)" if bench.simulated else ""
     yield f"campaign {plan.name} on {bench.file.name}{simulated}: {plan.title}".rstrip(": ")
     order = f"random within a rigging, seed {campaign.seed}" if plan.order == "random" else "as written"
@@ -91,7 +97,8 @@ def lines(campaign: Campaign) -> Iterator[str]:
 def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:
     match deed:
         case ByHand(change):
-            yield f"  -   by hand: {change.words()}; then shown by {check_of(deed).title()}"
+            shown = " and ".join(check.title() for check in checks_of(change))
+            yield f"  -   by hand: {change.words()}; then shown by {shown}"
         case Measure(index, item):
             f = figures(campaign, item)
             moves = f"{f.travel / TURN:7.1f} turns {f.speed / RPM:6.1f} rpm"
@@ -104,10 +111,15 @@ def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:
 def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
     """Sums, the least margins, and what was assumed."""
     bench, limits = campaign.bench, campaign.bench.limits
-    found = [figures(campaign, item) for item in campaign.items]
+    items = [deed.item for deed in todo if isinstance(deed, Measure)]
+    found = [figures(campaign, item) for item in items]
     setting = bench.setting(lambda text: None)
     by_hand = [deed for deed in todo if isinstance(deed, ByHand)]
-    checks = [SignAndScale(), *([Weigh()] if limits.shaft_torque else []), *(check_of(deed) for deed in by_hand)]
+    checks = [
+        SignAndScale(),
+        *([Weigh()] if limits.shaft_torque else []),
+        *(check for deed in by_hand for check in checks_of(deed.change)),
+    ]
     checking = sum(check.envelope(setting).duration for check in checks)
     duration = sum(f.duration for f in found)
     hand = 0.0 if bench.simulated else CHANGE * len(by_hand)
@@ -129,9 +141,9 @@ def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
         f"predicted   the swing, from the declared gear (order 2 resonates at {at:.0f} rpm of the motor) and "
         f"{campaign.plan.file.order_2_arcmin:g} arcmin of order 2, zero to peak; damping and inertias as declared"
     )
-    heaviest = max(abs(item.rigging.tau_ext) for item in campaign.items)
+    heaviest = max(abs(item.rigging.tau_ext) for item in items)
     if heaviest:
-        loaded = [f.travel for f, item in zip(found, campaign.items, strict=True) if item.rigging.tau_ext]
+        loaded = [f.travel for f, item in zip(found, items, strict=True) if item.rigging.tau_ext]
         turns = 2 * max(loaded) / TURN / bench.file.gear.N
         yield (
             f"weights     at most {heaviest:g} N·m, {heaviest / bench.file.gear.N:.2f} N·m at the motor: refused if "

@@ -59,7 +59,7 @@ class Journal:
         self._save()
 
     def end(self, index: int, status: str, sentence: str, folder: Path | None = None) -> None:
-        """`status` done, failed, stopped or interrupted; `folder` is the run's, if it got one. All attempts are kept."""
+        """`status` done, failed, stopped or interrupted; `folder` is the run's, if it got one. Attempts are kept."""
         entry, run = self.book["runs"][index], "" if folder is None else str(folder.relative_to(self.folder))
         entry["attempts"].append({"utc": utc_now(), "status": status, "sentence": sentence, "run": run})
         entry |= {"status": status, "sentence": sentence, "run": run}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from rig.campaign.steps import Item
@@ -30,14 +30,17 @@ def shuffled(items: list[Item], seed: int) -> list[Item]:
     return found
 
 
-def with_sentinels(items: list[Item], sentinel: Item, length: Length) -> list[Item]:
+def with_sentinels(items: list[Item], sentinel: list[Item], moments: Sequence[str], length: Length) -> list[Item]:
     """The sentinel put in at its moments, in whatever assembly the rig then is."""
     places = {"start": 0, "middle": middle(items, length), "end": len(items)}
     found = list(items)
-    for moment, number in sorted(((m, places[m]) for m in sentinel.at), key=lambda pair: -pair[1]):
-        beside = items[min(number, len(items) - 1)] if moment == "start" else items[max(number - 1, 0)]
-        rigging = Rigging(0.0, False, beside.rigging.depth_mm, beside.rigging.assembly)
-        found.insert(number, replace(sentinel, rigging=rigging, note=sentinel.note or f"sentinel, {moment}"))
+    for moment in sorted(set(moments), key=lambda moment: -places[moment]):
+        number = places[moment]
+        beside = items[number if moment == "start" else number - 1].rigging
+        rigging = Rigging(0.0, False, beside.depth_mm, beside.assembly)
+        found[number:number] = [
+            replace(one, rigging=rigging, note=one.note or f"sentinel, {moment}") for one in sentinel
+        ]
     return found
 
 
@@ -52,8 +55,8 @@ def middle(items: list[Item], length: Length) -> int:
     def far(k: int) -> float:
         return abs(ends[k] - half)
 
-    inner = range(1, len(items)) if len(items) > 1 else range(len(items) + 1)
-    easy = [k for k in inner if any(_bare(item) for item in items[max(k - 1, 0) : k + 1])]
+    inner = range(1, max(len(items), 2))  # not before the first run: that is the start
+    easy = [k for k in inner if any(_bare(item) for item in items[k - 1 : k + 1])]
     near = [k for k in easy if far(k) <= half / 2]
     return min(near or list(inner), key=far)
 

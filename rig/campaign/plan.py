@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import tomlkit
 from pydantic import Field, ValidationError
 
 from rig.config import Strict, load_text, nearest, sentence
@@ -49,7 +51,7 @@ class PlanFile(Strict):
     order_2_arcmin: Annotated[float, Field(json_schema_extra={"unit": "arcmin"}, gt=0, le=60)] = (
         1.0  # arcmin, zero to peak, for predictions: twice what a catalogue's 1 arcmin peak to peak can hold
     )
-    warm_up: StepSection | None = None
+    warm_up: StepSection | None = None  # before everything else, on a bare rig
     sentinel: SentinelSection | None = None
     step: list[StepSection] = Field(min_length=1)
 
@@ -80,6 +82,13 @@ def read_plan(source: str) -> Plan:
     if path.parent == PLANS and path.stem not in known:
         raise UsageError(f"no plan called '{source}'; {nearest(source, known)}; or give the path of a .toml file")
     return parse_plan(load_text(path), str(path))
+
+
+def plan_of(procedure: str, parameters: Mapping[str, Any]) -> Plan:
+    """The plan of one step, for a sweep asked for by name."""
+    step = {"procedure": procedure, "with": dict(parameters)}
+    text = tomlkit.dumps({"schema": "hdrig.plan/1", "name": procedure, "step": [step]})
+    return parse_plan(text, procedure)
 
 
 def parse_plan(text: str, source: str) -> Plan:

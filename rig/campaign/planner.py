@@ -9,7 +9,7 @@ from pathlib import Path
 from rig.bench import Bench
 from rig.campaign.order import shuffled, with_sentinels
 from rig.campaign.plan import Plan
-from rig.campaign.steps import Item, extra_item, items_of
+from rig.campaign.steps import Item, extra_items, items_of
 from rig.campaign.swing import ARCMIN, CLEAR, declared_gear, resonance_speed, swing
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope
@@ -57,13 +57,13 @@ def planned(plan: Plan, bench: Bench, seed: int) -> Campaign:
     if plan.file.order == "random":
         items = shuffled(items, seed)
     if plan.file.sentinel:
-        sentinel = extra_item("sentinel", plan.file.sentinel, source)
-        refuse(unordered, sentinel)
-        items = with_sentinels(items, sentinel, lambda item: unordered.envelope(item).duration)
+        sentinel = extra_items("sentinel", plan.file.sentinel, source)
+        refuse(unordered, sentinel[0])
+        items = with_sentinels(items, sentinel, plan.file.sentinel.at, lambda item: unordered.envelope(item).duration)
     if plan.file.warm_up:
-        warm_up = extra_item("warm-up", plan.file.warm_up, source)
-        refuse(unordered, warm_up)
-        items = [warm_up, *items]
+        warm_up = extra_items("warm-up", plan.file.warm_up, source)
+        refuse(unordered, warm_up[0])
+        items = [*warm_up, *items]
     return Campaign(plan, bench, seed, tuple(items))
 
 
@@ -76,7 +76,10 @@ def refuse(campaign: Campaign, item: Item) -> None:
         raise NotReady(f"{item.words()}: {bench.source} has no {ROLE[missing[0]].replace('_', ' ')}, which it needs")
     if item.rigging.tau_ext and bench.file.devices.torque_sensor is None:
         raise NotReady(f"{item.words()}: {bench.source} has no torque sensor, which has to show the weight")
-    refuse_beyond_limits(bench, procedure)
+    try:
+        refuse_beyond_limits(bench, procedure)
+    except NotReady as error:
+        raise NotReady(f"{item.words()}: {error}") from None
     _refuse_resonance(campaign, item)
     limit, asked = bench.limits.shaft_torque, campaign.shaft_torque(item)
     if limit is not None and asked > limit:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
-from dataclasses import replace
 from pathlib import Path
 
-from rig.campaign.changes import changes_between
+from rig.campaign.changes import bare, changes_between
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
@@ -72,7 +71,7 @@ def _tare(session: Session) -> list[str]:
 
 def to_bare(rigging: Rigging, pending: Change | None) -> list[Change]:
     """What takes weight and pin off; of a change that was asked for and not shown nobody knows whether it was made."""
-    found = changes_between(rigging, replace(rigging, tau_ext=0.0, output_locked=False))
+    found = changes_between(rigging, bare(rigging))
     match pending:
         case HangWeight() if not rigging.tau_ext:
             return [HangWeight(0.0)]
@@ -97,6 +96,8 @@ def _runs(session: Session, campaign: Campaign, journal: Journal, desk: Desk) ->
             return exit
         if session.supervisor.state is State.FAULT:
             _clear(session, journal, desk)
+    for change in changes_between(session.rigging, bare(session.rigging)):
+        _by_hand(session, journal, desk, change)
     return worst
 
 

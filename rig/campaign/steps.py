@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from rig.campaign.plan import PlanFile, SentinelSection, StepSection
+from rig.campaign.plan import PlanFile, StepSection
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
 from rig.config import nearest
@@ -33,7 +33,6 @@ class Item:
     of: int = 1
     allow_resonance: bool = False
     note: str = ""
-    at: tuple[str, ...] = field(default=())  # moments of a sentinel
 
     def words(self) -> str:
         """How a person calls it: 'constant-torque speed_rpm=300, 2 of 2, 5 N·m'."""
@@ -80,10 +79,10 @@ def items_of(plan: PlanFile, source: str) -> list[Item]:
     return found
 
 
-def extra_item(kind: Kind, section: StepSection, source: str) -> Item:
-    """The warm-up or the sentinel. Raises UsageError."""
-    item = _item(kind, section, _required(Rigging(), section, reassemble=False), f"{source}, {kind}", 1, 1)
-    return replace(item, at=tuple(section.at)) if isinstance(section, SentinelSection) else item
+def extra_items(kind: Kind, section: StepSection, source: str) -> list[Item]:
+    """The warm-up or the sentinel, as often as it is repeated in one place. Raises UsageError."""
+    where, rigging = f"{source}, {kind}", Rigging(tau_ext=section.weight)
+    return [_item(kind, section, rigging, where, k, section.repeats) for k in range(1, section.repeats + 1)]
 
 
 def _unfold(section: StepSection, where: str) -> Iterable[StepSection]:

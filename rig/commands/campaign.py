@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from rig.bench import Bench
+from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
 from rig.campaign import dry_run, summary
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
@@ -25,6 +25,7 @@ from rig.core.errors import UsageError
 from rig.interrupts import Interrupts
 from rig.session import Session, Watch, operator
 
+DEFAULT = "twin"
 SEEDS = 2**31  # of the order, drawn when none is given
 
 
@@ -43,30 +44,58 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Plan, then dry run, or everything that is still to be made."""
-    if args.skip and not args.resume:
+    if args.resume:
+        return _resume(args)
+    if args.skip:
         raise UsageError("--skip goes with --resume: leave the step out of the plan instead")
-    journal = read_journal(args.resume) if args.resume else None
-    overrides = _overrides(args, journal)
-    campaign = _campaign(args, journal, overrides)
+    if args.plan is None:
+        raise UsageError("name a plan, or a campaign to go on with by --resume FOLDER")
+    return begin(read_plan(args.plan), args)
+
+
+def begin(plan: Plan, args: argparse.Namespace) -> int:
+    """A new campaign, or what it would do; `args` are those of `bench_arguments`, and dry_run."""
+    overrides = _overrides(args)
+    bench = read_bench(args.bench or DEFAULT, overrides)
+    campaign = planned(plan, bench, secrets.randbelow(SEEDS) if args.seed is None else args.seed)
     if args.dry_run:
         print("\n".join(dry_run.lines(campaign)))
         return 0
-    clock = args.clock or (journal.book["clock"] if journal else "virtual" if campaign.bench.simulated else "wall")
-    if journal is None:
-        journal = new_journal(args.out, campaign, clock, overrides)
-    else:
-        _resume(journal, campaign, args.skip)
-    return make(campaign, journal, clock, args.note)
+    clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
+    return make(campaign, new_journal(args.out, campaign, clock, overrides), clock, args.note)
 
 
-def make(campaign: Campaign, journal: Journal, clock: str, note: str) -> int:
+def _resume(args: argparse.Namespace) -> int:
+    """Go on with plan, bench, seed and clock it began with; what is named again has to be the same."""
+    journal = read_journal(args.resume)
+    book = journal.book
+    began = Path(book["plan"]["source"])
+    plan = read_plan(args.plan or str(began if began.exists() else journal.folder / "plan.toml"))
+    overrides = _overrides(args) if args.set or args.seed is not None else list(book["bench"]["overrides"])
+    bench = read_bench(args.bench or book["bench"]["source"], overrides)
+    campaign = planned(plan, bench, book["seed"] if args.seed is None else args.seed)
+    refuse_other_campaign(journal, campaign)
+    if args.dry_run:
+        print("\n".join(dry_run.lines(campaign, journal.open_runs())))
+        return 0
+    for told in take_up(journal):
+        print(told, file=sys.stderr)
+    for number in args.skip:
+        if not 0 < number <= len(campaign.items):
+            raise UsageError(f"--skip {number}: the campaign has runs 1 to {len(campaign.items)}")
+        if number - 1 in journal.open_runs():
+            journal.skip(number - 1, operator() or "the operator")
+    return make(campaign, journal, args.clock or book["clock"], args.note)
+
+
+def make(campaign: Campaign, journal: Journal, clock: ClockName, note: str) -> int:
     """Every run that is open, then the summary on stdout; the exit code."""
     if campaign.bench.simulated:
         print(f"SIMULATED: bench '{campaign.bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     print(f"campaign folder {journal.folder}", file=sys.stderr)
     with Interrupts() as interrupts:
-        desk, hand = Terminal(campaign.bench), None if campaign.bench.simulated else Person(interrupts)
-        with Session(campaign.bench, clock, journal.folder, interrupts, note, hand) as session:  # type: ignore[arg-type]
+        desk = Terminal(campaign.bench)
+        with Session(campaign.bench, clock, journal.folder, interrupts, note, Person(interrupts)) as session:
             exit = conduct(session, campaign, journal, desk)
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
@@ -96,38 +125,12 @@ class Terminal(Desk):
         return analyse_folder(folder, folder)[0].sentence
 
 
-def _campaign(args: argparse.Namespace, journal: Journal | None, overrides: list[str]) -> Campaign:
-    """What is asked for; with --resume the plan, bench and seed it began with unless named otherwise."""
-    source = args.plan or (journal.book["plan"]["source"] if journal else None)
-    if source is None:
-        raise UsageError("name a plan, or a campaign to go on with by --resume FOLDER")
-    plan: Plan = read_plan(source)
-    bench = read_bench(args.bench or (journal.book["bench"]["source"] if journal else "twin"), overrides)
-    if journal is None:
-        return planned(plan, bench, secrets.randbelow(SEEDS) if args.seed is None else args.seed)
-    seed = journal.book["seed"] if args.seed is None else args.seed
-    campaign = planned(plan, bench, seed)
-    refuse_other_campaign(journal, campaign)
-    return campaign
-
-
-def _overrides(args: argparse.Namespace, journal: Journal | None) -> list[str]:
-    """--set and --seed; with --resume and neither, those it began with."""
-    if journal is not None and not args.set and args.seed is None:
-        return list(journal.book["bench"]["overrides"])
-    twin = args.bench is None or read_bench(args.bench).simulated
-    return [*args.set, *([f"twin.seed={args.seed}"] if args.seed is not None and twin else [])]
-
-
-def _resume(journal: Journal, campaign: Campaign, skip: list[int]) -> None:
-    for told in take_up(journal):
-        print(told, file=sys.stderr)
-    for number in skip:
-        if not 0 < number <= len(campaign.items):
-            raise UsageError(f"--skip {number}: the campaign has runs 1 to {len(campaign.items)}")
-        if number - 1 in journal.open_runs():
-            journal.skip(number - 1, operator() or "the operator")
+def _overrides(args: argparse.Namespace) -> list[str]:
+    """--set, and --seed where there is a twin to take it."""
+    twin = args.seed is not None and read_bench(args.bench or DEFAULT).simulated
+    return [*args.set, *([f"twin.seed={args.seed}"] if twin else [])]
 
 
 def _numbers(text: str) -> list[int]:
+    """For argparse, which makes a sentence of a ValueError."""
     return [int(part) for part in text.split(",")]

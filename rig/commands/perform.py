@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rig.bench import Bench, ClockName
 from rig.commands.analyse import analyse_folder, exit_of, print_result
+from rig.commands.person import Person
 from rig.commands.progress import Progress
 from rig.core.errors import Exit
 from rig.core.operator import LockOutput
@@ -27,7 +28,7 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
     """One procedure to the end, its figures on stdout; the exit code. Ctrl-C once = stop, twice = halt."""
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    with Interrupts() as interrupts, Session(bench, clock, root, interrupts, note) as session:
+    with Interrupts() as interrupts, Session(bench, clock, root, interrupts, note, Person(interrupts)) as session:
         session.check(procedure)
         if procedure.closes_loop:
             print("the motor is about to turn: sign-and-scale proof, one turn forth and back", file=sys.stderr)

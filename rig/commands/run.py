@@ -5,7 +5,18 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 
-from rig.commands.options import bench_arguments, make_procedure, open_bench, plan_lines, procedure_arguments
+from rig.campaign.plan import plan_of
+from rig.campaign.sweeps import CATALOGUE as SWEEPS
+from rig.campaign.sweeps import sweep_class
+from rig.commands.campaign import begin
+from rig.commands.options import (
+    bench_arguments,
+    make_procedure,
+    open_bench,
+    parameters_of,
+    plan_lines,
+    procedure_arguments,
+)
 from rig.commands.perform import perform
 from rig.config import nearest
 from rig.core.errors import UsageError
@@ -15,7 +26,7 @@ from rig.refusals import refuse_beyond_limits, refuse_endless
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig run`."""
-    parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join(CATALOGUE))
+    parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join([*CATALOGUE, *SWEEPS]))
     bench_arguments(parser)
     procedure_arguments(parser)
     parser.epilog = parameters_text()
@@ -25,8 +36,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def parameters_text() -> str:
     """Every procedure with its parameters and their defaults, for --help."""
     lines = ["procedures and their parameters (--with NAME=VALUE, defaults shown):"]
-    for name in CATALOGUE:
-        kind = procedure_class(name)
+    kinds = {name: procedure_class(name) for name in CATALOGUE} | {name: sweep_class(name) for name in SWEEPS}
+    for name, kind in kinds.items():
         shown = ", ".join(f"{f.name}={f.default}" for f in fields(kind))  # type: ignore[arg-type]
         summary = (kind.__doc__ or "").strip().partition("\n")[0].split("      [")[0]
         lines.append(f"  {name}\n      {summary}\n      {shown}")
@@ -36,8 +47,10 @@ def parameters_text() -> str:
 def run(args: argparse.Namespace) -> int:
     """Dry run, or proof, run, analysis, report."""
     name = args.procedure.replace("_", "-")  # manifests write it with underscores
+    if name in SWEEPS:  # many runs, with changes by hand between them
+        return begin(plan_of(name, parameters_of(args.parameters)), args)
     if name not in CATALOGUE:
-        raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, CATALOGUE)}")
+        raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, [*CATALOGUE, *SWEEPS])}")
     bench, clock = open_bench(args)
     procedure = make_procedure(procedure_class(name), args.parameters)
     refuse_endless(bench, procedure)

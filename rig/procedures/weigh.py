@@ -19,6 +19,13 @@ STANDSTILL = 0.5  # s, 500 readings at 1 kHz
 BLOCKS = 8  # stretches whose means tell how sure the mean is
 
 
+class Leg(NamedTuple):
+    """Means of BLOCKS equal parts of the middle half of one turn, N·m."""
+
+    shaft: list[float]  # torque sensor
+    motor: list[float]  # as the drive reports it
+
+
 class Weighing(NamedTuple):
     """What was measured, N·m at the torque sensor."""
 
@@ -26,6 +33,7 @@ class Weighing(NamedTuple):
     torque: float  # mean of both directions: Coulomb friction cancels, what hangs there and the zero remain
     friction: float  # half the difference of the directions: friction on the load side
     error: float  # standard error of `torque`
+    drag: float  # at the motor: half the difference of its torque, all that takes speed from a motor turning slowly
     sentence: str
 
 
@@ -84,30 +92,32 @@ class Weigh(Procedure):
             readings.append(sample.tau_l)
         return statistics.fmean(readings)
 
-    def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, list[float]]:
-        """Means [N·m] of BLOCKS equal parts of the middle half of one turn."""
+    def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
+        """One turn under the position loop, read at constant speed."""
         pid, move = Pid(setting.control, setting.period), self.turn
         sample = yield Torque(0.0)
         home, begin = sample.theta_m, sample.t
-        sums, counts = [0.0] * BLOCKS, [0] * BLOCKS
+        blocks: list[list[Sample]] = [[] for _ in range(BLOCKS)]
         while (t := sample.t - begin) < move.duration + 0.5:
             offset, omega = move.at(t)
             block = int((t / move.duration - 0.25) * 2 * BLOCKS)
             if 0 <= block < BLOCKS:
-                sums[block], counts[block] = sums[block] + sample.tau_l, counts[block] + 1
+                blocks[block].append(sample)
             theta_ref, omega_ref = home + direction * offset, direction * omega
             tau = pid.step(theta_ref, omega_ref, sample.theta_m, sample.omega_m)
             sample = yield Torque(tau, theta_ref, omega_ref)
-        return [total / n for total, n in zip(sums, counts, strict=True)]
+        shaft = [statistics.fmean(s.tau_l for s in samples) for samples in blocks]
+        return Leg(shaft, [statistics.fmean(s.tau_m for s in samples) for samples in blocks])
 
 
-def weighing(standstill: float, forward: list[float], reverse: list[float]) -> Weighing:
-    """The two directions put together; `forward` and `reverse` are means of stretches [N·m]."""
-    ahead, back = statistics.fmean(forward), statistics.fmean(reverse)
+def weighing(standstill: float, forward: Leg, reverse: Leg) -> Weighing:
+    """The two directions put together; `standstill` N·m at the torque sensor."""
+    ahead, back = statistics.fmean(forward.shaft), statistics.fmean(reverse.shaft)
+    drag = (statistics.fmean(forward.motor) - statistics.fmean(reverse.motor)) / 2
     torque, friction = (ahead + back) / 2, (ahead - back) / 2
-    error = math.sqrt((statistics.pvariance(forward) + statistics.pvariance(reverse)) / (BLOCKS - 1)) / 2
+    error = math.sqrt((statistics.pvariance(forward.shaft) + statistics.pvariance(reverse.shaft)) / (BLOCKS - 1)) / 2
     sentence = (
         f"torque sensor {standstill:+.2f} N·m at standstill, {torque:+.3f} ± {2 * error:.3f} N·m over both directions, "
-        f"load-side friction {friction:.2f} N·m"
+        f"friction {friction:.2f} N·m on the load side, {drag:.3f} N·m at the motor"
     )
-    return Weighing(standstill, torque, friction, error, sentence)
+    return Weighing(standstill, torque, friction, error, drag, sentence)

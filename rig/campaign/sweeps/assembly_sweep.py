@@ -16,7 +16,7 @@ class AssemblySweep(Sweep):
     that is larger than what fitting it again at the same depth does.
     """
 
-    depths_mm: tuple[float, ...] = field(default=(-0.2, 0.2), metadata={"signed": True})  # beside the reference, 0
+    depths_mm: tuple[float, ...] = field(default=(0.15, 0.3), metadata={"signed": True})  # deeper than the reference
     reference: int = 3  # assemblies at the reference depth
     weights: tuple[float, ...] = field(default=(0.0, 1.0, 3.0, 7.5, 15.0), metadata={"signed": True})  # N·m
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
