@@ -33,6 +33,7 @@ class Instruments:
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
+        self._mark = 0  # flags every row carries
         self._tau, self._tau_since = NAN, 0.0  # the torque sensor's last value, and when it was first that [s]
 
     @property
@@ -57,6 +58,8 @@ class Instruments:
         except HdrigError:
             self.close()
             raise
+        if any(identity.simulated for identity in found.values()):
+            self._mark = int(Flag.SIMULATED)  # the twin over a wire, whose drivers cannot know
         return found
 
     def start(self) -> None:
@@ -73,7 +76,7 @@ class Instruments:
         last = self._last
         motor = self.drive.read()
         oldest = t_m = motor[0]
-        flags = motor[4]
+        flags = motor[4] | self._mark
         if t_m == last[0]:
             flags |= Flag.STALE_M
         last[0] = t_m

@@ -19,6 +19,11 @@ class Identity(NamedTuple):
     serial: str = ""
     firmware: str = ""
 
+    @property
+    def simulated(self) -> bool:
+        """True when the device itself says that it is the twin's, over whatever wire."""
+        return "twin" in self.model.lower().split()
+
 
 class AngleReading(NamedTuple):
     """The newest angle. `t` is when it was latched, on the clock of the loop [s]."""
