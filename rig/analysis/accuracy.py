@@ -13,7 +13,8 @@ from rig.analysis.result import Array
 Complex = npt.NDArray[np.complex128]
 BINS = 64  # pieces a turn of the wave generator: order 15 has four of them a period
 FINER = 4  # points a piece at which the curve of the lines is looked at: order 2 then loses 0.1 % of its peak at most
-LINE = 12.0  # times the local noise power that a bin of the spectrum must have to be a line; noise does in 1e-5 bins
+LINE = 6.0  # times the local noise power that a bin of the spectrum must have to be a line; noise does in 1 of 400
+MARGIN = 1.5  # the noise rises towards low orders, where the lines are: its power is known to half only
 AROUND = 25  # bins on either side from which the local noise is taken: half an order of the wave generator at N = 50
 DRAWS = 400  # Monte Carlo draws: the 95 % limits then repeat to a few per cent
 
@@ -94,5 +95,5 @@ def _greatest_less_least(lines: Complex, noise: Array, bins: int) -> tuple[float
 
     plain = size(lines[at])
     draws = rng.standard_normal((DRAWS, at.size)) + 1j * rng.standard_normal((DRAWS, at.size))
-    sizes = np.array([size(lines[at] + np.sqrt(0.5 * noise[at]) * draw) for draw in draws])
+    sizes = np.array([size(lines[at] + np.sqrt(0.5 * MARGIN * noise[at]) * draw) for draw in draws])
     return max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0), 1.96 * float(sizes.std())

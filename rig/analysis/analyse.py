@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from rig.analysis.angle import TURN
+from rig.analysis.coast_down import add_coast_down
 from rig.analysis.constant_torque import add_constant_torque
 from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
@@ -55,6 +56,10 @@ def _full_turn(found: Findings, run: Source, motion: Motion, speed: Speed | None
         add_full_turn(found, run, motion)
 
 
+def _coast_down(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_coast_down(found, run, motion)
+
+
 def _speed_convergence(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
     add_speed_convergence(found, run, motion)
 
@@ -93,6 +98,7 @@ PROCEDURES: Mapping[str, Part] = {
     "constant_speed": _at_speed,
     "sentinel": _constant_torque,
     "stiffness_lock": _lock,
+    "coast_down": _coast_down,
     "standstill": _standstill,
 }
 
