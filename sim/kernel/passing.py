@@ -24,7 +24,7 @@ def longest_for_the_mode(phi: float, slow: Slow | None, spring: Spring, p: Vecto
     h = at.C_MODE / p[at.MODE_RATE]
     if slow is None:
         return h
-    h *= math.sqrt(min(1.0, p[at.K] / stiffest(phi, spring, p)))
+    h *= math.sqrt(p[at.K] / max(p[at.K], stiffest(phi, spring, p)))
     return min(h, at.C_ORDER / p[at.SHAKE_RATE]) if p[at.SHAKE_RATE] > 0.0 else h
 
 

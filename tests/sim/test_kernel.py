@@ -29,10 +29,12 @@ def test_compiled_and_plain_python_agree(plain: ModuleType, twin: TwinParameters
 def test_compiled_and_plain_python_agree_on_everything_the_papers_model_lacks(
     plain: ModuleType, twin: TwinParameters
 ) -> None:
-    agree(plain, dataclasses.replace(twin, effects=EVERYTHING), "advance_full", ticks=500)
+    agree(plain, dataclasses.replace(twin, effects=EVERYTHING), "advance_full", ticks=500, kinds=5)
 
 
-def agree(plain: ModuleType, parameters: TwinParameters, name: str = "advance", ticks: int = 1500) -> None:
+def agree(
+    plain: ModuleType, parameters: TwinParameters, name: str = "advance", ticks: int = 1500, kinds: int = 7
+) -> None:
     """So many ms of reversals, sticking on either side, the same in both."""
     vectors = {key: pack(parameters, 1.0) for key in ("compiled", "plain")}
     start, rng = Plant(parameters, theta_m=3.0).state, np.random.default_rng(7)
@@ -49,7 +51,7 @@ def agree(plain: ModuleType, parameters: TwinParameters, name: str = "advance", 
         for ours, theirs in zip(ends[0][1:], ends[1][1:], strict=True):
             np.testing.assert_allclose(ours, theirs, rtol=1e-7, atol=1e-7)
         events.add((np.sign(ends[0][1][1]), np.sign(ends[0][2][1])))
-    assert len(events) >= 5  # of nine: forward, back and at rest on either side
+    assert len(events) >= kinds  # of nine: forward, back and at rest on either side
 
 
 def test_the_error_and_its_slope_are_those_of_the_series(twin: TwinParameters) -> None:
