@@ -12,6 +12,7 @@ from rig.analysis.coast_down import add_coast_down
 from rig.analysis.constant_torque import add_constant_torque
 from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
+from rig.analysis.friction import add_friction
 from rig.analysis.full_turn import add_full_turn
 from rig.analysis.lock import add_lock
 from rig.analysis.overview import add_overview
@@ -88,6 +89,10 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
         found.sentence = f"The motor moved {360 * turns:.2f}°, less than a turn: nothing here is periodic in its angle."
 
 
+def _friction(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    add_friction(found, run, motion)
+
+
 PROCEDURES: Mapping[str, Part] = {
     "kinematic_error": _slow,
     "speed_convergence": _speed_convergence,
@@ -100,6 +105,7 @@ PROCEDURES: Mapping[str, Part] = {
     "stiffness_lock": _lock,
     "coast_down": _coast_down,
     "standstill": _standstill,
+    "friction": _friction,
 }
 
 

@@ -17,6 +17,7 @@ CATALOGUE: dict[str, str] = {
     "constant-torque": "rig.procedures.constant_torque:ConstantTorque",
     "full-turn": "rig.procedures.full_turn:FullTurn",
     "speed-convergence": "rig.procedures.speed_convergence:SpeedConvergence",
+    "friction": "rig.procedures.friction:Friction",
     "coast-down": "rig.procedures.coast_down:CoastDown",
     "sentinel": "rig.procedures.sentinel:Sentinel",
     "standstill": "rig.procedures.standstill:Standstill",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -80,6 +80,14 @@ def motor_friction(means: Sequence[Mean]) -> MotorFriction | None:
                 f"(1 σ {u:.4f} N·m): tau_c and the drag are those above; how it gets there takes three slow speeds."
             )
     return MotorFriction(straight, 0, 1, offset, None, float("nan"), both, tuple(rows), doubt)
+
+
+def total_friction(means: Sequence[Mean]) -> MotorFriction | None:
+    """The same of all that the rig rubs, by the drive's torque alone: what there is without a torque sensor.
+
+    Its slope is B_m + B_ml·(1 + σ/N)² + B_l/N², its Coulomb part τ_c + F_cl/N.
+    """
+    return motor_friction([replace(m, motor=m.total, motor_scatter=m.total_scatter) for m in means])
 
 
 def load_friction(means: Sequence[Mean], ratio: float) -> LoadFriction | None:

@@ -214,7 +214,7 @@ def order_amplitudes(series: MeasuredSeries) -> list[tuple[int, float, float]]:
         size = float(np.hypot(s.a[n], s.b[n])) or 1e-300
         g = np.array([s.a[n], s.b[n]]) / size
         part = V[np.ix_([n, n + k], [n, n + k])]
-        out.append((n + 1, size, float(np.sqrt(max(g @ part @ g, 0.0)))))
+        out.append((n + 1, size, math.sqrt(max(float(g @ part @ g), 0.0))))
     return out
 
 

@@ -31,6 +31,9 @@ class Mean:
     load: float  # mean of τ_l + τ_ext − J_l·ω̇_l, N·m
     motor_scatter: float  # N·m, 1 σ of a piece
     load_scatter: float
+    total: float  # mean of τ_m, all that the rig rubs, N·m
+    total_scatter: float
+    begin: float  # s, when the plateau began
     tau_ext: float
 
     @property
@@ -51,9 +54,11 @@ def mean_of(plateau: Plateau, series: FourierSeries, J_m: float, J_l: float) -> 
     edges = _edges(theta, t)
     motor = _pieces(tau_m - tau_l * lever - J_m * drift, edges)
     load = _pieces(tau_l + run.tau_ext - J_l * drift / run.ratio, edges)
+    total = _pieces(tau_m, edges)
     return Mean(
         run.name, plateau.omega, plateau.duration, motor.size,
-        float(np.mean(motor)), float(np.mean(load)), _scatter(motor), _scatter(load), run.tau_ext,
+        float(np.mean(motor)), float(np.mean(load)), _scatter(motor), _scatter(load),
+        float(np.mean(total)), _scatter(total), float(t[0]), run.tau_ext,
     )  # fmt: skip
 
 
