@@ -36,8 +36,17 @@ class Bus:
     meanwhile is thrown away with the socket, so that no old target reaches a drive.
     """
 
-    def __init__(self, name: str, interface: str, channel: str, clock: Clock, options: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        name: str,
+        interface: str,
+        channel: str,
+        clock: Clock,
+        options: Mapping[str, Any],
+        connect: Callable[..., Any] = can.Bus,
+    ) -> None:
         self.name = name
+        self._connect = connect
         self.clock = clock
         self.frames: dict[int, Frame] = {}
         self.listeners: dict[int, Callable[[bytes, float], None]] = {}
@@ -63,7 +72,7 @@ class Bus:
             return
         interface, channel, options = self._where
         try:
-            self._can = can.Bus(interface=interface, channel=channel, **options)
+            self._can = self._connect(interface=interface, channel=channel, **options)
         except (Exception, SystemExit) as why:  # noqa: BLE001  each backend of python-can raises what it likes
             reason = str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None

@@ -294,3 +294,4 @@ class Cia402(Drive):
             raise NotReady(f"{self.node.who} rebooted: disconnect and connect again, its configuration is lost")
         self.node.forget()
         self._trouble = ""
+        self._first_reading()  # or the last statusword, still a fault, would be read again

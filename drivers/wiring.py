@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+import can
 
 from drivers.bus import Bus
 from rig.core.clock import Clock
@@ -43,7 +45,8 @@ class Wiring:
 
     clock: Clock
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    _buses: dict[str, Bus] = field(default_factory=dict)
+    connect: Callable[..., Any] = can.Bus  # what opens a bus
+    _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
     def bus(self, place: Place) -> Bus:
         """The bus a device is on. Raises UsageError when the bench file has none such."""
@@ -56,7 +59,7 @@ class Wiring:
             options = {**section.get("options", {})}
             if section.get("bitrate"):
                 options["bitrate"] = section["bitrate"]
-            made = Bus(name, section["interface"], str(section["channel"]), self.clock, options)
+            made = Bus(name, section["interface"], str(section["channel"]), self.clock, options, self.connect)
             made.host_node = section.get("host_node", 0)
             self._buses[name] = made
         return self._buses[name]

@@ -82,9 +82,9 @@ class Bench:
         if not self.simulated and clock == "virtual":
             raise UsageError(f"{self.source}: the virtual clock exists only on the twin; use --clock wall")
         timer, world = self._clock(clock)
-        speed = SpeedFilter(self.file.loop.speed_filter)
         if world is None:
-            return self._real(timer, speed)
+            return self.wired(timer)
+        speed = SpeedFilter(self.file.loop.speed_filter)
         made = {role: self._device(role, world) for role in ROLES}
         hand = importlib.import_module("sim.operator").TwinOperator(world)
         return Instruments(made["drive"], made["load_encoder"], made["torque_sensor"], timer, speed, hand)
@@ -102,11 +102,12 @@ class Bench:
         make = self.device(role)
         return None if make is None else make(*plugged)
 
-    def _real(self, timer: Clock, speed: SpeedFilter) -> Instruments:
-        """Devices on buses and ports."""
+    def wired(self, timer: Clock, **connect: Callable[..., Any]) -> Instruments:
+        """Real devices on buses and ports; `connect` opens a bus in place of python-can."""
         from drivers.wiring import Wiring
 
-        wiring = Wiring(timer, {name: bus.model_dump() for name, bus in self.file.bus.items()})
+        speed = SpeedFilter(self.file.loop.speed_filter)
+        wiring = Wiring(timer, {name: bus.model_dump() for name, bus in self.file.bus.items()}, **connect)
         made = {role: self._device(role, wiring, self._place(role)) for role in ROLES if self._has(role)}
         return Instruments(
             made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed,

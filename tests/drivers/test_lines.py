@@ -51,7 +51,9 @@ def test_a_torque_is_a_number_with_its_unit(line: bytes, tau: float | None):
     assert decode_line(line) == tau
 
 
-@pytest.mark.parametrize("line", [b"12.3", b"12.3 lbf.in", b"", b"1021.15", b"12..3 Nm", b"nan Nm", b"1e3 Nm", b"--1 Nm"])
+@pytest.mark.parametrize(
+    "line", [b"12.3", b"12.3 lbf.in", b"", b"1021.15", b"12..3 Nm", b"nan Nm", b"1e3 Nm", b"--1 Nm"]
+)
 def test_what_has_no_unit_or_another_one_says_no_torque(line: bytes):
     assert decode_line(line) is None
 

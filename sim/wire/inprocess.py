@@ -1,0 +1,81 @@
+"""The twin on the wire in this very process: its clock is virtual, its bus is python-can's, and no byte is left out."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import Any, final
+
+import can
+
+from rig.core.clock import Clock
+from sim.wire.assembly import Assembly
+from sim.wire.frame import EXTENDED, REMOTE, Frame
+
+RELAX = 0.001  # s of wall time, for other processes to catch up
+IDENTIFIER = (1 << 29) - 1
+
+
+@final
+class VirtualWire(Clock):
+    """Time passes, on the bus and in the plant, only while somebody waits for it, or for a frame."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+
+    def now(self) -> float:
+        """s since the twin was switched on."""
+        return self.assembly.agenda.now
+
+    def wait_until(self, t: float) -> float:
+        """Let frames pass and the plant move until `t` s."""
+        self.assembly.agenda.run_until(t)
+        return self.assembly.agenda.now
+
+    def relax(self) -> bool:
+        """Time is held here; other processes get a moment."""
+        time.sleep(RELAX)
+        return True
+
+    def connect(self, **_: Any) -> InProcessBus:
+        """In place of `can.Bus`."""
+        return InProcessBus(self.assembly)
+
+
+@final
+class InProcessBus(can.BusABC):
+    """A station on the twin's bus, as python-can sees one."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        super().__init__(channel="in this process")
+        self._agenda = assembly.agenda
+        self._frames: deque[Frame] = deque()
+        self.port = assembly.bus.attach("host", lambda frame, t: self._frames.append(frame))
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Queue a frame; it passes when the bus is free."""
+        flags = msg.is_extended_id * EXTENDED | msg.is_remote_frame * REMOTE
+        self.port.send(Frame(msg.arbitration_id | flags, bytes(msg.data)))
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        """The next frame; waits in virtual time. python-can's own would wait in real time."""
+        until = self._agenda.now + (timeout or 0.0)
+        while not self._frames and self._agenda.next <= until:
+            self._agenda.run_until(self._agenda.next)
+        if not self._frames:
+            self._agenda.run_until(until)
+            return None
+        identifier, data = self._frames.popleft()
+        return can.Message(
+            timestamp=self._agenda.now,
+            arbitration_id=identifier & IDENTIFIER,
+            is_extended_id=bool(identifier & EXTENDED),
+            is_remote_frame=bool(identifier & REMOTE),
+            data=b"" if identifier & REMOTE else data,
+        )
+
+    def shutdown(self) -> None:
+        """Leave the bus. Idempotent."""
+        if not self._is_shutdown:
+            self.port.leave()
+        super().shutdown()
