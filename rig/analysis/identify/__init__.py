@@ -2,6 +2,17 @@
 
 from rig.analysis.identify.fit import Fits, fit
 from rig.analysis.identify.identified import Identified, identified, order_amplitudes
+from rig.analysis.identify.predictions import Prediction, predictions
 from rig.analysis.identify.recording import Recording, recording
 
-__all__ = ["Fits", "Identified", "Recording", "fit", "identified", "order_amplitudes", "recording"]
+__all__ = [
+    "Fits",
+    "Identified",
+    "Prediction",
+    "Recording",
+    "fit",
+    "identified",
+    "order_amplitudes",
+    "predictions",
+    "recording",
+]

@@ -1,0 +1,170 @@
+"""hdrig identify CAMPAIGN: all runs of one gear to the parameters of equations 6-8 and a gear file; moves nothing."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.commands.folders import expand, runs_argument
+from rig.core.errors import DataError, Exit, UsageError
+
+if TYPE_CHECKING:
+    from rig.analysis.identify import Identified, Prediction, Recording
+    from rig.model.gearfile import MeasuredSeries, Parameter
+    from rig.runfile.run import Run
+
+TERMS = 15  # orders of the paper's series
+MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
+ARCSEC = 206264.80624709636  # in a radian
+UNITS_BESIDE = {
+    "B_sum": "N·m·s/rad",
+    "omega_n": "rad/s",
+    "zeta": "1",
+    "skew": "s",
+    "lag": "s",
+    "zero": "N·m",
+}
+WORDS = {
+    "N": "gear ratio",
+    "J_m": "inertia, motor side",
+    "J_l": "inertia, load",
+    "K": "torsional stiffness of the whole path",
+    "B_sp": "damping of the spring",
+    "B_sum": "drag on the motor, B_m + B_ml·(1 + σ/N)²",
+    "B_m": "its part on the motor",
+    "B_ml": "its part between wave generator and output",
+    "B_l": "drag on the load",
+    "tau_c": "Coulomb friction, motor side",
+    "tau_s": "friction at standstill, motor side",
+    "omega_s": "speed over which it falls",
+    "F_cl": "Coulomb friction, load side",
+    "omega_n": "natural frequency, both ends free",
+    "zeta": "damping ratio of that mode",
+    "skew": "load encoder read late, after the motor's",
+    "lag": "torque sensor read late, after the load encoder",
+    "zero": "torque sensor with no torque",
+}
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig identify`."""
+    runs_argument(parser)
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="gear file to write, for example gear.toml")
+    parser.add_argument("--terms", type=int, default=TERMS, metavar="K", help=f"orders of θ̃_p, default {TERMS}")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Report on stdout, gear file where asked for."""
+    from rig.analysis.identify import fit, identified, predictions
+    from rig.model import gearfile
+
+    if not 1 <= args.terms <= MOST_TERMS:
+        raise UsageError(f"--terms {args.terms}: expected 1 to {MOST_TERMS} orders")
+    if args.out is not None and args.out.exists():
+        raise UsageError(f"{args.out} exists already; give the name of a new file")
+    runs, recordings = open_runs(args.runs)
+    found = identified(fit(recordings, args.terms, say), runs[0].manifest)
+    simulated = any(r.simulated for r in runs)
+    print("\n".join(report(found, simulated, len(recordings), len(runs))))
+    gear = runs[0].manifest.get("gear") or {}
+    file = found.gear_file(
+        str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
+    )
+    print("\n".join(comparison(predictions(recordings, file.gear(), args.terms))))
+    print("\n".join(f"  cannot tell: {sentence}" for sentence in found.cannot))
+    if args.out is not None:
+        gearfile.write(args.out, file)
+        print(f"gear file {args.out}")
+    return int(Exit.PASS)
+
+
+def say(text: str) -> None:
+    """Progress, on stderr."""
+    print(f"identify: {text}", file=sys.stderr)
+
+
+def open_runs(paths: list[Path]) -> tuple[list[Run], list[Recording]]:
+    """All runs of the campaign, and those that identification can read. Raises DataError when none, or two gears."""
+    from rig.analysis.identify import recording
+    from rig.runfile.run import Run
+
+    runs = []
+    for folder in expand(paths):
+        one = Run.open(folder)
+        if one.manifest.get("status") in ("completed", "imported", None) and one.procedure != "other":
+            runs.append(one)
+    if not runs:
+        raise DataError("no completed run of an experiment among these folders: nothing to identify from")
+    for what, values in (
+        ("gear ratios", {r.ratio for r in runs}),
+        ("gears", {(r.manifest.get("gear") or {}).get("serial") for r in runs}),
+        ("assemblies", {r.conditions.get("assembly", 1) for r in runs}),
+    ):
+        if len(values) > 1:
+            words = ", ".join(map(str, sorted(map(str, values))))
+            raise DataError(f"these runs are of {len(values)} {what} ({words}): identify one at a time")
+    found = [r for one in runs if (r := recording(one)) is not None]
+    if not found:
+        raise DataError("no run here has time and both angles: nothing to identify from")
+    return runs, found
+
+
+def report(found: Identified, simulated: bool, used: int, of: int) -> list[str]:
+    """Parameters with 95 % intervals and origin, and the orders of θ̃_p."""
+    from rig.model.gearfile import UNITS
+
+    lines = [f"{'SIMULATED ' if simulated else ''}identified from {used} of {of} runs; ± is the 95 % interval"]
+    units, shown = UNITS | UNITS_BESIDE, [name for name in WORDS if name in found.parameters]
+    lines += [parameter_line(name, found.parameters[name], units[name]) for name in shown]
+    return [*lines, *series_lines(found.series)]
+
+
+def parameter_line(name: str, p: Parameter, unit: str) -> str:
+    """One parameter for people."""
+    from rig.report.numbers import estimate
+
+    value = estimate(p.value, p.interval, unit)
+    origin = p.origin if p.origin != "measured" else f"measured, {len(p.runs)} runs" if p.runs else "measured"
+    note = f"; {p.note}" if p.note else ""
+    return f"  {name:8s} {value:36s} {WORDS[name]} ({origin}{note})"
+
+
+def series_lines(series: MeasuredSeries) -> list[str]:
+    """C_n and ψ_n of the orders that stand out."""
+    from rig.analysis.identify import order_amplitudes
+    from rig.report.numbers import quantity
+
+    lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]
+    for n, size, u in order_amplitudes(series):
+        small = "" if size > 2.45 * u else "  (not told from zero)"
+        phase = float(series.series.phase[n - 1]) * 180.0 / 3.141592653589793
+        lines.append(
+            f"    C_{n:<3d} {quantity(size * ARCSEC, 1.96 * u * ARCSEC, 'arcsec'):28s} at {phase:+7.1f}°{small}"
+        )
+    return lines
+
+
+def comparison(rows: list[Prediction]) -> list[str]:
+    """Recorded against predicted at every speed."""
+    from rig.report.numbers import estimate
+
+    if not rows:
+        return []
+    lines = ["  θ̃ at speed, peak to peak, arcsec:      measured               predicted   pure θ̃_p   rms between"]
+    for p in rows:
+        measured = estimate(p.measured, p.interval)
+        lines.append(
+            f"    {p.run:28.28s} {p.speed_rpm:+7.1f} rpm {measured:>18s} {p.predicted:9.1f} {p.pure:9.1f} {p.rms:9.2f}"
+        )
+    return lines
+
+
+def made_with(runs: list[Run]) -> str:
+    """When and with what."""
+    from rig.software import software
+
+    said, started = software(), sorted(str(r.manifest.get("started_utc") or "") for r in runs)
+    days = f"{started[0][:10]} to {started[-1][:10]}"
+    return f"hdrig {said.get('version')} {said.get('commit') or ''}, runs of {days}"
