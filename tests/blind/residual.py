@@ -1,8 +1,8 @@
 """What the baseline model leaves over, by a fit of this test's own: to size effects and to feed the peers.
 
-Three channels: angle (theta_l), load torque (tau_l), motor torque (tau_m). Each run keeps its own zero. The model is the
-paper's: 15 orders, constant stiffness, viscous damping, constant friction. `reversal` is a fourth channel for effects that
-live where the motor turns back: the motor torque there, compared in time, for those runs follow a reference in time.
+Three channels: angle (theta_l), load torque (tau_l), motor torque (tau_m). The torque sensor's zero is free in every run,
+the others are one for the campaign. The model is the paper's: 15 orders, constant stiffness, viscous damping, constant
+friction.
 """
 
 from __future__ import annotations
@@ -15,27 +15,30 @@ from scipy.signal import savgol_filter
 from tests.blind.campaign import Taken
 from tests.blind.rig import HARMONICS
 
-WINDOW = 11  # rows of the local cubic that smooths and differentiates every column alike
+LIGHT = 7  # rows of the local parabola that smooths every column of the angle channel alike
+HEAVY = 21  # rows of the local cubic for the torque channels, whose accelerations come from counts
 AT_REST = 0.3  # rad/s at the motor: slower is reversal or sticking, left out of the torque channels
 AROUND = 0.25  # s around a reversal
+EDGE = HEAVY  # rows left out at both ends
 CHANNELS = ("theta_l", "tau_l", "tau_m")
 
 
 @dataclass(frozen=True)
 class Smooth:
-    """One run, smoothed alike in every column: angles rad, torques N·m, derivatives by s, rows in order of time."""
+    """One run; angles rad, torques N·m, derivatives by s. `light_…` are for the angle channel, the rest for torques."""
 
     name: str
     run: Taken
-    t: np.ndarray
+    light_theta_m: np.ndarray
+    light_theta_l: np.ndarray
+    light_torque: np.ndarray
+    light_dtorque: np.ndarray
     theta_m: np.ndarray
     w: np.ndarray
     dw: np.ndarray
-    theta_l: np.ndarray
     wl: np.ndarray
     dwl: np.ndarray
     torque: np.ndarray
-    dtorque: np.ndarray
     tau_m: np.ndarray
     moving: np.ndarray
 
@@ -43,16 +46,18 @@ class Smooth:
 def smooth(run: Taken) -> Smooth:
     c, dt = run.columns, run.plan.dt
 
-    def local(x: np.ndarray, order: int = 0) -> np.ndarray:
-        return np.asarray(savgol_filter(x, WINDOW, 3, deriv=order, delta=dt))[WINDOW:-WINDOW]
+    def light(name: str, order: int = 0) -> np.ndarray:
+        return np.asarray(savgol_filter(c[name], LIGHT, 2, deriv=order, delta=dt))[EDGE:-EDGE]
 
-    w = local(c["theta_m"], 1)
-    moving = np.abs(w) > AT_REST
-    reach = round(AROUND / dt)
-    turning = np.convolve(~moving, np.ones(2 * reach + 1), "same") > 0.5
+    def heavy(name: str, order: int = 0) -> np.ndarray:
+        return np.asarray(savgol_filter(c[name], HEAVY, 3, deriv=order, delta=dt))[EDGE:-EDGE]
+
+    w = heavy("theta_m", 1)
+    turning = np.convolve(np.abs(w) < AT_REST, np.ones(2 * round(AROUND / dt) + 1), "same") > 0.5
     return Smooth(
-        run.plan.name, run, c["t"][WINDOW:-WINDOW], local(c["theta_m"]), w, local(c["theta_m"], 2), local(c["theta_l"]),
-        local(c["theta_l"], 1), local(c["theta_l"], 2), local(c["tau_l"]), local(c["tau_l"], 1), local(c["tau_m"]), ~turning,
+        run.plan.name, run, light("theta_m"), light("theta_l"), light("tau_l"), light("tau_l", 1),
+        heavy("theta_m"), w, heavy("theta_m", 2), heavy("theta_l", 1), heavy("theta_l", 2),
+        heavy("tau_l"), heavy("tau_m"), ~turning,
     )  # fmt: skip
 
 
@@ -68,13 +73,17 @@ def series_slope(angle: np.ndarray) -> np.ndarray:
 
 
 def fit(columns: list[np.ndarray], values: list[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Least squares over runs with a zero of its own per run; returns coefficients and residuals per run."""
-    centred = [(x - x.mean(axis=0), y - y.mean()) for x, y in zip(columns, values, strict=True)]
-    scale = np.sqrt(sum(np.sum(x**2, axis=0) for x, _ in centred)) + 1e-30
-    gram = sum((x / scale).T @ (x / scale) for x, _ in centred)
-    right = sum((x / scale).T @ y for x, y in centred)
-    beta = np.linalg.lstsq(gram, right, rcond=1e-10)[0] / scale
-    return beta, [y - x @ beta for x, y in centred]
+    """Least squares over all runs; returns coefficients and residuals per run."""
+    scale = np.sqrt(sum(np.sum(x**2, axis=0) for x in columns)) + 1e-30
+    gram = sum((x / scale).T @ (x / scale) for x in columns)
+    right = sum((x / scale).T @ y for x, y in zip(columns, values, strict=True))
+    beta = np.linalg.lstsq(gram, right, rcond=1e-12)[0] / scale
+    return beta, [y - x @ beta for x, y in zip(columns, values, strict=True)]
+
+
+def centred(x: np.ndarray) -> np.ndarray:
+    """A run with a zero of its own."""
+    return x - x.mean(axis=0) if len(x) else x
 
 
 @dataclass(frozen=True)
@@ -90,15 +99,19 @@ Residuals = dict[str, dict[str, np.ndarray]]
 
 
 def angle_columns(s: Smooth) -> np.ndarray:
-    return np.hstack([-series(s.theta_m), -s.torque[:, None], s.dtorque[:, None]])
+    return np.column_stack([-series(s.light_theta_m), -s.light_torque, s.light_dtorque, np.ones(len(s.w))])
+
+
+def angle_value(s: Smooth, ratio: float) -> np.ndarray:
+    return s.light_theta_l - s.light_theta_m / ratio
 
 
 def load_columns(s: Smooth) -> np.ndarray:
-    return np.column_stack([s.dwl, s.wl, np.sign(s.wl)])[s.moving]
+    return centred(np.column_stack([s.dwl, s.wl, np.sign(s.w)])[s.moving])
 
 
 def motor_columns(s: Smooth) -> np.ndarray:
-    return np.column_stack([s.dw, s.w, np.sign(s.w)])[s.moving]
+    return np.column_stack([s.dw, s.w, np.sign(s.w), np.ones(len(s.w))])[s.moving]
 
 
 def motor_value(s: Smooth, p: np.ndarray, ratio: float) -> np.ndarray:
@@ -106,12 +119,21 @@ def motor_value(s: Smooth, p: np.ndarray, ratio: float) -> np.ndarray:
     return (s.tau_m - s.torque * (1 / ratio - series_slope(s.theta_m) @ p))[s.moving]
 
 
+def usable(runs: list[Taken]) -> list[Smooth]:
+    return [smooth(run) for run in runs if run.plan.procedure != "standstill"]
+
+
+def turning_runs(done: list[Smooth]) -> list[Smooth]:
+    """Runs with a free output in which the motor turned for a second at least: the torque channels."""
+    return [s for s in done if not s.run.plan.locked and np.sum(s.moving) * s.run.plan.dt > 1.0]
+
+
 def residuals(runs: list[Taken], ratio: float = 50.0) -> tuple[Residuals, Baseline]:
     """Residual per channel and run name; the torque channels hold the rows in which the motor turns."""
-    done = [smooth(run) for run in runs if run.plan.procedure != "standstill"]
-    beta_a, left_a = fit([angle_columns(s) for s in done], [s.theta_l - s.theta_m / ratio for s in done])
-    free = [s for s in done if not s.run.plan.locked]
-    beta_l, left_l = fit([load_columns(s) for s in free], [s.torque[s.moving] for s in free])
+    done = usable(runs)
+    beta_a, left_a = fit([angle_columns(s) for s in done], [angle_value(s, ratio) for s in done])
+    free = turning_runs(done)
+    beta_l, left_l = fit([load_columns(s) for s in free], [centred(s.torque[s.moving]) for s in free])
     p = beta_a[: 2 * HARMONICS]
     beta_m, left_m = fit([motor_columns(s) for s in free], [motor_value(s, p, ratio) for s in free])
     out: Residuals = {

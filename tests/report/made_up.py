@@ -98,10 +98,49 @@ def curves(seed: int = 1, revolutions: int = 28, grid: int = 512) -> dict[str, A
         "time.tau_m_max": tau_m + 0.01,
         "time.tau_l_min": tau_l - 0.08,
         "time.tau_l_max": tau_l + 0.08,
+        **free_output(theta, grid),
         "torsion.torque": cycle,
         "torsion.angle": torsion,
         "torsion.fit_torque": np.array([-15.0, 0.0, 15.0]),
         "torsion.fit_angle": np.array([-15.0, 0.0, 15.0]) / 7160 * 180 * 60 / np.pi,
+    }
+
+
+def free_output(theta: Array, grid: int) -> dict[str, Array]:
+    """Curves of runs beside the slow one: at speed, over a whole output turn, at falling speeds, coasting."""
+    n = np.arange(1.0, 16.0)
+    total, pure = 1.2 * SERIES.value(np.radians(theta)), SERIES.value(np.radians(theta))
+    around = np.linspace(0.0, 360.0, 8 * grid, endpoint=False)
+    turn = SERIES.value(np.radians(50.0 * around)) + 3.0 * np.sin(np.radians(around))
+    speed, t = np.array([4.8, 9.6, 15.0, 30.0, 60.0]), np.linspace(0.0, 0.15, 60)
+    flexible = 0.2 * SERIES.amplitude
+    coasts = np.outer(np.linspace(0.98, 1.02, 6), 500.0 * np.exp(-3.0 * t) - 350.0 * t / 0.15)
+    return {
+        "decomposition.theta_deg": theta,
+        "decomposition.total": total,
+        "decomposition.pure": pure,
+        "decomposition.flexible": total - pure,
+        "decomposition.order": n,
+        "decomposition.measured": flexible,
+        "decomposition.low": np.where(n < 13, 0.9 * flexible, 0.0),
+        "decomposition.high": 1.1 * flexible,
+        "decomposition.predicted": 1.02 * flexible,
+        "turn.theta_l_deg": around,
+        "turn.error": turn,
+        "turn.accuracy": np.array([99.1, 98.5, 99.7]),
+        "turn.order": np.array([0.02, 0.04, 1.0, 1.02, 2.0, 2.04, 4.0, 4.08]),
+        "turn.amplitude": np.array([3.0, 0.0, 4.3, 0.2, 39.6, 1.0, 9.4, 0.1]),
+        "turn.low": np.array([2.9, 0.0, 4.2, 0.1, 39.5, 0.9, 9.3, 0.0]),
+        "turn.high": np.array([3.1, 0.1, 4.4, 0.3, 39.7, 1.1, 9.5, 0.2]),
+        "convergence.speed_rpm": speed,
+        "convergence.deviation": 1.6 * (speed / 60.0) ** 2,
+        "convergence.u": np.full(5, 0.1),
+        "convergence.law_rpm": np.geomspace(3.0, 100.0, 40),
+        "convergence.law": 1.6 * (np.geomspace(3.0, 100.0, 40) / 60.0) ** 2,
+        "convergence.tolerance": np.array([2.0]),
+        "coast.t": t,
+        "coast.speed_rpm": coasts,
+        "coast.law_rpm": coasts.mean(axis=0),
     }
 
 

@@ -27,6 +27,12 @@ FAMILY = {
     "convergence": "mse.",
     "direction": "ke.",
     "torsion": "torsion.",
+    "decomposition": "decomposition.",
+    "decomposition-orders": "decomposition.",
+    "full-turn": "turn.",
+    "full-turn-lines": "turn.",
+    "speed-convergence": "convergence.",
+    "coast-down": "coast.",
     "time": "time.",
 }
 every_figure = pytest.mark.parametrize("drawing", CATALOGUE, ids=lambda d: d.name)

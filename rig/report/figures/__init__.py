@@ -10,7 +10,19 @@ import io
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from rig.report.figures import convergence, kinematic_error, orders, spectrum, split, timeline, torsion
+from rig.report.figures import (
+    coast_down,
+    convergence,
+    decomposition,
+    full_turn,
+    kinematic_error,
+    orders,
+    spectrum,
+    speed_convergence,
+    split,
+    timeline,
+    torsion,
+)
 from rig.report.figures.canvas import STYLE, Curves, Drawing, Frame
 from rig.report.figures.svg import dress
 from rig.report.palette import LIGHT
@@ -24,6 +36,12 @@ CATALOGUE: tuple[Drawing, ...] = (
     spectrum.DRAWING,
     convergence.DRAWING,
     split.DRAWING,
+    decomposition.DRAWING,
+    decomposition.ORDERS,
+    full_turn.DRAWING,
+    full_turn.LINES,
+    speed_convergence.DRAWING,
+    coast_down.DRAWING,
     torsion.DRAWING,
     timeline.DRAWING,
 )

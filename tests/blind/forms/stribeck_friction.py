@@ -25,6 +25,6 @@ def stribeck(shape: str, builder: Builder, rng: np.random.Generator, strength: f
 
 
 FORMS = tuple(
-    Form("stribeck_friction", name, partial(stribeck, name), textbook=name == "gaussian", strongest=4.0)
+    Form("stribeck_friction", name, partial(stribeck, name), textbook=name == "gaussian", strongest=1.6)
     for name in DECAY
 )
