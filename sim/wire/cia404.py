@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import final
 
+from rig.core.channels import Flag
 from sim.sensors import TwinTorqueSensor
 from sim.wire.bus import Bus
 from sim.wire.node import Node, NodeIdentity
@@ -84,12 +85,12 @@ class TorqueTransducer(Node):
         return max(-most - 1, min(most, round(value * 10.0**self.digits.number)))
 
     def _status(self) -> int:
-        tau, limit = self._tau(), self.world.parameters.sensor_range
-        if math.isnan(tau):
+        if math.isnan(self._tau()):
             return NOT_VALID
-        if abs(tau) < limit * (1.0 - 1e-6):
+        reading = self.sensor.read()
+        if not reading.flags & Flag.SATURATED_TAU:
             return 0
-        return NOT_VALID | (POSITIVE if tau > 0.0 else NEGATIVE)
+        return NOT_VALID | (POSITIVE if reading.tau > 0.0 else NEGATIVE)
 
     def _zero(self, value: float) -> None:
         self._expect(value, ZERO)

@@ -12,7 +12,7 @@ from sim.wire.frame import EXTENDED, REMOTE, Frame
 
 
 def stuffed_length(bits: str) -> int:
-    """Length of `bits` after a bit of the other level was put in behind every five equal ones, as a receiver sees it."""
+    """Length of `bits` once a bit of the other level stands behind every five equal ones."""
     done = ""
     for bit in bits:
         done += bit

@@ -116,7 +116,8 @@ def test_a_pdo_goes_on_sync_only_when_operational(rig: Host) -> None:
     rig.start(1)
     rig.send(0x080)
     (data,) = rig.hears(0x181, 0.01)
-    assert data.startswith("50 02 ") and len(data) == len("50 02 00 00")  # switch on disabled, voltage, remote
+    assert len(data) == len("50 02 00 00")
+    assert data.startswith("50 02 ")  # switch on disabled, voltage, remote
 
 
 def test_transmission_type_3_is_every_third_sync(rig: Host) -> None:

@@ -83,8 +83,8 @@ class BusFaults:
         self._ghosts.append(ghost)
         self._repeat(ghost, frame, every, count)
 
-    def babble(self, identifier: int | str = 0, every: float = 135e-6, seconds: float = 1.0) -> None:
-        """A station that never stops: by default the whole bus of 1 Mbit/s, before all others"""
+    def babble(self, identifier: int | str = 0, every: float = 50e-6, seconds: float = 1.0) -> None:
+        """A station that never stops: by default it has a frame ready whenever the bus is free, before all others"""
         self.send(identifier, "aaaaaaaaaaaaaaaa", every, max(1.0, seconds / every))
 
     def second_master(self, node: int = 1, every: float = 0.005, count: float = 200) -> None:

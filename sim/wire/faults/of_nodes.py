@@ -50,11 +50,12 @@ class NodeFaults:
     def put(self, device: str, index: int | str, value: float, sub: int = 0) -> None:
         """Another tool writes an object: scale, unit, limit, mapping; read-only ones too"""
         entry = self._entry(device, index, sub)
-        if entry.write is not None and entry.writable:
-            try:
-                entry.accept(entry.kind.pack(value))
-            except (Abort, struct.error) as abort:
-                raise UsageError(f"{device} refuses {value} in {index}:{sub}: {abort}") from None
+        try:
+            data = entry.kind.pack(value)
+            if entry.writable:
+                entry.accept(data)
+        except (Abort, struct.error) as why:
+            raise UsageError(f"{device} refuses {value:g} in {index}:{sub}: {why}") from None
         entry.value, entry.read = value, None if not entry.writable else entry.read
 
     def position(self, offset: int) -> None:

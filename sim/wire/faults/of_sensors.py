@@ -10,6 +10,9 @@ from sim.sensors import TwinLoadEncoder, TwinTorqueSensor
 from sim.wire.assembly import Assembly
 from sim.wire.faults.words import named
 
+Sensor = TwinDrive | TwinLoadEncoder | TwinTorqueSensor
+MOMENT = 1e-6  # s: a sensor is read once at any one time
+
 
 @final
 class SensorFaults:
@@ -51,9 +54,16 @@ class SensorFaults:
 
     def _put(self, device: str, fault: Fault | None) -> None:
         a = self._assembly
-        sensors: dict[str, TwinDrive | TwinLoadEncoder | TwinTorqueSensor] = {
+        sensors: dict[str, Sensor] = {
             "drive": a.drive.motor.sensors,
             "encoder": a.encoder.encoder,
             "torque": a.torque.sensor,
         }
-        named(sensors, device, "device").fault = fault
+        sensor = named(sensors, device, "device")
+        sensor.fault = fault
+        a.agenda.after(MOMENT, lambda: self._read(sensor))
+
+    def _read(self, sensor: Sensor) -> None:
+        """So that what freezes freezes now, not when a host next asks."""
+        self._assembly.world.advance_to(self._assembly.agenda.now)
+        sensor.read()
