@@ -82,15 +82,15 @@ def _figures(found: Findings, split: Decomposition, basis: str) -> None:
     theta = (np.arange(GRID) + 0.5) / GRID * 360.0
     predicted = split.predicted
     found.curve(
-        split__theta_deg=theta,
-        split__total=_wave(split.total),
-        split__pure=_wave(split.pure),
-        split__flexible=_wave(split.flexible),
-        split__order=np.arange(1.0, split.total.size + 1),
-        split__measured=np.array([row["flexible"] for row in rows], float),
-        split__low=np.array([row["flexible_lo"] for row in rows], float),
-        split__high=np.array([row["flexible_hi"] for row in rows], float),
-        split__predicted=None if predicted is None else np.abs(predicted),
+        decomposition__theta_deg=theta,
+        decomposition__total=_wave(split.total),
+        decomposition__pure=_wave(split.pure),
+        decomposition__flexible=_wave(split.flexible),
+        decomposition__order=np.arange(1.0, split.total.size + 1),
+        decomposition__measured=np.array([row["flexible"] for row in rows], float),
+        decomposition__low=np.array([row["flexible_lo"] for row in rows], float),
+        decomposition__high=np.array([row["flexible_hi"] for row in rows], float),
+        decomposition__predicted=None if predicted is None else np.abs(predicted),
     )
 
 
