@@ -102,6 +102,13 @@ def judge_weight(found: Weighing, tau_ext: float, zero: float) -> str:
     raise NotReady(f"{measured:+.2f} N·m hang on the output, {what}: it is another weight")
 
 
+def judge_free(found: LockProof) -> str:
+    """The load follows the motor. Raises NotReady when it does not."""
+    if not found.follows > FREE:
+        raise NotReady(f"the output is not free: {found.sentence}, expected at least {100 * FREE:.0f} %")
+    return f"the output is free: {found.sentence}"
+
+
 def judge_lock(found: LockProof, angle: float) -> str:
     """The pin holds the output. Raises NotReady when the load followed, or the motor hardly turned.
 

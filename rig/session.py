@@ -14,7 +14,16 @@ from types import TracebackType
 from typing import Any
 
 from rig.bench import Bench, ClockName
-from rig.changes import band_at_rest, judge_lock, judge_tare, judge_weight, refuse_driving, refuse_unfit, wait_for_rest
+from rig.changes import (
+    band_at_rest,
+    judge_free,
+    judge_lock,
+    judge_tare,
+    judge_weight,
+    refuse_driving,
+    refuse_unfit,
+    wait_for_rest,
+)
 from rig.control.filter import SpeedFilter
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble, Rigging
@@ -95,7 +104,9 @@ class Session:
 
     def prove(self) -> Proof:
         """Sign-and-scale proof, recorded as a run of its own. Raises NotReady with what was measured."""
-        proof: Proof = self._found(SignAndScale())
+        procedure = SignAndScale()
+        refuse_rigging(self.rigging, procedure)
+        proof: Proof = self._found(procedure)
         self._proof = proof
         return proof
 
@@ -188,6 +199,8 @@ class Session:
                 self.instruments.torque_sensor is not None
             ):  # what was taken apart has a zero of its own
                 return f"{self.prove().sentence}; {self.tare()}"
+            case FreeOutput():  # gently: a pin that is still in would let a whole turn wind the gear up
+                return f"{judge_free(self._found(LockCheck()))}; {self.prove().sentence}"
             case _:  # turns, and the output follows by the ratio
                 return self.prove().sentence
 
@@ -202,12 +215,12 @@ class Session:
         """Run one procedure into a folder of its own. The folder is closed, with its status, on every way out."""
         if self.unsure:
             raise NotReady(f"what the rig is like is not known: '{self.unsure}' was asked for and could not be shown")
+        refuse_rigging(self.rigging, procedure)
         return self._run(procedure, watch)
 
     def _run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
         self.folder = None
         self.check(procedure)
-        refuse_rigging(self.rigging, procedure)
         if self.interrupts.count:
             raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:

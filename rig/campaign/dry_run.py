@@ -11,7 +11,7 @@ from rig.campaign.planner import RPM, Campaign
 from rig.campaign.steps import Item
 from rig.campaign.swing import declared_gear, resonance_speed
 from rig.core.channels import CHANNELS
-from rig.core.operator import Change, HangWeight, LockOutput, Reassemble, Rigging
+from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
@@ -65,6 +65,8 @@ def checks_of(change: Change) -> list[Procedure]:
             return [Weigh(tau_ext)]
         case LockOutput():
             return [LockCheck()]
+        case FreeOutput():
+            return [LockCheck(), SignAndScale()]
         case Reassemble():
             return [SignAndScale(), Weigh()]
         case _:

@@ -1,0 +1,78 @@
+"""A plan is read strictly: what cannot be meant is one sentence that names the place."""
+
+from __future__ import annotations
+
+import pytest
+
+from rig.campaign.plan import PLANS, plan_of, read_plan
+from rig.campaign.steps import items_of
+from rig.core.errors import UsageError
+from tests.campaign.plans import HEAD, REST, plan
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (HEAD, ["'step' is missing"]),
+        (HEAD + REST + "repeat = 2\n", ["unknown key 'step.0.repeat'", "did you mean 'repeats'"]),
+        (HEAD + REST + "weight = { value = 3, unit = 'kg' }\n", ["3 kg", "expected the unit N·m"]),
+        (HEAD + REST + "repeats = 0\n", ["repeats = 0", "greater than or equal to 1"]),
+        (HEAD + "order = 'shuffled'\n" + REST, ["order = 'shuffled'", "random"]),
+        (HEAD + "[sentinel]\nat = ['noon']\n" + REST, ["noon", "start"]),
+        (HEAD.replace("small", "../up") + REST, ["name", "../up"]),
+        ("x = [", ["not valid TOML"]),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_with_key_and_value(text: str, words: list[str]) -> None:
+    with pytest.raises(UsageError) as refused:
+        plan(head=text)
+    for word in ["small.toml", *words]:
+        assert word in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        ('procedure = "standstil"', ["step 2", "no procedure called 'standstil'", "'standstill'"]),
+        ('procedure = "standstill"\nwith = { durations = 1 }', ["step 2", "standstill has no parameter", "'duration'"]),
+        ('procedure = "standstill"\nwith = { duration = "long" }', ["step 2", "duration = long", "a finite number"]),
+        ('procedure = "standstill"\nwith = { duration = -1 }', ["step 2", "expected more than 0"]),
+        ('procedure = "lock-check"\nweight = 3', ["step 2", "locked output", "+3 N·m"]),
+        ('procedure = "load-sweep"\nweight = 3', ["step 2", "load-sweep sets weight and depth itself"]),
+        ('procedure = "load-sweep"\nwith = { weights = 3 }', ["step 2", "weights = 3", "a list of numbers"]),
+        ('procedure = "load-sweep"\nwith = { weights = [1, true] }', ["step 2", "a finite number"]),
+    ],
+)
+def test_a_step_that_no_procedure_can_make_is_refused_with_its_number(step: str, words: list[str]) -> None:
+    with pytest.raises(UsageError) as refused:
+        items_of(plan(REST, f"\n[[step]]\n{step}\n").file, "small.toml")
+    for word in words:
+        assert word in str(refused.value)
+
+
+def test_a_plan_that_does_not_exist_is_refused_with_the_nearest_that_does() -> None:
+    with pytest.raises(UsageError, match="no plan called 'papers'; did you mean 'paper'"):
+        read_plan("papers")
+
+
+@pytest.mark.parametrize("path", sorted(PLANS.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_plans_that_ship_are_named_like_their_files_and_unfold(path) -> None:  # type: ignore[no-untyped-def]
+    found = read_plan(path.stem)
+    assert found.file.name == path.stem
+    assert len(items_of(found.file, path.name)) >= len(found.file.step)
+
+
+def test_a_load_sweep_makes_every_weight_twice_once_up_and_once_down() -> None:
+    items = items_of(plan_of("load-sweep", {"weights": [5, 0.5, 2]}).file, "load-sweep")
+    assert [item.rigging.tau_ext for item in items] == [0.5, 2.0, 5.0, 5.0, 2.0, 0.5]
+    assert {item.procedure.name for item in items} == {"kinematic_error"}
+
+
+def test_an_assembly_sweep_fits_the_reference_depth_anew_and_counts_assemblies() -> None:
+    items = items_of(plan_of("assembly-sweep", {"weights": [0], "depths_mm": [0.3], "reference": 2}).file, "x")
+    assert [(item.rigging.assembly, item.rigging.depth_mm) for item in items] == [(1, 0.0), (2, 0.0), (3, 0.3)]
+
+
+def test_a_step_without_a_depth_stays_in_the_assembly_of_the_step_before() -> None:
+    items = items_of(plan(REST, REST + "depth_mm = 0.1\n", REST).file, "x")
+    assert [(item.rigging.assembly, item.rigging.depth_mm) for item in items] == [(1, 0.0), (2, 0.1), (2, 0.1)]

@@ -1,0 +1,157 @@
+"""A campaign to its end, stopped, tripped, lied to and resumed, in virtual time."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rig.bench import read
+from rig.campaign import dry_run, summary
+from rig.campaign.changes import ByHand, Measure, deeds
+from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
+from rig.campaign.planner import Campaign
+from rig.campaign.resume import take_up
+from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.operator import HangWeight, LockOutput, Rigging
+from rig.runfile.process import this_process
+from rig.runfile.verify import verify
+from tests.campaign.plans import HEAD, LOADED, LOCKED, REST, campaign
+from tests.campaign.rigs import Quiet, go_on, make
+
+SMALL = (REST, LOADED, LOCKED)
+GO_ON = HEAD + 'on_failure = "continue"\n'
+
+
+def statuses(journal: Journal) -> list[str]:
+    return [entry["status"] for entry in journal.book["runs"]]
+
+
+Made = tuple[Exit, Journal, Quiet, Campaign]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    planned = campaign(*SMALL)
+    return (*make(tmp_path_factory.mktemp("runs"), planned), planned)
+
+
+@pytest.mark.slow
+def test_every_run_is_made_in_a_folder_of_its_own_with_the_conditions_it_was_planned_for(made: Made) -> None:
+    exit, journal, _, planned = made
+    assert (exit, journal.book["status"], statuses(journal)) == (Exit.PASS, "completed", ["done"] * 3)
+    for item, entry in zip(planned.items, journal.book["runs"], strict=True):
+        manifest = json.loads((journal.folder / entry["run"] / "manifest.json").read_text())
+        assert manifest["conditions"]["tau_ext"] == item.rigging.tau_ext
+        assert manifest["conditions"]["output_locked"] is item.rigging.output_locked
+        assert manifest["campaign"]["uid"] == journal.book["uid"]
+        assert [f for f in verify(journal.folder / entry["run"]) if f.level == "error"] == []
+        assert entry["figure"].startswith("figure of ")
+
+
+@pytest.mark.slow
+def test_what_is_done_is_what_the_dry_run_says(made: Made) -> None:
+    _, journal, desk, planned = made
+    todo = list(deeds(list(enumerate(planned.items)), Rigging()))
+    assert desk.begun == [deed.item for deed in todo if isinstance(deed, Measure)]
+    assert journal.made == [deed.change for deed in todo if isinstance(deed, ByHand)]
+    assert journal.rigging == Rigging()
+
+
+@pytest.mark.slow
+def test_nothing_is_made_again_in_a_campaign_that_is_complete(made: Made) -> None:
+    _, journal, _, planned = made
+    assert read_journal(journal.folder).open_runs() == []
+    assert list(dry_run.lines(planned, [])) == ["every run is made: nothing is left to do"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("stop_at", "requests", "code"), [(1, 1, Exit.STOPPED), (2, 2, Exit.HALTED)])
+def test_a_stopped_campaign_goes_on_where_it_left_off(stop_at: int, requests: int, code: Exit, tmp_path: Path) -> None:
+    planned = campaign(*SMALL)
+    exit, journal, _ = make(tmp_path, planned, stop_at=stop_at, requests=requests)
+    assert (exit, journal.book["status"]) == (code, "stopped")
+    assert statuses(journal) == ["done"] * (stop_at - 1) + ["stopped"] + ["planned"] * (3 - stop_at)
+    again = read_journal(journal.folder)
+    refuse_other_campaign(again, planned)
+    take_up(again)
+    exit, again, desk = go_on(again, planned)
+    assert (exit, again.book["status"], statuses(again)) == (Exit.PASS, "completed", ["done"] * 3)
+    assert desk.begun == list(planned.items[stop_at - 1 :])
+    attempts = again.book["runs"][stop_at - 1]["attempts"]
+    assert [attempt["status"] for attempt in attempts] == ["stopped", "done"]
+    assert (again.folder / attempts[0]["run"] / "manifest.json").exists()
+
+
+@pytest.mark.slow
+def test_a_change_that_is_not_shown_ends_the_campaign_and_is_undone_before_it_goes_on(tmp_path: Path) -> None:
+    planned = campaign(*SMALL, head=GO_ON)
+    journal = new_journal(tmp_path, planned, "virtual", [])
+    exit, journal, _ = go_on(journal, planned, instead={LockOutput(): None})
+    assert (exit, journal.book["status"]) == (Exit.NOT_READY, "failed")
+    assert "not locked" in journal.book["sentence"]
+    assert journal.pending == LockOutput()
+    assert statuses(journal) == ["done", "done", "planned"]
+    take_up(journal)
+    exit, journal, desk = go_on(journal, planned)
+    assert (exit, statuses(journal), journal.pending) == (Exit.PASS, ["done"] * 3, None)
+    assert desk.said[0] == "by hand: remove the lock pin of the output"
+
+
+@pytest.mark.slow
+def test_a_run_that_trips_is_recorded_in_words_and_ends_the_campaign(tmp_path: Path) -> None:
+    exit, journal, _ = make(tmp_path, campaign(REST, REST, REST), trip_at=2)
+    assert (exit, journal.book["status"]) == (Exit.TRIPPED, "failed")
+    assert statuses(journal) == ["done", "failed", "planned"]
+    assert "it is too hot" in journal.book["runs"][1]["sentence"]
+    assert (journal.folder / journal.book["runs"][1]["run"] / "samples.parquet").exists()
+
+
+@pytest.mark.slow
+def test_where_the_plan_says_so_a_person_clears_the_fault_and_the_campaign_goes_on(tmp_path: Path) -> None:
+    exit, journal, _ = make(tmp_path, campaign(REST, REST, REST, head=GO_ON), trip_at=2)
+    assert (exit, journal.book["status"]) == (Exit.TRIPPED, "failed")
+    assert statuses(journal) == ["done", "failed", "done"]
+    assert any(note["text"].startswith("fault cleared by hand: the drive reports") for note in journal.book["notes"])
+
+
+@pytest.mark.slow
+def test_a_skipped_run_is_not_made_and_says_who_skipped_it(tmp_path: Path) -> None:
+    planned = campaign(*SMALL)
+    _, journal, _ = make(tmp_path, planned, stop_at=1)
+    take_up(journal)
+    journal.skip(1, "maria")
+    exit, journal, _ = go_on(journal, planned)
+    assert (exit, statuses(journal)) == (Exit.PASS, ["done", "skipped", "done"])
+    assert journal.made == [LockOutput(), *journal.made[1:]]
+    assert HangWeight(2.0) not in journal.made
+    assert any("skipped by maria" in line for line in summary.lines(journal))
+
+
+@pytest.mark.slow
+def test_another_plan_another_bench_or_another_order_is_refused_with_a_sentence(tmp_path: Path) -> None:
+    _, journal, _ = make(tmp_path, campaign(REST), stop_at=1)
+    with pytest.raises(UsageError, match="the plan is not the one this campaign began with"):
+        refuse_other_campaign(journal, campaign(REST, REST))
+    with pytest.raises(UsageError, match="the bench is not the one this campaign began with"):
+        refuse_other_campaign(journal, campaign(REST, bench=read("twin", ["control.Kp=4"])))
+    journal.book["runs"][0]["parameters"] = {"duration": 0.3}
+    with pytest.raises(UsageError, match="this hdrig plans other runs"):
+        refuse_other_campaign(journal, campaign(REST))
+
+
+@pytest.mark.slow
+def test_a_campaign_that_is_being_made_is_not_taken_up_by_another_process(tmp_path: Path) -> None:
+    journal = new_journal(tmp_path, campaign(REST), "virtual", [])
+    assert journal.book["process"] == this_process()
+    with pytest.raises(NotReady, match="is being made by process"):
+        take_up(read_journal(journal.folder))
+
+
+def test_a_folder_that_is_no_campaign_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is not a campaign folder"):
+        read_journal(tmp_path)
+    (tmp_path / "campaign.json").write_text("{")
+    with pytest.raises(UsageError, match="is not JSON"):
+        read_journal(tmp_path)
