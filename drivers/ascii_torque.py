@@ -37,7 +37,7 @@ def decode_line(line: bytes) -> float | None:
 class AsciiTorque(TorqueSensor):
     """Read without waiting; its readings are as old as `delay` says when they arrive."""
 
-    name = "torque sensor"
+    name = "torque_sensor"
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.place = place

@@ -71,7 +71,8 @@ class Cia402(Drive):
     """A drive at `node` on `bus`; the numbers of its object dictionary have to agree with the bench file's."""
 
     name = "drive"
-    kind: ClassVar[str] = "can.cia402"
+    answers: ClassVar[tuple[int, ...]] = (5, 4)  # data bytes of its frames after a SYNC
+    commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.bus = wiring.bus(place)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from typing import ClassVar
 
 from drivers.node import Mapped, Node
 from drivers.wiring import Place, Wiring
@@ -27,7 +28,8 @@ def prefix_of(unit: int) -> float | None:
 class Cia404(TorqueSensor):
     """A transducer at `node` on `bus`. Without 6131h and 6132h its numbers would mean nothing: refused."""
 
-    name = "torque sensor"
+    name = "torque_sensor"
+    answers: ClassVar[tuple[int, ...]] = (4,)  # data bytes of its frame after a SYNC
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.bus = wiring.bus(place)

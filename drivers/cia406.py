@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from drivers.node import Mapped, Node
 from drivers.unwrap import Unwrapped
@@ -28,7 +29,8 @@ def decode_position(data: bytes) -> int:
 class Cia406(Encoder):
     """An encoder at `node` on `bus`; its resolution has to agree with the bench file's."""
 
-    name = "load encoder"
+    name = "load_encoder"
+    answers: ClassVar[tuple[int, ...]] = (4,)  # data bytes of its frame after a SYNC
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.bus = wiring.bus(place)

@@ -39,7 +39,7 @@ def decode_answer(line: bytes) -> tuple[str, int, int] | None:
 class Qsb(Encoder):
     """The counter is 32 bits wide and streamed whenever it changes."""
 
-    name = "load encoder"
+    name = "load_encoder"
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.place = place

@@ -114,6 +114,17 @@ class Bench:
             latch=wiring.latch, lead=self.file.loop.latch_lead,
         )  # fmt: skip
 
+    def traffic(self) -> dict[str, tuple[list[int], list[int]]]:
+        """For each bus that is used: data bytes of the frames that answer a SYNC, and of the commands, one a tick."""
+        out: dict[str, tuple[list[int], list[int]]] = {}
+        for role in ROLES:
+            section, made = getattr(self.file.devices, role), self.device(role)
+            if section is not None and section.bus is not None:
+                up, down = out.setdefault(section.bus, ([], []))
+                up += getattr(made, "answers", ())
+                down += getattr(made, "commands", ())
+        return out
+
     def _has(self, role: str) -> bool:
         return getattr(self.file.devices, role) is not None
 

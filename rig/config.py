@@ -8,6 +8,7 @@ Units are compared with the expected one, never converted.
 from __future__ import annotations
 
 import tomllib
+from datetime import date
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -91,12 +92,16 @@ class EncoderSection(Strict):
     """[load_encoder]"""
 
     counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
+    calibrated: date | None = None
+    calibration_due: date | None = None
 
 
 class TorqueSensorSection(Strict):
     """[torque_sensor]"""
 
     range: Annotated[float, quantity("N·m", **Positive)]
+    calibrated: date | None = None
+    calibration_due: date | None = None
 
 
 class LimitsSection(Strict):

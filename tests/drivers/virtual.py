@@ -24,6 +24,9 @@ class Wired(NamedTuple):
         return self.wire.assembly
 
 
+MADE: list[Wired] = []  # by the running test; closed when it ends
+
+
 def wired(*overrides: str) -> Wired:
     """Not connected yet."""
     bench = read("twin-canopen", overrides)
@@ -31,4 +34,6 @@ def wired(*overrides: str) -> Wired:
     assembly = Assembly(twin_parameters(twin), 7, Rating(twin.motor.torque_rated, 0.5), 1e6)
     wire = VirtualWire(assembly)
     wire.wait_until(0.1)  # the nodes have booted
-    return Wired(bench, wire, bench.wired(wire, connect=wire.connect))
+    made = Wired(bench, wire, bench.wired(wire, connect=wire.connect))
+    MADE.append(made)
+    return made

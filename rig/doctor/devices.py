@@ -1,0 +1,32 @@
+"""Whether the bench's devices answer, and who they say they are. Nothing is energised."""
+
+from __future__ import annotations
+
+from rig.bench import Bench
+from rig.core.errors import HdrigError
+from rig.doctor.finding import Finding, Health
+
+
+def check_devices(bench: Bench) -> list[Finding]:
+    """Connect, identify, read once, let go."""
+    instruments = bench.open("virtual" if bench.simulated else "wall")
+    try:
+        identities = instruments.connect()
+    except HdrigError as why:
+        return [Finding("devices", Health.BAD, str(why))]
+    found = [
+        Finding(name, Health.GOOD, " ".join(part for part in (who.model, who.serial, who.firmware) if part))
+        for name, who in identities.items()
+    ]
+    guarded = getattr(instruments.drive, "guarded", None)
+    instruments.close()
+    if guarded is not None:
+        found.append(_watchdog(guarded))
+    return found
+
+
+def _watchdog(guarded: str) -> Finding:
+    if guarded:
+        return Finding("drive's watchdog", Health.GOOD, f"{guarded}, set and read back")
+    told = "nothing stops the drive when this program dies: it has neither heartbeat consumer nor RPDO timeout"
+    return Finding("drive's watchdog", Health.DOUBTFUL, told)
