@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.procedures.open_loop import OpenLoop
 
@@ -27,13 +26,7 @@ class ConstantTorque(Procedure):
     torque: float = field(default=0.0, metadata={"signed": True})  # N·m, sign of the speed; 0: find it
 
     def __post_init__(self) -> None:
-        if self.speed_rpm == 0.0:
-            raise UsageError("speed_rpm = 0: expected a speed of either sign, for example 310 or -310 rpm")
-        if self.torque * self.speed_rpm < 0.0:
-            raise UsageError(
-                f"torque = {self.torque:g} N·m against speed_rpm = {self.speed_rpm:g} rpm: expected the sign of the "
-                "speed, or 0 to have it found"
-            )
+        _ = self.plan  # refuses what cannot be meant
 
     @property
     def plan(self) -> OpenLoop:

@@ -15,7 +15,7 @@ from rig.control.spin import (
     slow_down_duration,
     slow_down_travel,
 )
-from rig.core.errors import NotReady
+from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Setting, Steps
 from rig.core.sample import Sample, Torque
 
@@ -57,6 +57,15 @@ class OpenLoop:
     revolutions: int
     settle: float  # s
     torque: float  # N·m; 0: the mean of what the loop gave
+
+    def __post_init__(self) -> None:
+        if self.speed_rpm == 0.0:
+            raise UsageError("speed_rpm = 0: expected a speed of either sign, for example 310 or -310 rpm")
+        if self.torque * self.speed_rpm < 0.0:
+            raise UsageError(
+                f"torque = {self.torque:g} N·m against speed_rpm = {self.speed_rpm:g} rpm: expected the sign of the "
+                "speed, or 0 to have it found"
+            )
 
     @property
     def omega(self) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.procedures.open_loop import OpenLoop
 
@@ -14,7 +13,8 @@ from rig.procedures.open_loop import OpenLoop
 class Sentinel(Procedure):
     """A short run at constant torque whose mean speed, torque, peak to peak and order 2 are compared over a campaign.
 
-    Each sentinel finds its own torque, so that friction shows in the torque and not in the speed.
+    By itself each finds its own torque, so that friction shows in the torque; with the `torque` of the first one given,
+    it shows in the speed.
     """
 
     name: ClassVar[str] = "sentinel"
@@ -23,15 +23,15 @@ class Sentinel(Procedure):
     speed_rpm: float = field(default=310.0, metadata={"signed": True})  # of the motor
     revolutions: int = 25  # 5 s at 310 rpm, enough to tell 1 % of order 2
     settle: float = 3.0  # s of constant torque before
+    torque: float = field(default=0.0, metadata={"signed": True})  # N·m, sign of the speed; 0: find it
 
     def __post_init__(self) -> None:
-        if self.speed_rpm == 0.0:
-            raise UsageError("speed_rpm = 0: expected a speed of either sign, for example 310 rpm")
+        _ = self.plan  # refuses what cannot be meant
 
     @property
     def plan(self) -> OpenLoop:
         """The same in SI."""
-        return OpenLoop(self.speed_rpm, self.revolutions, self.settle, 0.0)
+        return OpenLoop(self.speed_rpm, self.revolutions, self.settle, self.torque)
 
     def envelope(self, setting: Setting) -> Envelope:
         """As a constant-torque run."""

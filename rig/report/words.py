@@ -106,6 +106,10 @@ ENTRIES = {  # conditions and declared values by key: name for people, unit
     "output_locked": ("Output locked", ""),
     "depth_mm": ("Assembly depth", "mm"),
     "speed_rpm": ("Motor speed", "rpm"),
+    "speeds_rpm": ("Motor speeds, rpm", ""),
+    "settle_s": ("Time to settle, left out", "s"),
+    "tolerance": ("Tolerance, share of the waveform’s rms", ""),
+    "output_turns": ("Output turns", ""),
     "J_m": ("Inertia, motor side J_m", "kg·m²"),
     "J_l": ("Inertia, load side J_l", "kg·m²"),
     "K": ("Torsional stiffness K", "N·m/rad"),
@@ -137,6 +141,15 @@ DEFINITIONS = (  # by the beginning of the estimate's name, first match
         "kinematic_error_peak_to_peak",
         "Per wave-generator turn, as in the paper. The maker’s transmission accuracy is over one output turn "
         "and is not the same.",
+    ),
+    (
+        "transmission_accuracy",
+        "As makers define it: greatest less least over one output turn in one direction. The paper’s kinematic error is "
+        "peak to peak per turn of the wave generator.",
+    ),
+    (
+        "flexible_",
+        "θ̃ at speed less the pure kinematic error of a slow run, angle on angle.",
     ),
     (
         "torsional_stiffness",
