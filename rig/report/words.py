@@ -144,8 +144,8 @@ DEFINITIONS = (  # by the beginning of the estimate's name, first match
     ),
     (
         "transmission_accuracy",
-        "As makers define it: greatest less least over one output turn in one direction. The paper’s kinematic error is "
-        "peak to peak per turn of the wave generator.",
+        "As makers define it: greatest less least over one output turn in one direction. The paper’s kinematic error "
+        "is peak to peak per turn of the wave generator.",
     ),
     (
         "flexible_",
