@@ -97,6 +97,9 @@ class ErrorLinesSection(Strict):
 class FrictionSection(Strict):
     """[twin.effects.friction]"""
 
+    presliding: Torque = 0.0
+    presliding_deg: Annotated[float, quantity("deg", **Positive)] = 0.1
+    presliding_elements: Annotated[int, quantity("1", ge=1, le=32)] = 4
     by_load: Share = 0.0
     by_angle: Share = 0.0
     by_angle_order: Order = 2.0

@@ -28,8 +28,9 @@ class TwinDrive(Drive):
         p = world.parameters
         self.world = world
         self._plant = world.plant
-        self.scale = motor_scale(p.effects.sensors)
-        self.encoder = Counter(p.motor_counts_per_turn, self.scale.shown(world.plant.motor[0]))
+        scale = motor_scale(p.effects.sensors)
+        self.encoder = Counter(p.motor_counts_per_turn, scale.shown(world.plant.motor[0]))
+        self._shown = scale.shown if scale.lines else None
         self.fault: Fault | None = None  # of its encoder
         self.deaf = False  # commands no longer arrive
         self.trouble = ""  # the drive's own fault, latched, in words
@@ -80,8 +81,8 @@ class TwinDrive(Drive):
         dt = self._latched
         theta += dt * (omega + 0.5 * dt * acceleration)
         encoder = self.encoder
-        if self.scale:
-            theta = self.scale.shown(theta)
+        if self._shown is not None:
+            theta = self._shown(theta)
         if self.fault is not None:
             theta = encoder.distorted(theta, self.fault.value)
         counts = encoder.count(theta)

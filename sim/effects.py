@@ -85,6 +85,9 @@ class ErrorLines:
 class Friction:
     """Friction of the motor side beyond Stribeck's curve."""
 
+    presliding: float = 0.0  # N·m, part of τ_c that gives way like bristles before it slides
+    presliding_deg: float = 0.1  # at the motor, where the last of them slips
+    presliding_elements: int = 4
     by_load: float = 0.0  # 1, μ: share of the transmitted torque, at the motor μ·T/N
     by_angle: float = 0.0  # 1, share that comes and goes with the wave generator's angle
     by_angle_order: float = 2.0
@@ -175,7 +178,7 @@ class Effects:
             *(s.cubic, s.T1, s.by_angle, s.gap_deg, self.hysteresis.torque),
             *(self.creep.stiffness_1, self.creep.stiffness_2, 1.0 - self.load_dependent_error.A_inf),
             *(self.assembly.depth_mm * self.assembly.error_per_mm,),
-            *(f.by_load, f.by_angle, f.quadratic_drag, f.two_thirds_drag, f.thermal_beta),
+            *(f.presliding, f.by_load, f.by_angle, f.quadratic_drag, f.two_thirds_drag, f.thermal_beta),
             *(self.motor.cogging, self.motor.ripple, self.load.unbalance, self.load.vibration),
             *(amplitude for _, amplitude, _ in lines(self.error_lines, 1.0, 1)),
         )

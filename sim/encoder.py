@@ -20,10 +20,6 @@ class Scale:
     def __init__(self, *lines: Line) -> None:
         self.lines = tuple(line for line in lines if line[1] != 0.0)
 
-    def __bool__(self) -> bool:
-        """Whether it shows anything but the true angle."""
-        return bool(self.lines)
-
     def shown(self, theta: float) -> float:
         """The angle the scale shows at the true angle `theta` rad."""
         return theta + sum(a * math.sin(n * theta - psi) for n, a, psi in self.lines)

@@ -10,7 +10,7 @@ import numpy as np
 from rig.model.gear import Gear
 from sim.effects import Effects, Stiffness
 from sim.parameters import TwinParameters
-from sim.vector import slips
+from sim.vector import bristles, slips
 
 
 def stored(gear: Gear, omega_m: float, omega_l: float, phi: float) -> float:
@@ -20,7 +20,7 @@ def stored(gear: Gear, omega_m: float, omega_l: float, phi: float) -> float:
 
 @dataclass(frozen=True)
 class Hidden:
-    """States behind the motion: how far dashpots of creep and elements of the hysteresis are wound up [rad]."""
+    """States behind the motion: dashpots of creep, elements of hysteresis, then of presliding [rad]."""
 
     creep_1: float
     creep_2: float
@@ -36,7 +36,7 @@ def potential(parameters: TwinParameters, theta_m: float, theta_l: float, phi: f
     spring = straight_lines(gear.K, s, bent) + s.cubic * bent**4 / 4
     spring += 0.5 * gear.K * s.by_angle * math.cos(angle) * bent**2
     creep = 0.5 * (c.stiffness_1 * (phi - hidden.creep_1) ** 2 + c.stiffness_2 * (phi - hidden.creep_2) ** 2)
-    k = slips(e.hysteresis)[::2]
+    k = (slips(e.hysteresis) + bristles(e.friction))[::2]
     elements = sum(0.5 * k_i * x_i**2 for k_i, x_i in zip(k, hidden.elements, strict=True))
     cogging = -m.cogging / m.cogging_order * math.sin(m.cogging_order * theta_m - math.radians(m.cogging_phase_deg))
     weight = -load.unbalance * math.cos(theta_l - math.radians(load.unbalance_phase_deg))

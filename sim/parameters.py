@@ -46,6 +46,11 @@ class TwinParameters:
             for entry in fields(part):
                 if entry.name not in ANY:
                     _check(entry.name, getattr(part, entry.name))
+        if self.effects.friction.presliding > self.gear.tau_c:
+            raise UsageError(
+                f"the twin's presliding is {self.effects.friction.presliding:g} N·m, "
+                f"expected no more than its Coulomb friction tau_c of {self.gear.tau_c:g} N·m"
+            )
         if self.gear.tau_s < self.gear.tau_c:
             raise UsageError(
                 f"the twin's breakaway torque tau_s is {self.gear.tau_s:g} N·m, "

@@ -10,7 +10,7 @@ from rig.core.errors import HdrigError
 from sim import kernel
 from sim.energy import Hidden, Ledger, potential
 from sim.parameters import TwinParameters
-from sim.vector import pack, slips
+from sim.vector import bristles, pack, slips
 
 FAILURES = {
     kernel.NOT_FINITE: "its state is no longer finite",
@@ -62,7 +62,8 @@ class Plant:
         self.parameters = parameters
         self.vector = pack(parameters, self.refine)
         self._pass = kernel.advance_full if parameters.effects.in_the_plant else kernel.advance
-        self.state = np.zeros(kernel.STATE_SIZE + len(slips(parameters.effects.hysteresis)) // 2)
+        elements = slips(parameters.effects.hysteresis) + bristles(parameters.effects.friction)
+        self.state = np.zeros(kernel.STATE_SIZE + len(elements) // 2)
 
     def rebuild(self, parameters: TwinParameters) -> None:
         """Another gear around the same motor angle, at rest; time, warmth and wander stay."""

@@ -10,7 +10,7 @@ from sim.channel import FINEST, SENSOR_SATURATED, SIMULATED, UNREAD, Counter, ne
 from sim.encoder import load_scale
 from sim.faults import Fault
 from sim.noise import normal
-from sim.torque_aside import TorqueAside
+from sim.torque_aside import torque_aside
 from sim.world import World
 
 
@@ -23,8 +23,9 @@ class TwinLoadEncoder(Encoder):
         self.world = world
         self._plant = world.plant
         p = world.parameters
-        self.scale = load_scale(p.effects.sensors)
-        self.encoder = Counter(p.load_counts_per_turn, self.scale.shown(world.plant.load[0]))
+        scale = load_scale(p.effects.sensors)
+        self.encoder = Counter(p.load_counts_per_turn, scale.shown(world.plant.load[0]))
+        self._shown = scale.shown if scale.lines else None
         self.fault: Fault | None = None
         self._latch = p.latch_l
         self._latched = p.latch_l + p.effects.sensors.load_skew  # s after the tick, in truth
@@ -52,8 +53,8 @@ class TwinLoadEncoder(Encoder):
         dt = self._latched
         theta += dt * (omega + 0.5 * dt * acceleration)
         encoder = self.encoder
-        if self.scale:
-            theta = self.scale.shown(theta)
+        if self._shown is not None:
+            theta = self._shown(theta)
         if self.fault is not None:
             theta = encoder.distorted(theta, self.fault.value)
         counts = encoder.count(theta)
@@ -80,7 +81,7 @@ class TwinTorqueSensor(TorqueSensor):
         self.fault: Fault | None = None
         self._latch = p.latch_tau
         self._latched = p.latch_tau + p.effects.sensors.torque_skew  # s after the tick, in truth
-        self._aside = TorqueAside(p.effects.sensors)
+        self._aside = torque_aside(p.effects.sensors)
         self._time_constant = 1.0 / (2.0 * math.pi * p.sensor_lowpass_hz)  # s
         self._keep = math.exp(-max(self._latched, 0.0) / self._time_constant)
         self._zero = p.sensor_zero
@@ -110,8 +111,8 @@ class TwinTorqueSensor(TorqueSensor):
         _, tau_l, rate, filtered = self._plant.shaft
         dt, lag = self._latched, rate * self._time_constant
         tau = tau_l + rate * dt - lag + (filtered - tau_l + lag) * self._keep + self._zero + self._noise()
-        if self._aside:
-            tau += self._aside.torque(world.t + dt, self._plant.load[0])
+        if self._aside is not None:
+            tau += self._aside(world.t + dt, self._plant.load[0])
         if self.fault is not None:
             tau = self.fault.value(tau)
         flags, limit = SIMULATED, self._range

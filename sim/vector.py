@@ -10,7 +10,7 @@ import numpy.typing as npt
 from rig.model.gear import Gear
 from rig.model.linear import damping_ratio, natural_frequency
 from sim import kernel
-from sim.effects import Effects, Hysteresis, Stiffness, lines
+from sim.effects import Effects, Friction, Hysteresis, Stiffness, lines
 from sim.parameters import TwinParameters
 
 AT_ONCE = 1e-9  # s, what a drive without delay takes: nothing on the scale of a substep
@@ -23,7 +23,7 @@ def pack(parameters: TwinParameters, refine: float) -> Array:
     a, b, n = np.asarray(gear.kinematic_error.a), np.asarray(gear.kinematic_error.b), gear.kinematic_error.orders
     series = np.stack([a, b, n * a, n * b], axis=1).ravel()
     extra = error_lines(gear, effects)
-    elements = slips(effects.hysteresis)
+    slipping, bristling = slips(effects.hysteresis), bristles(effects.friction)
     numbers = paper(parameters, refine) | lacking(gear, effects)
     numbers |= {
         kernel.TERMS: len(n),
@@ -31,17 +31,21 @@ def pack(parameters: TwinParameters, refine: float) -> Array:
         kernel.SERIES_AT: kernel.PARAMETERS,
         kernel.LINES: len(extra) // 3,
         kernel.LINES_AT: kernel.PARAMETERS + len(series),
-        kernel.SLIPS: len(elements) // 2,
+        kernel.SLIPS: len(slipping) // 2,
         kernel.SLIPS_AT: kernel.PARAMETERS + len(series) + len(extra),
+        kernel.BRISTLES: len(bristling) // 2,
+        kernel.BRISTLES_AT: kernel.PARAMETERS + len(series) + len(extra) + len(slipping),
     }
     head = [numbers[place] for place in range(kernel.PARAMETERS)]
-    return np.concatenate([head, series, extra, elements])
+    return np.concatenate([head, series, extra, slipping, bristling])
 
 
 def paper(parameters: TwinParameters, refine: float) -> dict[int, float]:
     """The paper's model, friction at rest and while sliding, drive and sensor      [ghorbel2001, Eqs. 5-7]"""
     gear = parameters.gear
-    grip = 1.0 + parameters.effects.assembly.friction_per_mm * parameters.effects.assembly.depth_mm
+    assembly, presliding = parameters.effects.assembly, parameters.effects.friction.presliding
+    grip = 1.0 + assembly.friction_per_mm * assembly.depth_mm
+    tau_c, tau_s = grip * (gear.tau_c - presliding), grip * (gear.tau_s - presliding)
     return {
         kernel.PER_N: 1.0 / gear.ratio,
         kernel.PER_J_M: 1.0 / gear.J_m,
@@ -52,8 +56,8 @@ def paper(parameters: TwinParameters, refine: float) -> dict[int, float]:
         kernel.B_ML: gear.B_ml,
         kernel.B_SP: gear.B_sp,
         kernel.SIGMA: gear.sigma,
-        kernel.TAU_C: gear.tau_c * grip,
-        kernel.TAU_S: gear.tau_s * grip,
+        kernel.TAU_C: tau_c,
+        kernel.TAU_S: tau_s,
         kernel.PER_OMEGA_S: 1.0 / gear.omega_s,
         kernel.F_CL: gear.F_cl,
         kernel.T_DRIVE: max(parameters.tau_drive, AT_ONCE),
@@ -62,8 +66,8 @@ def paper(parameters: TwinParameters, refine: float) -> dict[int, float]:
         kernel.T_WANDER: parameters.friction_noise_s,
         kernel.MODE_RATE: fastest_rate(gear),
         kernel.REFINE: refine,
-        kernel.COLD_TAU_C: gear.tau_c * grip,
-        kernel.COLD_TAU_S: gear.tau_s * grip,
+        kernel.COLD_TAU_C: tau_c,
+        kernel.COLD_TAU_S: tau_s,
         kernel.COLD_B_M: gear.B_m,
         kernel.COLD_B_ML: gear.B_ml,
     }
@@ -132,12 +136,21 @@ def unloaded(effects: Effects) -> float:
 
 
 def slips(h: Hysteresis) -> list[float]:
-    """(k_i, s_i) of the elements: s_i evenly spaced up to `twist_deg`, one stiffness, Σ k_i·s_i = `torque`."""
-    if h.torque == 0.0:
+    """(k_i, s_i) of the hysteresis."""
+    return evenly(h.torque, math.radians(h.twist_deg), h.elements)
+
+
+def bristles(f: Friction) -> list[float]:
+    """(k_i, s_i) of friction before it slides."""
+    return evenly(f.presliding, math.radians(f.presliding_deg), f.presliding_elements)
+
+
+def evenly(torque: float, widest: float, count: int) -> list[float]:
+    """(k_i, s_i) [N·m/rad, rad]: s_i evenly spaced up to `widest`, one stiffness, Σ k_i·s_i = `torque`."""
+    if torque == 0.0:
         return []
-    widest = math.radians(h.twist_deg)
-    s = [widest * (i + 1) / h.elements for i in range(h.elements)]
-    k = h.torque / sum(s)
+    s = [widest * (i + 1) / count for i in range(count)]
+    k = torque / sum(s)
     return [x for s_i in s for x in (k, s_i)]
 
 

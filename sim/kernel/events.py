@@ -57,7 +57,7 @@ def attempt(
     net = balance(y, m, outside[0] + lag * keep, outside[1], p)
     hold_m = breakaway(y[0], m.elastic, grip[2], slow, p) if grip[0] == 0.0 else 0.0
     turns = turned(grip[0], y[1], net[0], hold_m) or turned(grip[1], y[3], net[1], hold_l)
-    event = turns or left(m.phi, m.phi_rate, slow, spring)
+    event = turns or left(y, m, slow, spring)
     return Attempt(event, end, net, m, keep, energies)
 
 

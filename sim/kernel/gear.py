@@ -55,7 +55,7 @@ def mesh(y: Four, slow: Slow | None, error: Error, outside: Three, spring: Sprin
     lever = error.slope - p[at.PER_N]
     phi = theta_l - theta_m * p[at.PER_N] + error.value
     phi_rate = omega_l + lever * omega_m
-    elastic = spring.offset + spring.slope * phi
+    elastic = spring.twist.offset + spring.twist.slope * phi
     slip = omega_m + p[at.SIGMA] * omega_l
     drag = p[at.B_ML] * slip
     if slow is not None:
@@ -84,7 +84,8 @@ def full_mesh(
     """The same with everything the paper's model lacks. φ̇ has a part θ̃_p by load, whose work stands apart."""
     theta_m, omega_m, _, omega_l = y
     lever, bent = error.slope - p[at.PER_N], spring.live * (phi - spring.shift)
-    aside_m, aside_l, ripple, shake = 0.0, 0.0, 0.0, 0.0
+    aside_m, aside_l = -(spring.bristles.offset + spring.bristles.slope * theta_m), 0.0
+    ripple, shake = 0.0, 0.0
     elastic += p[at.CUBIC] * bent**3
     if p[at.KAPPA] != 0.0:  # V = ½·κ·cos(nθ − ψ)·φ²
         angle = p[at.KAPPA_ORDER] * theta_m - p[at.KAPPA_PHASE]

@@ -27,14 +27,14 @@ MU, UNEVEN, UNEVEN_ORDER, UNEVEN_PHASE, DRAG_2, DRAG_23 = range(40, 46)  # frict
 BETA, WARMING, PER_T_WARM, COLD_TAU_C, COLD_TAU_S, COLD_B_M, COLD_B_ML = range(46, 53)  # friction by temperature
 COGGING, COGGING_ORDER, COGGING_PHASE, RIPPLE, RIPPLE_ORDER, RIPPLE_PHASE = range(53, 59)
 UNBALANCE, UNBALANCE_PHASE, SHAKE, SHAKE_RATE, SHAKE_PHASE = range(59, 64)
-LINES, LINES_AT, SLIPS, SLIPS_AT, SERIES_AT = range(64, 69)
-PARAMETERS = 69  # then SERIES: (a_n, b_n, n·a_n, n·b_n); LINES: (order, a, b); SLIPS: (k_i, s_i)
+LINES, LINES_AT, SLIPS, SLIPS_AT, BRISTLES, BRISTLES_AT, SERIES_AT = range(64, 71)
+PARAMETERS = 71  # then SERIES: (a_n, b_n, n·a_n, n·b_n); LINES: (order, a, b); SLIPS, BRISTLES: (k_i, s_i)
 
 # The state vector. Wander is relative. From IN_MOTOR on the energy ledger [J], then the states of what the model lacks.
 THETA_M, OMEGA_M, THETA_L, OMEGA_L, TAU_M, TAU_L, FILTERED, WANDER_M, WANDER_L, VALUE, SLOPE, RATE = range(12)
 IN_MOTOR, IN_EXTERNAL, LOST_B_M, LOST_B_L, LOST_B_ML, LOST_B_SP, LOST_MOTOR, LOST_LOAD = range(12, 20)
 LOST_HYSTERESIS, LOST_CREEP, IN_SCHEDULE = range(20, 23)
-PER_LOAD, LOAD_SEEN, CREEP_1, CREEP_2, WARMTH, CLOCK, STATE_SIZE = range(23, 30)  # then the elements' x_i [rad]
+PER_LOAD, LOAD_SEEN, CREEP_1, CREEP_2, WARMTH, CLOCK, STATE_SIZE = range(23, 30)  # then x_i of SLIPS, of BRISTLES [rad]
 
 FINE, NOT_FINITE, TOO_FAST, CHATTER = range(4)  # what `advance` reports
 
@@ -64,20 +64,27 @@ class Slow(NamedTuple):
     creep_2: float
 
 
-class Spring(NamedTuple):
-    """What the torque of the spring is while φ stays inside [low, high] and does not turn against `slip`.
-
-    offset + slope·φ, and by φ − shift what bends (`live` 0: inside the dead zone, where nothing does).
-    """
+class Elements(NamedTuple):
+    """Torque offset + slope·x of elements in parallel while x stays in [low, high] and does not turn against `slip`."""
 
     offset: float  # N·m
     slope: float  # N·m/rad
-    live: float
-    shift: float  # rad
     low: float  # rad
     high: float
-    slip: float  # which way elements slip, 0 none
+    slip: float  # which way some of them slip, 0: none does
     slipping: float  # N·m, torque of those that do
+
+
+class Spring(NamedTuple):
+    """The same of the gear's spring in φ, and of the bristles between motor and housing in θ_m.
+
+    The cube and the stiffness by angle go by φ − shift (`live` 0: inside the dead zone, where nothing bends).
+    """
+
+    twist: Elements  # the law's piece and the hysteresis
+    live: float
+    shift: float  # rad
+    bristles: Elements
 
 
 class Mesh(NamedTuple):
@@ -85,7 +92,7 @@ class Mesh(NamedTuple):
 
     on_motor: float
     on_load: float
-    aside_m: float  # cogging, ripple, stiffness by angle
+    aside_m: float  # bristles, cogging, ripple, stiffness by angle
     aside_l: float  # unbalance, vibration
     lost_ml: float
     lost_sp: float

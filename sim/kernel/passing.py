@@ -21,10 +21,10 @@ Passed = tuple[int, Three, Three, Four]
 @njit
 def longest_for_the_mode(phi: float, slow: Slow | None, spring: Spring, p: Vector) -> float:
     """What the torsional mode allows [s], as stiff as the spring here is, and the vibration from outside."""
-    h = at.C_MODE / p[at.MODE_RATE]
     if slow is None:
-        return h
-    h *= math.sqrt(p[at.K] / max(p[at.K], stiffest(phi, spring, p)))
+        return at.C_MODE / p[at.MODE_RATE]
+    stiffer = max(1.0, stiffest(phi, spring, p) / p[at.K]) * p[at.MODE_RATE] ** 2
+    h = at.C_MODE / math.sqrt(stiffer + spring.bristles.slope * p[at.PER_J_M])
     return min(h, at.C_ORDER / p[at.SHAKE_RATE]) if p[at.SHAKE_RATE] > 0.0 else h
 
 
@@ -81,7 +81,7 @@ def on_its_piece(here: Point, slow: Slow | None, outside: Three, spring: Spring,
     m = mesh(here.y, slow, here.error, outside, spring, p)
     if slow is None:
         return m, spring
-    spring = piece(m.phi, m.phi_rate, slow, state, p)
+    spring = piece(here.y, m.phi, m.phi_rate, slow, state, p)
     return mesh(here.y, slow, here.error, outside, spring, p), spring
 
 
@@ -131,7 +131,7 @@ def substeps(
     )
     filtered, outside, lag = state[at.FILTERED], (tau, tau_ext, state[at.CLOCK]), state[at.TAU_M] - tau
     phi = here.y[2] - here.y[0] * p[at.PER_N] + here.error.value
-    spring = piece(phi, 0.0, slow, state, p)
+    spring = piece(here.y, phi, 0.0, slow, state, p)
     m, spring = on_its_piece(here, slow, outside, spring, state, p)
     net = balance(here.y, m, state[at.TAU_M], tau_ext, p)
     left, rate, events, status = dt, state[at.RATE], 0, at.FINE
@@ -167,7 +167,7 @@ def substeps(
         if events > at.MOST_EVENTS:
             status = at.CHATTER
             break
-        follow(after.mesh.phi - m.phi, end.slow, spring, state, p)
+        follow(after.mesh.phi - m.phi, end.y[0] - y[0], end.slow, spring, state, p)
         m, net_end = after.mesh, after.net
         if after.event:
             end = Point(halted(end.y, grip), end.slow, end.error)

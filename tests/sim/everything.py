@@ -33,6 +33,7 @@ EVERYTHING = Effects(
         output_second_phase_deg=-70.0,
     ),
     friction=Friction(
+        presliding=0.2,
         by_load=0.25,
         by_angle=0.1,
         by_angle_deg=30.0,

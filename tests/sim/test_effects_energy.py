@@ -13,7 +13,7 @@ from sim.effects import Creep, Effects, Hysteresis, LoadDependentError, lines
 from sim.energy import past_gap, spring_torque
 from sim.parameters import TwinParameters
 from sim.plant import Plant
-from sim.vector import slips, unloaded
+from sim.vector import bristles, slips, unloaded
 from tests.sim.conftest import with_gear
 from tests.sim.everything import EVERYTHING, SECTIONS, only
 
@@ -39,8 +39,8 @@ def put(plant: Plant, rng: np.random.Generator, moving_m: bool, moving_l: bool) 
     state[[kernel.VALUE, kernel.SLOPE, kernel.PER_LOAD]] = error
     state[[kernel.CREEP_1, kernel.CREEP_2]] = rng.normal(0.0, 8e-4, 2)
     state[kernel.WARMTH] = rng.uniform(0.0, 30.0)
-    s = np.array(slips(p.effects.hysteresis)[1::2])
-    state[kernel.STATE_SIZE :] = np.clip(rng.normal(0.0, 8e-4), -s, s)
+    s = np.array((slips(p.effects.hysteresis) + bristles(p.effects.friction))[1::2])
+    state[kernel.STATE_SIZE :] = np.clip(rng.normal(0.0, 8e-4, len(s)), -s, s)
     plant.tau_ext = rng.normal(0.0, 1.0)
     plant.advance(0.0, tau)
     return float(tau)
@@ -67,15 +67,18 @@ def power_terms(plant: Plant, tau: float) -> list[float]:
     swing = gear.K * s.by_angle
     creep = [(e.creep.stiffness_1, e.creep.time_1, x.phi - hidden.creep_1)]
     creep.append((e.creep.stiffness_2, e.creep.time_2, x.phi - hidden.creep_2))
-    pairs = slips(e.hysteresis)
-    elements = list(zip(pairs[::2], pairs[1::2], hidden.elements, strict=True))
+    k = (slips(e.hysteresis) + bristles(e.friction))[::2]
+    torques = [k_i * wound for k_i, wound in zip(k, hidden.elements, strict=True)]
+    elements, presliding = torques[: e.hysteresis.elements], torques[e.hysteresis.elements :]
     elastic = spring_torque(gear.K, e, x.phi) + swing * math.cos(angle) * bent
-    elastic += sum(k * behind for k, _, behind in creep) + sum(k * wound for k, _, wound in elements)
+    elastic += sum(k * behind for k, _, behind in creep) + sum(elements)
     shrinking = per_load * (abs(elastic) - load) / e.load_dependent_error.filter
     rate = omega_l + (slope - 1.0 / gear.ratio) * omega_m + shrinking  # φ̇
     warm = math.exp(-e.friction.thermal_beta * float(plant.state[kernel.WARMTH]))
     grip = warm * (1.0 + e.assembly.friction_per_mm * e.assembly.depth_mm)
-    dry = grip * (gear.tau_c + (gear.tau_s - gear.tau_c) * math.exp(-((omega_m / gear.omega_s) ** 2)))
+    dry = grip * (
+        gear.tau_c - e.friction.presliding + (gear.tau_s - gear.tau_c) * math.exp(-((omega_m / gear.omega_s) ** 2))
+    )
     f, m, w = e.friction, e.motor, e.load
     dry *= 1.0 + f.by_angle * math.cos(f.by_angle_order * x.theta_m - math.radians(f.by_angle_deg))
     dry += f.by_load * abs(elastic) / gear.ratio
@@ -92,6 +95,7 @@ def power_terms(plant: Plant, tau: float) -> list[float]:
         warm * gear.B_ml * (omega_m + gear.sigma * omega_l) ** 2,
         gear.B_sp * rate**2,
         (dry + drag) * abs(omega_m),
+        sum(presliding) * omega_m,  # into the bristles, kept or lost
         gear.F_cl * abs(omega_l),
         -(elastic + gear.B_sp * rate) * shrinking,  # the schedule's work
         -tau * omega_m,
@@ -149,7 +153,7 @@ def test_substeps_are_short_enough_with_each_of_them_and_converge(calm: TwinPara
     errors = [np.abs(run_with_reversals(parameters, r, 2000)[1] - fine).max(axis=0) for r in (1.0, 4.0)]
     assert errors[0][0] < 7e-6 / 20  # rad, a twentieth of a count of the load encoder
     assert errors[0][1] < 5e-3  # N·m, of ±15
-    assert np.all(errors[1][:2] < errors[0][:2] / 5)
+    assert np.all(errors[1][:2] < np.maximum(errors[0][:2] / 5, [1e-8, 1e-4]))
 
 
 def test_elastic_terms_conserve(calm: TwinParameters) -> None:

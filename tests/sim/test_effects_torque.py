@@ -13,6 +13,7 @@ from sim import kernel
 from sim.effects import Effects, ErrorLines, Friction, Load, Motor, lines
 from sim.parameters import TwinParameters
 from sim.plant import Plant
+from sim.vector import bristles
 from tests.sim.conftest import FRICTIONLESS, with_gear
 
 TICK = 1e-3  # s
@@ -55,6 +56,44 @@ def test_drag_has_its_power_of_speed(calm: TwinParameters) -> None:
         for omega in (10.0, 30.0):
             more = torque_at(having(calm, friction=friction), omega) - torque_at(calm, omega)
             assert more == pytest.approx(law(omega), rel=0.01)
+
+
+def bristling(calm: TwinParameters) -> tuple[TwinParameters, np.ndarray, np.ndarray]:
+    """A motor whose Coulomb friction is all bristles, well damped and free of its gear; their k_i and s_i."""
+    law = Friction(presliding=0.3, presliding_deg=0.1)
+    free = with_gear(calm, K=1e-3, B_sp=0.0, B_ml=0.0, B_m=2.0, tau_s=0.3)
+    pairs = np.array(bristles(law))
+    return having(free, friction=law), pairs[::2], pairs[1::2]
+
+
+def test_before_it_slides_friction_gives_way_and_springs_back_in_part(calm: TwinParameters) -> None:
+    parameters, k, s = bristling(calm)
+    plant = Plant(parameters)
+
+    def settle(tau: float) -> float:
+        for _ in range(3000):
+            plant.advance(TICK, tau)
+        return plant.truth().theta_m
+
+    def torque(x: float) -> float:
+        return float(np.sum(k * np.minimum(x, s)))
+
+    at_250 = settle(0.25)
+    assert torque(at_250) == pytest.approx(0.25, rel=1e-3)
+    assert 0.0 < at_250 < s.max()
+    back = settle(0.0)
+    unloading = float(np.sum(k * (np.minimum(at_250, s) - np.minimum(at_250 - back, 2 * s))))
+    assert unloading == pytest.approx(0.0, abs=2e-4)  # Masing: the way back is the way out, twice as wide
+    assert 0.1 * at_250 < back < 0.9 * at_250
+    again = settle(0.25)
+    assert again == pytest.approx(at_250, rel=1e-3)  # the small loop closes
+
+
+def test_sliding_bristles_are_coulomb_friction(calm: TwinParameters) -> None:
+    law = Friction(presliding=calm.gear.tau_c)
+    for omega in (6.3, -6.3):
+        expected = torque_at(calm, omega)
+        assert torque_at(having(calm, friction=law), omega) == pytest.approx(expected, rel=2e-3)
 
 
 def test_friction_by_angle_shows_at_standstill_where_it_holds_most(calm: TwinParameters) -> None:

@@ -47,14 +47,15 @@ class Spring:
         slow = self.kernel.Slow(0.0, 0.0, 0.0)
         while self.phi != target:
             way = math.copysign(1.0, target - self.phi)
-            piece = self.module["piece"](self.phi, way, slow, self.state, self.p)
+            spring = self.module["piece"]((0.0, 0.0, 0.0, 0.0), self.phi, way, slow, self.state, self.p)
+            piece = spring.twist
             end = target if abs(target - self.phi) < longest else self.phi + way * longest
             limit = piece.high if way > 0.0 else piece.low
             if way * (end - limit) > 0.0:
                 end = limit
             if end == self.phi:  # at the end of its piece: just behind it
                 end = math.nextafter(self.phi, target)
-            self.module["follow"](end - self.phi, slow, piece, self.state, self.p)
+            self.module["follow"](end - self.phi, 0.0, slow, spring, self.state, self.p)
             self.phi = end
 
     @property
