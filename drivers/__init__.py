@@ -7,3 +7,9 @@ CATALOGUE: dict[str, str] = {
     "serial.qsb": "drivers.qsb:Qsb",
     "serial.ascii_torque": "drivers.ascii_torque:AsciiTorque",
 }
+
+PROFILES: dict[int, tuple[str, str]] = {  # CiA profile → (role on a bench, device type)
+    402: ("drive", "can.cia402"),
+    406: ("load_encoder", "can.cia406"),
+    404: ("torque_sensor", "can.cia404"),
+}

@@ -87,6 +87,10 @@ class Node:
         self.bus.listeners[0x080 + self.number] = self._on_emergency
         self.bus.listeners[HEARTBEAT + self.number] = self._on_heartbeat
 
+    def patience(self, seconds: float) -> None:
+        """How long an answer may take from now on; canopen's own 0.3 s until then."""
+        self._sdo.RESPONSE_TIMEOUT = seconds
+
     def forget(self) -> None:
         """Emergencies and reboots told so far are no longer news."""
         self.emergency, self.rebooted = "", False

@@ -13,6 +13,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "analyse": ("rig.commands.analyse", "figures and report of recorded runs, again and again, no hardware"),
     "import": ("rig.commands.import_", "turn a file of another logger into a run folder"),
     "twin": ("rig.commands.twin", "the simulated rig in real time, reached over CAN and serial lines"),
+    "devices": ("rig.commands.devices", "who is on the CAN bus and the serial ports; writes a first bench file"),
     "doctor": ("rig.commands.doctor", "is this machine, this bus and this bench fit for a run"),
     "list": ("rig.commands.list_", "the runs in a folder"),
     "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),

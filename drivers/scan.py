@@ -1,0 +1,72 @@
+"""Who is on a CAN bus and which serial ports there are. Asks for identities; energises nothing."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from serial.tools import list_ports
+
+from drivers.bus import Bus
+from drivers.node import Node
+from rig.core.devices import Identity
+from rig.core.errors import NotReady
+
+NODES = range(1, 128)
+PATIENCE = 0.03  # s for an answer; a node that is there takes 1 to 10 ms
+
+
+class Found(NamedTuple):
+    """One node that answered."""
+
+    number: int
+    profile: int  # CiA number, low word of 1000h
+    identity: Identity
+    plate: dict[str, float]  # numbers a bench file needs and the device knows
+
+
+class SerialPort(NamedTuple):
+    """One serial port of this machine."""
+
+    path: str
+    what: str  # what its adapter says it is
+    serial: str  # its adapter's serial number: ports are told apart by it, their names change
+
+
+def scan(bus: Bus) -> list[Found]:
+    """Every node that answers on an open bus, by number. Raises NotReady when the bus is dead."""
+    found = []
+    for number in NODES:
+        node = Node(bus, number, "node")
+        node.open()
+        node.patience(PATIENCE)
+        try:
+            kind = node.read_uint(0x1000)
+        except NotReady:
+            if bus.dead:
+                raise NotReady(bus.dead) from None
+            continue
+        node.patience(10 * PATIENCE)
+        profile = kind & 0xFFFF
+        found.append(Found(number, profile, node.identify(profile), plate_of(node, profile)))
+    return found
+
+
+def plate_of(node: Node, profile: int) -> dict[str, float]:
+    """Rated torque [N·m] and counts per turn, where the profile has them and the device says them."""
+    if profile == 402:
+        rated = node.read_uint(0x6076, default=0) / 1000.0
+        increments, turns = (node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
+        counts = increments / turns if increments > 1 and turns else 0.0
+        return {"torque_rated": rated, "counts_per_turn": counts}
+    if profile == 406:
+        scaled = node.read_uint(0x6000, default=0) & 1 << 2
+        return {"counts_per_turn": float(node.read_uint(0x6001 if scaled else 0x6501, default=0))}
+    return {}
+
+
+def serial_ports() -> list[SerialPort]:
+    """The serial ports the system shows."""
+    return [
+        SerialPort(port.device, port.description or "", port.serial_number or "")
+        for port in sorted(list_ports.comports(), key=lambda p: p.device)
+    ]

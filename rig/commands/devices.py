@@ -1,0 +1,55 @@
+"""hdrig devices: who is on the bus and on the serial ports; writes a first bench file to edit."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.core.errors import Exit, NotReady, UsageError
+
+if TYPE_CHECKING:
+    from drivers.scan import Found
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig devices`."""
+    parser.add_argument("--interface", default="socketcan", metavar="NAME", help="python-can's name of the CAN adapter")
+    parser.add_argument("--channel", default="", metavar="CHANNEL", help="its channel, can0 for example; none: no CAN")
+    parser.add_argument("--bitrate", type=int, default=1_000_000, metavar="BIT/S", help="of the bus (1000000)")
+    parser.add_argument("--write", type=Path, metavar="FILE", help="a bench file with what was found, to edit")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Nodes, ports, and the file; exit 3 when a bus was asked for and nobody is on it."""
+    from rig.first_bench import scan_bus, scan_ports
+
+    ports = scan_ports()
+    for port in ports:
+        print(f"serial  {port.path}: {port.what}" + (f", serial number {port.serial}" if port.serial else ""))
+    if not ports:
+        print("serial  no ports")
+    if not args.channel:
+        if args.write:
+            raise UsageError("--write needs --channel: the drive is found on a CAN bus")
+        return Exit.PASS
+    nodes = scan_bus(args.interface, args.channel, args.bitrate)
+    for node in nodes:
+        who = " ".join(part for part in node.identity if part)
+        print(f"node {node.number:<3d} CiA {node.profile}: {who}{_plate(node)}")
+    if not nodes:
+        where = f"{args.interface} {args.channel} at {args.bitrate} bit/s"
+        raise NotReady(f"nobody answers on {where}: wrong bitrate, no termination, no power?")
+    if args.write:
+        from rig.first_bench import first_bench
+
+        if args.write.exists():
+            raise UsageError(f"{args.write} exists; nothing is overwritten")
+        args.write.write_text(first_bench(args.interface, args.channel, args.bitrate, nodes), encoding="utf-8")
+        print(f"wrote {args.write}: replace every number that is assumed, then hdrig doctor --bench {args.write}")
+    return Exit.PASS
+
+
+def _plate(node: Found) -> str:
+    units = {"torque_rated": "N·m", "counts_per_turn": "counts/turn"}
+    return "".join(f", {value:g} {units[key]}" for key, value in node.plate.items() if value)

@@ -1,0 +1,75 @@
+"""A first bench file from what answers on a bus: what devices know is in it, the rest is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from rig.bench import BENCHES
+from rig.core.clock import WallClock
+
+if TYPE_CHECKING:
+    from drivers.scan import Found, SerialPort
+
+TEMPLATE = "twin-canopen"
+HEAD = (
+    ' A first bench file, written from what answered on the bus. Numbers the devices told say from = "measured";',
+    ' every number that says from = "assumed" belongs to the paper\'s rig and is to be replaced by yours.',
+)
+SECTIONS = {"drive": "motor", "load_encoder": "load_encoder", "torque_sensor": "torque_sensor"}
+
+
+def scan_ports() -> list[SerialPort]:
+    """Serial ports of this machine."""
+    from drivers.scan import serial_ports
+
+    return serial_ports()
+
+
+def scan_bus(interface: str, channel: str, bitrate: int) -> list[Found]:
+    """Nodes that answer. Raises NotReady when the bus cannot be opened or is lost."""
+    from drivers.bus import Bus
+    from drivers.scan import scan
+
+    bus = Bus("scan", interface, channel, WallClock(), {"bitrate": bitrate})
+    bus.open()
+    try:
+        return scan(bus)
+    finally:
+        bus.close()
+
+
+def first_bench(interface: str, channel: str, bitrate: int, nodes: Sequence[Found]) -> str:
+    """The text of a bench file for these nodes. Devices of a kind that did not answer are left out."""
+    import tomlkit
+
+    from drivers import PROFILES
+
+    document: Any = tomlkit.parse((BENCHES / f"{TEMPLATE}.toml").read_text(encoding="utf-8"))
+    bench: Any = tomlkit.document()
+    for line in HEAD:
+        bench.add(tomlkit.comment(line.strip()))
+    for key, value in document.items():
+        bench[key] = value
+    bench["name"] = "first"
+    bench["bus"]["rig"].update({"interface": interface, "channel": channel})
+    bench["bus"]["rig"]["bitrate"]["value"] = bitrate
+    found = {PROFILES[node.profile]: node for node in nodes if node.profile in PROFILES}
+    for role in SECTIONS:
+        bench["devices"].pop(role, None)
+    for (role, kind), node in found.items():
+        device = tomlkit.table()
+        device.update({"type": kind, "bus": "rig", "node": node.number})
+        device.comment(" ".join(part for part in node.identity if part))
+        bench["devices"][role] = device
+        for key, told in node.plate.items():
+            quantity = bench[SECTIONS[role]][key]
+            if told:
+                quantity.update(
+                    {
+                        "value": told if key == "torque_rated" else round(told),
+                        "from": "measured",
+                        "note": "told by the device",
+                    }
+                )
+    return tomlkit.dumps(bench)

@@ -1,0 +1,43 @@
+"""Who is on the bus, and a first bench file from it."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivers.bus import Bus
+from drivers.scan import Found, scan
+from rig.config import read_bench
+from rig.first_bench import first_bench
+from tests.drivers.virtual import wired
+
+
+@pytest.fixture(scope="module")
+def nodes() -> list[Found]:
+    wire = wired().wire
+    bus = Bus("scan", "", "", wire, {}, wire.connect)
+    bus.open()
+    found = scan(bus)
+    bus.close()
+    return found
+
+
+def test_every_node_is_found_with_profile_identity_and_plate(nodes: list[Found]):
+    assert [(n.number, n.profile) for n in nodes] == [(1, 402), (2, 406), (3, 404)]
+    assert nodes[0].identity.model == "hdrig twin servo drive"
+    assert nodes[0].plate == {"torque_rated": 3.0, "counts_per_turn": 10_000.0}
+    assert nodes[1].plate == {"counts_per_turn": 900_000.0}
+
+
+def test_the_first_bench_file_can_be_read_and_holds_what_was_found(nodes: list[Found]):
+    bench = read_bench(first_bench("socketcan", "can0", 500_000, nodes), "first.toml")
+    assert bench.bus["rig"].interface == "socketcan"
+    assert bench.bus["rig"].bitrate == 500_000
+    assert bench.devices.drive.type == "can.cia402"
+    assert bench.devices.torque_sensor is not None
+    assert bench.motor.counts_per_turn == 10_000
+
+
+def test_devices_that_did_not_answer_are_left_out(nodes: list[Found]):
+    bench = read_bench(first_bench("pcan", "PCAN_USBBUS1", 1_000_000, nodes[:1]), "first.toml")
+    assert bench.devices.load_encoder is None
+    assert bench.devices.torque_sensor is None
