@@ -7,9 +7,10 @@ from typing import final
 
 from sim.sensors import TwinLoadEncoder
 from sim.wire.bus import Bus
-from sim.wire.node import Node, NodeIdentity, State
+from sim.wire.node import Node, NodeIdentity
 from sim.wire.objects import I16, I32, U16, U32, Abort, AbortCode, Entry, Objects
 from sim.wire.pdo import PdoDefault
+from sim.wire.watch import State
 from sim.world import World
 
 BACKWARDS, SCALED = 1 << 0, 1 << 2  # 6000: code sequence counter-clockwise, scaling on

@@ -32,7 +32,7 @@ class NodeFaults:
 
     def emergency(self, device: str, code: int | str, register: int = 0x80) -> None:
         """It sends an EMCY and goes on"""
-        self._node(device).emergency(number(code), register)
+        self._node(device).errors.report(number(code), register)
 
     def trip(self, code: int | str, again: bool = False) -> None:
         """The drive's own protection acts; again: it comes back when it is reset"""
