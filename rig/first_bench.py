@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 TEMPLATE = "twin-canopen"
 HEAD = (
     ' A first bench file, written from what answered on the bus. Numbers the devices told say from = "measured";',
-    ' every number that says from = "assumed" belongs to the paper\'s rig and is to be replaced by yours.',
+    " all others belong to the rig of the paper and are to be replaced by yours.",
 )
 SECTIONS = {"drive": "motor", "load_encoder": "load_encoder", "torque_sensor": "torque_sensor"}
 
