@@ -10,16 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import savgol_filter
+from scipy.interpolate import CubicSpline
 
 from tests.blind.campaign import Taken
 from tests.blind.rig import HARMONICS
+from tests.blind.sensors import Columns
 
-LIGHT = 7  # rows of the local parabola that smooths every column of the angle channel alike
-HEAVY = 21  # rows of the local cubic for the torque channels, whose accelerations come from counts
+LIGHT = 5  # rows of the window that smooths every column of the angle channel alike
+HEAVY = 21  # rows of the window for the torque channels, whose accelerations come from counts
 AT_REST = 0.3  # rad/s at the motor: slower is reversal or sticking, left out of the torque channels
 AROUND = 0.25  # s around a reversal
 EDGE = HEAVY  # rows left out at both ends
+STRIDE = 3  # every third row is kept: neighbours are correlated by the windows
 CHANNELS = ("theta_l", "tau_l", "tau_m")
 
 
@@ -43,17 +45,37 @@ class Smooth:
     moving: np.ndarray
 
 
+def hann(rows: int) -> np.ndarray:
+    window = np.hanning(rows + 2)[1:-1]
+    return window / window.sum()
+
+
+def slope(x: np.ndarray, dt: float, order: int) -> np.ndarray:
+    """Derivative of a smoothed column: smoothing and differences commute, so every column passes the same filter."""
+    for _ in range(order):
+        x = np.gradient(x, dt)
+    return x
+
+
+def on_even_clock(c: Columns, dt: float) -> Columns:
+    """The columns where the rows would lie on an even clock, by their own stamps."""
+    even = np.arange(len(c["t"])) * dt
+    if np.max(np.abs(c["t"] - even)) < 1e-6:
+        return c
+    return {name: np.asarray(CubicSpline(c["t"], x)(even)) for name, x in c.items()}
+
+
 def smooth(run: Taken) -> Smooth:
-    c, dt = run.columns, run.plan.dt
+    c, dt = on_even_clock(run.columns, run.plan.dt), run.plan.dt
 
     def light(name: str, order: int = 0) -> np.ndarray:
-        return np.asarray(savgol_filter(c[name], LIGHT, 2, deriv=order, delta=dt))[EDGE:-EDGE]
+        return slope(np.convolve(c[name], hann(LIGHT), "same"), dt, order)[EDGE:-EDGE:STRIDE]
 
     def heavy(name: str, order: int = 0) -> np.ndarray:
-        return np.asarray(savgol_filter(c[name], HEAVY, 3, deriv=order, delta=dt))[EDGE:-EDGE]
+        return slope(np.convolve(c[name], hann(HEAVY), "same"), dt, order)[EDGE:-EDGE:STRIDE]
 
     w = heavy("theta_m", 1)
-    turning = np.convolve(np.abs(w) < AT_REST, np.ones(2 * round(AROUND / dt) + 1), "same") > 0.5
+    turning = np.convolve(np.abs(w) < AT_REST, np.ones(2 * round(AROUND / dt / STRIDE) + 1), "same") > 0.5
     return Smooth(
         run.plan.name, run, light("theta_m"), light("theta_l"), light("tau_l"), light("tau_l", 1),
         heavy("theta_m"), w, heavy("theta_m", 2), heavy("theta_l", 1), heavy("theta_l", 2),
@@ -74,10 +96,10 @@ def series_slope(angle: np.ndarray) -> np.ndarray:
 
 def fit(columns: list[np.ndarray], values: list[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
     """Least squares over all runs; returns coefficients and residuals per run."""
-    scale = np.sqrt(sum(np.sum(x**2, axis=0) for x in columns)) + 1e-30
-    gram = sum((x / scale).T @ (x / scale) for x in columns)
-    right = sum((x / scale).T @ y for x, y in zip(columns, values, strict=True))
-    beta = np.linalg.lstsq(gram, right, rcond=1e-12)[0] / scale
+    gram = sum(x.T @ x for x in columns)
+    right = sum(x.T @ y for x, y in zip(columns, values, strict=True))
+    scale = np.sqrt(np.diag(gram)) + 1e-30
+    beta = np.linalg.lstsq(gram / np.outer(scale, scale), right / scale, rcond=1e-12)[0] / scale
     return beta, [y - x @ beta for x, y in zip(columns, values, strict=True)]
 
 
@@ -125,7 +147,7 @@ def usable(runs: list[Taken]) -> list[Smooth]:
 
 def turning_runs(done: list[Smooth]) -> list[Smooth]:
     """Runs with a free output in which the motor turned for a second at least: the torque channels."""
-    return [s for s in done if not s.run.plan.locked and np.sum(s.moving) * s.run.plan.dt > 1.0]
+    return [s for s in done if not s.run.plan.locked and np.sum(s.moving) * s.run.plan.dt * STRIDE > 1.0]
 
 
 def residuals(runs: list[Taken], ratio: float = 50.0) -> tuple[Residuals, Baseline]:
