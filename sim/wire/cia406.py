@@ -87,7 +87,8 @@ class AbsoluteEncoder(Node):
     def _measure_speed(self, past: int) -> None:
         counts = self._counts()
         self._pace = counts - past
-        self.agenda.after(SPEED_OVER, lambda: self._measure_speed(counts))
+        if self.port in self.bus.ports:
+            self.agenda.after(SPEED_OVER, lambda: self._measure_speed(counts))
 
     def _speed(self) -> int:
         """Units per 10 ms, clipped to 16 bits."""

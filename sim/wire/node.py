@@ -77,6 +77,13 @@ class Node(ABC):
         life = self._life
         self.agenda.after(BOOT, lambda: self._boot() if life == self._life else None)
 
+    def leave(self) -> None:
+        """Gone for good: nothing more is sent or heard."""
+        self._life += 1
+        self.watch.rest()
+        self._pdos_rest()
+        self.port.leave()
+
     def _boot(self) -> None:
         self.watch.boot()
         self._rebuild()

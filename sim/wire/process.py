@@ -11,6 +11,7 @@ from sim.wire import qsb, serial_torque
 from sim.wire.assembly import Assembly
 from sim.wire.control import Control
 from sim.wire.faults import fault_verbs
+from sim.wire.faults.of_sensors import Sensor
 from sim.wire.frame import Frame
 from sim.wire.hub import Hub
 from sim.wire.pty import LineDevice, SerialLine
@@ -43,6 +44,7 @@ class Process:
         assembly.agenda.run_until(SETTLED)
         self.reactor = Reactor(assembly.agenda)
         self.serial: dict[str, SerialLine] = {}
+        self._sensors: dict[str, Sensor] = {}
         self.lines: list[str] = []
         self._doors: list[Source] = []
         self._open(doors)
@@ -64,15 +66,17 @@ class Process:
             self._serial(doors.serial, doors.torque_rate)
         verbs = {
             **plant_verbs(self.assembly, self.reactor),
-            **fault_verbs(self.assembly, self.reactor, self.serial),
+            **fault_verbs(self.assembly, self.reactor, self.serial, self._sensors),
         }
         self._add(Control(self.reactor, doors.control, verbs))
         self._tell("control", f'{doors.control}, one JSON object a line, for example {{"do": "help"}}')
 
     def _serial(self, folder: Path, rate: float) -> None:
         agenda, world = self.assembly.agenda, self.assembly.world
-        self._line("torque", folder / "torque", serial_torque.AsciiTorque(agenda, world, rate), serial_torque.BAUD)
-        self._line("qsb", folder / "qsb", qsb.Qsb(agenda, world), qsb.BAUD)
+        torque, encoder = serial_torque.AsciiTorque(agenda, world, rate), qsb.Qsb(agenda, world)
+        self._sensors |= {"serial_torque": torque.sensor, "qsb": encoder.sensor}
+        self._line("torque", folder / "torque", torque, serial_torque.BAUD)
+        self._line("qsb", folder / "qsb", encoder, qsb.BAUD)
         self._tell("serial", f"{folder}/torque, ASCII torque sensor, {serial_torque.BAUD} baud, {rate:g} lines/s")
         self._tell("serial", f"{folder}/qsb, US Digital QSB at the load encoder, {qsb.BAUD} baud")
 

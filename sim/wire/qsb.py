@@ -31,8 +31,8 @@ class Qsb(LineDevice):
 
     def __init__(self, agenda: Agenda, world: World) -> None:
         self.agenda, self.world = agenda, world
-        self.encoder = TwinLoadEncoder(world)
-        self.encoder.connect()
+        self.sensor = TwinLoadEncoder(world)
+        self.sensor.connect()
         self.registers = dict(DEFAULTS)
         self._stored = dict(DEFAULTS)
         self._life = 0
@@ -94,7 +94,7 @@ class Qsb(LineDevice):
 
     def _quarters(self) -> int:
         self.world.advance_to(self.agenda.now)
-        return self.encoder.read().counts * QUARTERS[self.registers[MODE] & 3] // 4
+        return self.sensor.read().counts * QUARTERS[self.registers[MODE] & 3] // 4
 
     def _value(self, register: int) -> int:
         return (self._quarters() - self._zero) % MODULUS if register == ENCODER else self.registers[register]

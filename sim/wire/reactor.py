@@ -34,7 +34,7 @@ class Source(ABC):
 
 
 class Reactor:
-    """Runs until `stop`. `late` is the longest that an event waited for the processor [s]."""
+    """Runs until `stop`. `late` is the longest that an event waited for the processor [s], until somebody resets it."""
 
     def __init__(self, agenda: Agenda) -> None:
         self.agenda = agenda

@@ -10,7 +10,7 @@ from sim.wire.reactor import Reactor
 
 
 def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
-    """load, lock, unlock, truth, status, stop."""
+    """load, lock, unlock, reassemble, truth, status, stop."""
     world, agenda, bus = assembly.world, assembly.agenda, assembly.bus
 
     def load(tau_ext: float) -> None:
@@ -28,13 +28,19 @@ def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
         world.advance_to(agenda.now)
         world.unlock_output()
 
+    def reassemble(depth_mm: float = 0.0) -> None:
+        """Take the gear apart and together again, wave generator so far from its depth; refused while it turns"""
+        world.advance_to(agenda.now)
+        world.reassemble(float(depth_mm))
+
     def truth() -> dict[str, Any]:
         """What really happens now, SI"""
         world.advance_to(agenda.now)
         return {"t": world.t, **world.truth()._asdict(), "simulated": True}
 
     def status() -> dict[str, Any]:
-        """Bus, nodes and process"""
+        """Bus, nodes and process; late: the longest that an event waited for the processor since last asked [s]"""
+        late, reactor.late = reactor.late, 0.0
         return {
             "t": agenda.now,
             "load": bus.load,
@@ -43,11 +49,11 @@ def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
             "drive": assembly.drive.drive_state.name,
             "error_code": assembly.drive.error_code.number,
             "nmt": {node.id: node.state.name for node in assembly.nodes},
-            "late": reactor.late,
+            "late": late,
         }
 
     def stop() -> None:
         """End the twin"""
         reactor.stop()
 
-    return {verb.__name__: verb for verb in (load, lock, unlock, truth, status, stop)}
+    return {verb.__name__: verb for verb in (load, lock, unlock, reassemble, truth, status, stop)}

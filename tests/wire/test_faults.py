@@ -24,7 +24,7 @@ class Operator:
     def __init__(self) -> None:
         self.host = host("twin.torque_noise=0.0", "twin.sensor_noise=0.0")
         reactor = Reactor(self.host.twin.agenda)
-        self.verbs = {**plant_verbs(self.host.twin, reactor), **fault_verbs(self.host.twin, reactor, {})}
+        self.verbs = {**plant_verbs(self.host.twin, reactor), **fault_verbs(self.host.twin, reactor, {}, {})}
         self.host.put(2, 0x1801, 1, "I", 0x40000282)
         self.host.start()
         self.host.wait(0.01)
@@ -105,6 +105,24 @@ def test_a_cut_node_is_silent(op: Operator) -> None:
     assert op.syncs() == []
     assert op.host.asks(2, "40 00 10 00 00 00 00 00") == ""
     assert op.host.asks(1, "40 00 10 00 00 00 00 00") != ""
+
+
+def test_bus_off_is_an_error_frame_and_silence(op: Operator) -> None:
+    op.do("bus_off")
+    assert op.host.heard[-1][1:] == (0x20000040, "00 00 00 00 00 00 00 00")
+    assert op.syncs() == []
+    op.do("join")
+    assert len(op.syncs()) == 4
+
+
+def test_two_nodes_of_one_number_answer_twice_and_boot_in_mid_run(op: Operator) -> None:
+    op.do("double", device="encoder")
+    assert op.host.hears(0x702, BOOTED) == ["00"]
+    op.host.send(0x602, "40 00 10 00 00 00 00 00")
+    assert op.host.hears(0x582, 0.01) == ["43 00 10 00 96 01 02 00"] * 2
+    op.do("heal")
+    op.host.send(0x602, "40 00 10 00 00 00 00 00")
+    assert op.host.hears(0x582, 0.01) == ["43 00 10 00 96 01 02 00"]
 
 
 def test_a_babbling_node_takes_the_bus(op: Operator) -> None:
@@ -230,6 +248,8 @@ def test_a_weight_a_clamp_and_the_truth(op: Operator) -> None:
     assert truth["simulated"] is True
     assert truth["theta_l"] < before - 0.001  # 10 N·m at 7160 N·m/rad is 1.4 mrad, friction holds 1 N·m
     op.do("load", tau_ext=0.0)
+    op.do("reassemble", depth_mm=0.1)
+    op.host.wait(0.1)
     op.do("lock")
     op.host.enable(CST)
     op.host.put(1, 0x6071, 0, "h", 250)

@@ -153,6 +153,16 @@ def test_a_pulled_plug_is_an_error_and_another_pty_when_it_is_back(torque: Plugg
     os.close(hold)
 
 
+def test_a_device_that_restarts_forgets_its_zero_on_the_same_line(torque: Plugged) -> None:
+    torque.twin.world.command(0.7)
+    torque.twin.world.lock_output()
+    torque.hears(1.0)
+    torque.says(b"Z\r")
+    assert abs(float(torque.hears(0.02).split()[0])) < 0.01
+    torque.line.device.plugged()
+    assert abs(float(torque.hears(0.02).split(b"\r\n")[-2].split()[0])) > 5.0
+
+
 def test_a_host_that_does_not_read_loses_bytes_and_blocks_nobody(torque: Plugged) -> None:
     torque.twin.agenda.run_until(30.0)
     assert torque.line.lost > 0

@@ -1,8 +1,9 @@
 """Everything that can go wrong while it runs, as verbs of the command channel.
 
 Identifiers are 11 bits (385 or "0x181"); a frame of 29 bits is said with extended = true. Times are in seconds.
-A device is "drive", "encoder" or "torque"; a line is "torque", "qsb" or "slcan"; a station is a name from `status`,
-"hosts" for all that are not nodes. `heal` ends all faults of bus, lines and sensors; what a node went through stays.
+A device is "drive", "encoder" or "torque", for what it measures also "serial_torque" or "qsb"; a line is "torque",
+"qsb" or "slcan"; a station is a name from `status`, "hosts" for all that are not nodes. `heal` ends all faults of bus,
+lines and sensors; what a node went through stays.
 """
 
 from __future__ import annotations
@@ -15,16 +16,18 @@ from sim.wire.control import Verb
 from sim.wire.faults.of_bus import BusFaults
 from sim.wire.faults.of_lines import LineFaults
 from sim.wire.faults.of_nodes import NodeFaults
-from sim.wire.faults.of_sensors import SensorFaults
+from sim.wire.faults.of_sensors import Sensor, SensorFaults
 from sim.wire.pty import SerialLine
 from sim.wire.reactor import Reactor
 
 LONGEST_STALL = 10.0  # s
 
 
-def fault_verbs(assembly: Assembly, reactor: Reactor, lines: Mapping[str, SerialLine]) -> dict[str, Verb]:
-    """All of them."""
-    groups = (BusFaults(assembly), NodeFaults(assembly), LineFaults(lines), SensorFaults(assembly))
+def fault_verbs(
+    assembly: Assembly, reactor: Reactor, lines: Mapping[str, SerialLine], sensors: Mapping[str, Sensor]
+) -> dict[str, Verb]:
+    """All of them; `lines` and `sensors` are those of the serial devices there are."""
+    groups = (BusFaults(assembly), NodeFaults(assembly), LineFaults(lines), SensorFaults(assembly, sensors))
     found: dict[str, Verb] = {}
     for group in groups:
         found |= {name: getattr(group, name) for name in dir(group) if not name.startswith("_") and name != "heal"}

@@ -9,8 +9,10 @@ from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
 from sim.wire.bus import Port, Tamper
 from sim.wire.faults.words import Number, number
-from sim.wire.frame import EXTENDED, Frame
+from sim.wire.frame import ERROR, EXTENDED, Frame
 from sim.wire.tampers import Delay, Drop, Duplicate, Reorder, Resize
+
+BUS_OFF = Frame(ERROR | 0x40, bytes(8))  # CAN_ERR_BUSOFF of linux/can/error.h
 
 
 @final
@@ -56,6 +58,12 @@ class BusFaults:
         """The cable of a station is out; keeps: what it sends meanwhile goes out when it is back"""
         for port in self._stations(station):
             port.disconnect(keeps)
+
+    def bus_off(self, station: str = "hosts") -> None:
+        """A station's controller goes bus-off: an error frame as Linux has them, then silence until it joins again"""
+        for port in self._stations(station):
+            port.receive(BUS_OFF, self._bus.agenda.now)
+            port.disconnect(keeps=False)
 
     def join(self, station: str = "hosts") -> None:
         """The cable is back"""

@@ -32,6 +32,10 @@ class LineFaults:
         """It is back, as another pty behind the same link; the device starts anew"""
         self._line(line).plug()
 
+    def restart(self, line: str) -> None:
+        """The device loses its power, or is reset by DTR, while the line stays: zero, counter, registers are as new"""
+        self._line(line).device.plugged()
+
     def torn(self, line: str, seconds: float = 0.005) -> None:
         """Every message arrives in two pieces"""
         self._line(line).spoiler = Torn(float(seconds))

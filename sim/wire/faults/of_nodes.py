@@ -7,9 +7,13 @@ from typing import final
 
 from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
+from sim.wire.cia404 import TorqueTransducer
+from sim.wire.cia406 import AbsoluteEncoder
 from sim.wire.faults.words import named, number
 from sim.wire.node import Node
 from sim.wire.objects import Abort, Entry
+
+DOUBLES: dict[str, type[AbsoluteEncoder | TorqueTransducer]] = {"encoder": AbsoluteEncoder, "torque": TorqueTransducer}
 
 
 @final
@@ -18,9 +22,13 @@ class NodeFaults:
 
     def __init__(self, assembly: Assembly) -> None:
         self._assembly = assembly
+        self._doubles: list[Node] = []
 
     def heal(self) -> None:
-        """Inputs of the drive as they should be."""
+        """No doubles, inputs of the drive as they should be."""
+        for node in self._doubles:
+            node.leave()
+        self._doubles = []
         drive = self._assembly.drive
         drive.mode_stuck = drive.incurable = False
         if drive.sto_active:
@@ -29,6 +37,15 @@ class NodeFaults:
     def reboot(self, device: str) -> None:
         """Its power fails for a moment: mapping and, without a battery, position are lost"""
         self._node(device).power_up()
+
+    def double(self, device: str) -> None:
+        """A second node of the same number, as when somebody forgot to set it: encoder or torque"""
+        a = self._assembly
+        kinds: dict[str, type[AbsoluteEncoder | TorqueTransducer]] = {
+            "encoder": AbsoluteEncoder,
+            "torque": TorqueTransducer,
+        }
+        self._doubles.append(named(kinds, device, "device")(a.bus, self._node(device).id, a.world))
 
     def emergency(self, device: str, code: int | str, register: int = 0x80) -> None:
         """It sends an EMCY and goes on"""

@@ -1,7 +1,8 @@
-"""Faults of what is measured, on the CAN side: motor encoder, load encoder, torque."""
+"""Faults of what is measured, at either end of a gear and between."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import final
 
 from sim.drive import TwinDrive
@@ -16,16 +17,15 @@ MOMENT = 1e-6  # s: a sensor is read once at any one time
 
 @final
 class SensorFaults:
-    """Of what is measured, on the CAN side: encoder of the drive, load encoder, torque."""
+    """Of what is measured: by the nodes drive, encoder, torque, by the serial devices serial_torque, qsb."""
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
+    def __init__(self, assembly: Assembly, serial: Mapping[str, Sensor]) -> None:
+        self._assembly, self._serial = assembly, serial
 
     def heal(self) -> None:
         """All sound."""
-        self._put("drive", None)
-        self._put("encoder", None)
-        self._put("torque", None)
+        for device in self._sensors():
+            self._put(device, None)
         self._assembly.torque.broken = False
 
     def frozen(self, device: str) -> None:
@@ -44,24 +44,28 @@ class SensorFaults:
         """The wrong scale; negative: the wrong way round"""
         self._put(device, Scale(float(factor)))
 
-    def overload(self, sign: int = 1) -> None:
+    def overload(self, sign: int = 1, device: str = "torque") -> None:
         """The torque sensor is at the end of its range"""
-        self._put("torque", Overload(sign))
+        self._put(device, Overload(sign))
 
     def broken_cable(self, active: bool = True) -> None:
         """The torque sensor's cable to its amplifier is out: not a number"""
         self._assembly.torque.broken = bool(active)
 
-    def _put(self, device: str, fault: Fault | None) -> None:
+    def _sensors(self) -> dict[str, Sensor]:
+        """By name; looked up each time, a drive that has rebooted has another one."""
         a = self._assembly
-        sensors: dict[str, Sensor] = {
+        return {
             "drive": a.drive.motor.sensors,
             "encoder": a.encoder.encoder,
             "torque": a.torque.sensor,
+            **self._serial,
         }
-        sensor = named(sensors, device, "device")
+
+    def _put(self, device: str, fault: Fault | None) -> None:
+        sensor = named(self._sensors(), device, "device")
         sensor.fault = fault
-        a.agenda.after(MOMENT, lambda: self._read(sensor))
+        self._assembly.agenda.after(MOMENT, lambda: self._read(sensor))
 
     def _read(self, sensor: Sensor) -> None:
         """So that what freezes freezes now, not when a host next asks."""
