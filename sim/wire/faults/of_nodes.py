@@ -41,11 +41,8 @@ class NodeFaults:
     def double(self, device: str) -> None:
         """A second node of the same number, as when somebody forgot to set it: encoder or torque"""
         a = self._assembly
-        kinds: dict[str, type[AbsoluteEncoder | TorqueTransducer]] = {
-            "encoder": AbsoluteEncoder,
-            "torque": TorqueTransducer,
-        }
-        self._doubles.append(named(kinds, device, "device")(a.bus, self._node(device).id, a.world))
+        make = named(DOUBLES, device, "device that can be doubled")
+        self._doubles.append(make(a.bus, self._node(device).id, a.world))
 
     def emergency(self, device: str, code: int | str, register: int = 0x80) -> None:
         """It sends an EMCY and goes on"""
