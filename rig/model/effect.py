@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -72,6 +73,16 @@ class Signals:
     temperature: Array  # °C
     gear: Known
 
+    @cached_property
+    def series_slope(self) -> Array:
+        """dθ̃_p/dθ_m along the run, as far as it is known, (n,)."""
+        return self.gear.kinematic_error.slope(self.theta_m)
+
+    def part(self, rows: slice) -> Signals:
+        """Some rows of it."""
+        arrays = {f.name: v[rows] for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)}
+        return replace(self, **arrays)
+
 
 @dataclass(frozen=True)
 class Known:
@@ -82,6 +93,7 @@ class Known:
     J_m: float
     J_l: float
     kinematic_error: FourierSeries
+    torque_zero: float = 0.0  # N·m, what the torque sensor reads without torque; `torque` is without it
 
 
 @dataclass(frozen=True)
@@ -173,3 +185,11 @@ class Effect(ABC):
         if grid.size == 0:
             return ()
         return tuple((float(low), float(high)) for low, high in zip(grid.min(0) / 3, grid.max(0) * 3, strict=True))
+
+    def expands(self, shape: Shape) -> bool:
+        """True when the columns are an expansion about a shape that should equal the coefficients."""
+        return False
+
+    def about(self, shape: Shape, coefficients: Array) -> Shape:
+        """The shape to expand about, once the coefficients are known."""
+        return shape

@@ -2,12 +2,13 @@
 
 With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [ghorbel2001, Eqs. 1, 6-8]
 
-    A (rad)  θ̃ = c_0 + θ̃_p(θ_m) + T/K − (B_sp/K²)·Ṫ
+    A (rad)  θ̃ = c_0 + θ̃_p(θ_m) + T/K − (B_sp/K²)·Ṫ + (B_sp²/K³)·T̈ + (B_ml/K)·ω_m
     M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
-c_0 and the torque sensor's zero z belong to the run. Without a torque sensor T comes from L with what is declared, and L
-is no equation any more.
+c_0 and the torque sensor's zero z belong to the run. B_ml shows in A only when the torque sensor sits behind the mesh's
+own drag; it is known to be small. Without a torque sensor T comes from L with what
+is declared, and L is no equation any more.
 """
 
 from __future__ import annotations
@@ -25,20 +26,34 @@ from rig.model.effect import Array, Known, Port, Signals
 ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
 CHANNELS: Final = ("A", "M", "L")
 SERIES: Final = tuple(f"{c}{n}" for n in range(1, ORDERS + 1) for c in "ab")
-BASELINE: Final = (*SERIES, "compliance", "damping", "J_m", "B_m", "tau_c", "tau_0", "J_l", "B_l", "tau_cl")
-LOCAL: Final = ("angle_zero", "torque_zero")  # every run its own
-INDEX: Final = {name: i for i, name in enumerate((*BASELINE, *LOCAL))}
+BASELINE: Final = (
+    *SERIES,
+    "compliance",
+    "damping",
+    "damping_2",
+    "mesh",
+    "J_m",
+    "B_m",
+    "tau_c",
+    "tau_0",
+    "J_l",
+    "B_l",
+    "tau_cl",
+    "tau_l0",
+)
+INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
 @dataclass(frozen=True)
 class Rows:
-    """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE + LOCAL they are."""
+    """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE they are."""
 
     y: Array
     z: Array
     at: tuple[int, ...]
-    keep: Array  # bool, (n,), before masking
+    keep: Array  # bool, before masking
+    theta_m: Array  # rad, (n,)
 
 
 def is_measured(run: Recording, channel: str) -> bool:
@@ -49,12 +64,19 @@ def is_measured(run: Recording, channel: str) -> bool:
 
 def rows(run: Recording, channel: str) -> Rows:
     """Response and baseline columns of a channel, pieces joined, masked rows gone."""
-    made = [{"A": _angle, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
+    y, z, at = unmasked(run, channel)
     keep = np.concatenate([valid(piece, run, channel) for piece in run.pieces])
+    theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
+    keep &= np.isfinite(y) & np.isfinite(z).all(1)
+    return Rows(y[keep], z[keep], at, keep, theta_m[keep])
+
+
+def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
+    """Response (n,), baseline columns (n, b) and their places, all rows."""
+    made = [{"A": _angle, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
     y = np.concatenate([m[0] for m in made])
     z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
-    keep &= np.isfinite(y) & np.isfinite(z).all(1)
-    return Rows(y[keep], z[keep], tuple(INDEX[name] for name in made[0][1]), keep)
+    return y, z, tuple(INDEX[name] for name in made[0][1])
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:
@@ -72,7 +94,8 @@ def valid(piece: Signals, run: Recording, channel: str) -> Array:
 def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.theta_m / s.ratio - s.theta_l)
     columns = dict(zip(SERIES, f(series(s.theta_m)).T, strict=True))
-    columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "angle_zero": np.ones_like(y)}
+    columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "damping_2": f(s.tau_l, 2)}
+    columns |= {"mesh": f(s.theta_m, 1)}
     return y, columns
 
 
@@ -80,13 +103,12 @@ def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_m - s.tau_l / s.ratio)
     columns = dict(zip(SERIES, f(-s.tau_l[:, None] * slopes(s.theta_m)).T, strict=True))
     columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
-    columns["torque_zero"] = np.full_like(y, -1 / s.ratio)
     return y, columns
 
 
 def _load(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_l + s.tau_ext)
-    columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "torque_zero": np.ones_like(y)}
+    columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "tau_l0": np.ones_like(y)}
     return y, columns
 
 
@@ -130,8 +152,7 @@ def _lever(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
 
 
 def _reads_theta_m(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    slope = s.gear.kinematic_error.slope(s.theta_m)
-    yield "A", f(c * (1 / s.ratio - slope)[:, None])
+    yield "A", f(c * (1 / s.ratio - s.series_slope)[:, None])
     yield "M", -s.gear.J_m * f(c, 2)
 
 
@@ -183,6 +204,7 @@ def known_of(values: Mapping[str, float]) -> Known:
         B_sp=-values["damping"] * stiffness**2,
         J_m=values["J_m"],
         J_l=values["J_l"],
+        torque_zero=values["tau_l0"],
         kinematic_error=FourierSeries(
             tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
         ),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rig.analysis.source import Motion, motion_of
-from rig.analysis.tracing.smoothing import Smoother, thin
+from rig.analysis.tracing.smoothing import Smoother, flat, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
 from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
@@ -23,7 +25,7 @@ class Recording:
 
     name: str
     procedure: str
-    condition: str  # equal for repeats
+    said: str  # procedure and conditions as declared
     locked: bool
     start: float
     ratio: float
@@ -33,6 +35,7 @@ class Recording:
     counts_m: float
     counts_l: float
     rate: float  # Hz of the file
+    noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
 
     @property
@@ -40,12 +43,22 @@ class Recording:
         """s of recorded motion."""
         return float(sum(piece.t.size * piece.dt for piece in self.pieces))
 
+    @property
+    def turning(self) -> float:
+        """Mean |speed| of the motor, rad/s."""
+        return float(np.mean([np.mean(np.abs(piece.omega_m)) for piece in self.pieces]))
+
+    def noisier(self, seed: int) -> Recording:
+        """The same with its own sensor noise added once more: what noise does to columns is the difference."""
+        rng = np.random.default_rng(seed)
+        return replace(self, pieces=tuple(_noisier(piece, self.noise, self.smoother, rng) for piece in self.pieces))
+
     def knowing(self, known: Known) -> Recording:
         """The same with what is known of the gear."""
-        return replace(self, pieces=tuple(replace(piece, gear=known) for piece in self.pieces))
+        return replace(self, pieces=tuple(_knowing(piece, known) for piece in self.pieces))
 
 
-def record(run: Run, start: float, condition: str) -> Recording:
+def record(run: Run, start: float) -> Recording:
     """Read the columns the tracer uses. Raises UsageError when the run has no angle it can use."""
     motion = motion_of(run)
     channels = _channels(run, motion)
@@ -58,30 +71,25 @@ def record(run: Run, start: float, condition: str) -> Recording:
     sigma = min(BANDWIDTH, TAMEST / work)
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     tau_ext = float(run.conditions.get("tau_ext") or 0.0)
-    pieces = tuple(
-        piece
+    made = [
+        _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
         for lo, hi in _joined(t, dt, motion, steady)
-        if (
-            piece := _piece(
-                t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext
-            )
-        )
-        is not None
-    )
+    ]
     encoders = run.manifest.get("encoders") or {}
     return Recording(
         name=run.name,
         procedure=run.procedure,
-        condition=condition,
+        said=f"{run.procedure} {sorted((k, v) for k, v in run.conditions.items() if k != 'note')}",
         locked=bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock",
         start=start,
         ratio=run.ratio,
-        pieces=pieces,
+        pieces=tuple(piece for piece in made if piece is not None),
         smoother=smoother,
         has=has,
         counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
         counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
         rate=1 / dt,
+        noise={n: rough(c) / np.sqrt(factor) for n, c in whole.items() if n in has},
         notes=motion.notes if motion else (),
     )
 
@@ -109,7 +117,7 @@ def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tu
     if steady:
         cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > 1.8 * dt)}
     edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
-    return [(lo, hi) for lo, hi in zip(edges, edges[1:], strict=False) if hi - lo > 50]
+    return [(lo, hi) for lo, hi in itertools.pairwise(edges) if hi - lo > 50]
 
 
 def _uniform(t: Array, x: Array, dt: float) -> Array:
@@ -134,27 +142,51 @@ def _piece(
     if n < 10 * smooth.half:
         return None
     time = start + first + smooth.dt * np.arange(n)
-    omega_m = smooth.same(c["theta_m"], 1)
+    derived = _derived(c, smooth)
     return Signals(
         t=time,
         dt=smooth.dt,
         ratio=run.ratio,
         theta_m=c["theta_m"],
         theta_l=c["theta_l"],
-        omega_m=omega_m,
-        alpha_m=smooth.same(c["theta_m"], 2),
-        omega_l=smooth.same(c["theta_l"], 1),
-        alpha_l=smooth.same(c["theta_l"], 2),
-        jerk_l=smooth.same(c["theta_l"], 3),
-        torque=smooth.same(c["tau_l"]),
-        torque_rate=smooth.same(c["tau_l"], 1),
         tau_m=c["tau_m"],
         tau_l=c["tau_l"],
         tau_ext=np.full(n, tau_ext),
-        way=direction(omega_m, smooth.dt),
+        way=direction(derived["omega_m"], smooth.dt),
         temperature=c["temperature"],
         gear=UNKNOWN,
+        **derived,
     )
+
+
+def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
+    """Speeds, accelerations and the smooth torque from readings at the working rate."""
+    return {
+        "omega_m": smooth.same(c["theta_m"], 1),
+        "alpha_m": smooth.same(c["theta_m"], 2),
+        "omega_l": smooth.same(c["theta_l"], 1),
+        "alpha_l": smooth.same(c["theta_l"], 2),
+        "jerk_l": smooth.same(c["theta_l"], 3),
+        "torque": flat(c["tau_l"]),
+        "torque_rate": smooth.same(c["tau_l"], 1),
+    }
+
+
+def _knowing(piece: Signals, known: Known) -> Signals:
+    return replace(piece, gear=known, torque=piece.torque + piece.gear.torque_zero - known.torque_zero)
+
+
+def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: np.random.Generator) -> Signals:
+    c = {n: getattr(piece, n) + s * rng.standard_normal(piece.t.size) for n, s in noise.items() if hasattr(piece, n)}
+    c = {n: c.get(n, getattr(piece, n)) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
+    derived = _derived(c, smooth)
+    return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})
+
+
+def rough(x: Array) -> float:
+    """RMS of the white noise in a reading (n,)."""
+    # the fourth difference of white noise has 70 times its variance; the median does not see reversals
+    return float(np.nanmedian(np.abs(np.diff(x, 4)))) / 0.6745 / 70**0.5
 
 
 def direction(omega: Array, dt: float) -> Array:

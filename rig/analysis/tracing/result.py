@@ -95,9 +95,10 @@ class Trace:
     """All of it. `curves` by dotted name, arrays of equal length within a group; units in the name's last part:
 
     spectrum.motor_order, spectrum.before_arcsec, spectrum.after_arcsec      held-out kinematic error against order
-    angle.theta_m_deg, angle.before_arcsec, angle.after_arcsec      mean residual against motor angle; load_angle.* alike
+    angle.theta_m_deg, angle.before_arcsec, angle.after_arcsec      mean residual; load_angle.* alike
     direction.*, load.*, speed.*, time.*      mean residual of each run in each channel (`_arcsec`, `_Nm`)
-    run.<name>.theta_m_turns, .measured_arcsec, .before_arcsec, .after_arcsec      kinematic error, measured and modelled
+    run.<name>.theta_m_turns, .measured_arcsec, .before_arcsec, .after_arcsec
+        kinematic error, measured and modelled
     loop.<name>.windup_arcsec, .torque_Nm, .before_Nm, .after_Nm      torque against wind-up of held-out lock runs
     """
 

@@ -57,6 +57,10 @@ class Smoother:
         """Rows that come out of `n` rows."""
         return max(0, -(-(n - 2 * self.half) // self.step))
 
+    def centres(self, n: int) -> slice:
+        """The rows of the input that the rows of the output belong to."""
+        return slice(self.half, self.half + (self.rows(n) - 1) * self.step + 1, self.step)
+
     def __call__(self, x: Array, derivative: int = 0) -> Array:
         """`x` (n,) or (n, k) → derivative 0..3 by time, (rows(n),) or (rows(n), k)."""
         taps, m, step = self._kernel(derivative), self.rows(x.shape[0]), self.step
@@ -84,7 +88,7 @@ def _flat(factor: int) -> Array:
 
 
 def thin(x: Array, factor: int) -> tuple[Array, int]:
-    """Every `factor`-th row of `x` (n,) without aliases below a third of the new rate; also the row the first one is."""
+    """Every `factor`-th row of `x` (n,) without aliases below a third of the new rate; and where it begins."""
     taps = _flat(factor)
     half = (taps.size - 1) // 2
     m = max(0, -(-(x.size - 2 * half) // factor))
@@ -92,3 +96,12 @@ def thin(x: Array, factor: int) -> tuple[Array, int]:
     for j, tap in enumerate(taps[::-1]):
         out += tap * x[j : j + (m - 1) * factor + 1 : factor] if m else 0.0
     return out, half
+
+
+def flat(x: Array) -> Array:
+    """`x` (n,) without its upper half of frequencies, the lower third untouched: for what enters columns nonlinearly."""
+    taps = _flat(2)
+    half = (taps.size - 1) // 2
+    if x.size <= 2 * half:
+        return x
+    return np.convolve(np.pad(x, half, mode="edge"), taps, mode="valid")

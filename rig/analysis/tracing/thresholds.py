@@ -8,3 +8,19 @@ RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
 SLOWEST_TURNING: Final = 0.1  # rad/s of the motor; below it friction is not sliding friction: a tenth of a slow run
 SETTLING: Final = 0.15  # s left out of the torque equations on both sides of a reversal: presliding is over
+
+MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
+SECOND: Final = 1e-6  # s², (B_sp/K)²: a damping ratio of 5 % at 16 Hz, the second order of the spring's damping
+ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
+
+FLOOR_LEAST: Final = 400  # rows that two repeats must share before their difference is believed
+UNCORRELATED: Final = 0.05  # of the autocorrelation: below it rows count as independent
+
+FAINTEST: Final = 1e-5  # share of a column that must be its own before it is solved for
+CLEAR: Final = 0.5  # share of a column beside the model that must not be sensor noise
+EVIDENCE: Final = 12.0  # nats; at 300 variants tried, chance gets there once in a thousand campaigns
+
+NAMED: Final = 0.6  # of the held-out excess an effect must remove; true ones 0.73 and more, mimics 0.21 at most
+EXPLAINED: Final = 1.3  # held-out RMS over floor below which nothing more is looked for
+MOST: Final = 10  # terms: a rig with more effects than that is not explained by adding another
+SMALLEST: Final = 0.25  # of the floor, RMS where it matters most: smaller ones move no figure by 3 %

@@ -22,6 +22,7 @@ class ChannelTimeSkew(Effect):
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("about",)  # s, the skew the expansion is made at
     loose: ClassVar[tuple[bool, ...]] = (False,)
+    LARGEST: Final = 7e-3  # s, a quarter of a period at 36 Hz
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -39,3 +40,11 @@ class ChannelTimeSkew(Effect):
         along = np.zeros(fit.covariance.shape[0])
         along[0] = 1.0
         return (parameter("skew_theta_l", fit.coefficients[0], fit.half_width(along), "s"),)
+
+    def expands(self, shape: Shape) -> bool:
+        """About the skew itself."""
+        return True
+
+    def about(self, shape: Shape, coefficients: Array) -> Shape:
+        """The skew as found, within a quarter of a period of what the low-pass lets through."""
+        return (float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST)),)

@@ -1,0 +1,81 @@
+"""A folder of runs → recordings; what cannot be used is said, and is fatal only when nothing remains."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rig.analysis.tracing.recording import Recording, record
+from rig.core.errors import HdrigError, UsageError
+from rig.runfile.run import Run
+
+WORKERS = 2  # numpy leaves the interpreter's lock for nearly all of the work
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Runs of one rig in one assembly, in the order they were taken."""
+
+    name: str
+    runs: tuple[Recording, ...]
+    simulated: bool
+    notes: tuple[str, ...]
+
+
+def read_campaign(folder: Path) -> Campaign:
+    """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
+    if not folder.is_dir():
+        raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
+    places = sorted(path.parent for path in folder.glob("*/manifest.json"))
+    if not places:
+        raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it")
+    opened, notes = _open(places)
+    first = min((s for s in map(_started, opened) if s is not None), default=0.0)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        found = list(pool.map(lambda run: _record(run, first), opened))
+    runs = [r for r in found if isinstance(r, Recording)]
+    notes += [f"{r.name}: {note}" for r in runs for note in r.notes]
+    notes += [r for r in found if isinstance(r, str)]
+    if not runs:
+        raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {'; '.join(notes)[:300]}")
+    runs, odd = _same_gear(sorted(runs, key=lambda r: (r.start, r.name)))
+    return Campaign(folder.name, tuple(runs), any(run.simulated for run in opened), tuple(notes + odd))
+
+
+def _open(places: list[Path]) -> tuple[list[Run], list[str]]:
+    opened: list[Run] = []
+    notes: list[str] = []
+    for place in places:
+        try:
+            opened.append(Run.open(place))
+        except HdrigError as error:
+            notes.append(f"{place.name} was left out: {error}.")
+    return opened, notes
+
+
+def _started(run: Run) -> float | None:
+    try:
+        said = run.started
+    except UsageError:
+        return None
+    return said.timestamp() if said else None
+
+
+def _record(run: Run, first: float) -> Recording | str:
+    started = _started(run)
+    try:
+        made = record(run, (started if started is not None else first) - first)
+    except (HdrigError, ValueError) as error:
+        return f"{run.name} was left out: {error}."
+    return made if made.pieces else f"{run.name} was left out: no {0.1:g} s of it without a gap."
+
+
+def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:
+    """A campaign is one rig: runs of another ratio than most are left out."""
+    ratios, counts = np.unique([r.ratio for r in runs], return_counts=True)
+    usual = float(ratios[np.argmax(counts)])
+    odd = [f"{r.name} was left out: ratio {r.ratio:g}, the others have {usual:g}." for r in runs if r.ratio != usual]
+    return [r for r in runs if r.ratio == usual], odd

@@ -1,0 +1,109 @@
+"""Noise of each channel, from repeats where there are some, else from neighbouring turns and strokes of one run."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.equations import Equations, Key, Noise
+from rig.analysis.tracing.floor import (
+    FLOOR_LEAST,
+    Scatter,
+    autocorrelation,
+    compare,
+    effective,
+    repeats,
+    scatter,
+    strokes,
+)
+from rig.analysis.tracing.thresholds import ZERO
+from rig.model.effect import Array
+
+TURN = 2 * np.pi
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The noise to weight with, and what it was measured on: RMS by run (a repeated one) and channel."""
+
+    noise: Noise
+    by_run: dict[Key, float]
+    how: dict[str, str]
+
+
+def guess(eq: Equations) -> Noise:
+    """Before anything is fitted: what is rough in the responses."""
+    sigma: dict[str, float] = {}
+    for channel in CHANNELS:
+        rough = [np.diff(r.y, 4) for (_, c), r in eq.rows.items() if c == channel]
+        spread = float(np.median(np.abs(np.concatenate(rough)))) if rough else 1.0
+        sigma[channel] = max(spread / 0.6745 / np.sqrt(70) * 2, 1e-12)  # twice: the low-pass took half of it
+    return Noise(sigma, dict.fromkeys(CHANNELS, 4.0), {"A": np.inf, "M": np.inf, "L": np.inf})
+
+
+def measure(eq: Equations, e: Mapping[Key, Array], among: Sequence[int]) -> Measured:
+    """Floor of every channel from the runs `among`; `e` are residuals of any model that repeats share."""
+    pairs = repeats(eq.runs, among)
+    sigma, kappa, local = dict(eq.noise.sigma), dict(eq.noise.kappa), dict(eq.noise.local)
+    by_run: dict[Key, float] = {}
+    how: dict[str, str] = {}
+    for channel in CHANNELS:
+        found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
+        words = f"{len(found)} pairs of repeats compared at equal motor angle"
+        if not found:
+            found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
+            words = f"neighbouring turns or strokes of {len(found)} runs compared at equal motor angle, no repeats there"
+        if not found:
+            continue
+        how[channel] = words
+        n = np.array([s.rows for s in found])
+        sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in found], weights=n)))
+        kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
+        by_run |= {(i, channel): s.rms for s in found for i in s.pair}
+        local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
+    return Measured(Noise(sigma, kappa, local), by_run, how)
+
+
+def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: float) -> float:
+    """How far a run's offset lies from the others', beyond what noise does to a mean."""
+    least = {"A": np.inf, "M": ZERO / ratio, "L": ZERO}[channel]
+    if not np.isfinite(least) or len(found) < 3 or found[0].pair[0] == found[0].pair[1]:
+        return least
+    excess = np.mean([s.offset**2 / 2 - variance / s.rows for s in found])
+    return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
+
+
+def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
+    """One turn against the next, or one stroke against the next of its direction, of a single run."""
+    if key not in e:
+        return None
+    theta = eq.rows[key].theta_m
+    parts = strokes(theta)
+    if len(parts) >= 3:
+        made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
+    else:
+        made = [compare(theta[p] - TURN * np.sign(theta[p][-1] - theta[p][0]), e[key][p], theta[p], e[key][p]) for p in parts]
+    d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
+    if d.size < FLOOR_LEAST / 4:
+        return None
+    return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d))
+
+
+def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
+    """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all."""
+    if key in measured.by_run:
+        return measured.by_run[key]
+    run, channel = key
+    said = [v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].said == eq.runs[run].said]
+    same = [v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure]
+    pool = said or same
+    return float(np.sqrt(np.mean(np.square(pool)))) if pool else measured.noise.sigma[channel]
+
+
+def pairs_of(measured: Measured) -> int:
+    """Runs the floor rests on."""
+    return len({i for i, _ in itertools.chain(measured.by_run)})

@@ -1,0 +1,181 @@
+"""Which effects, together, explain what the baseline leaves: forward, with swaps and drops, on the fitted runs alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.bank import Bank
+from rig.analysis.tracing.channels import BASELINE, known_of
+from rig.analysis.tracing.equations import Key, Term
+from rig.analysis.tracing.model import Design, Solution, extended, fit, without
+from rig.analysis.tracing.refine import refine, sse
+from rig.analysis.tracing.scan import Drop, Own, cross, drops, own
+from rig.analysis.tracing.thresholds import EVIDENCE, MOST, SMALLEST
+from rig.model.effect import Array, Known, Reach
+
+
+ROUNDS = 4
+SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A term of the bank with its evidence in nats."""
+
+    term: Term
+    evidence: float
+    drop: float
+    size: float  # RMS over floor where it matters most
+
+
+@dataclass(frozen=True)
+class Found:
+    """Terms in the model and the fit; `ranking` is the first round's, best shape of each effect."""
+
+    solution: Solution
+    ranking: tuple[Scored, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Effects in the model, once each, in order of entry."""
+        return tuple(dict.fromkeys(term.name for term in self.solution.design.terms))
+
+
+@dataclass(frozen=True)
+class Search:
+    """What stays the same during a search."""
+
+    bank: Bank
+    own: Own
+    runs: tuple[int, ...]
+    keys: tuple[Key, ...]
+    covered: Reach
+
+    def ranked(self, s: Solution, u: dict[str, Array]) -> list[Scored]:
+        """All terms by evidence, best first; those too small to matter or with an impossible sign are left out."""
+        n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in self.keys)
+        tried: dict[str, int] = {}
+        for term in self.bank.terms:
+            tried[term.name] = tried.get(term.name, 0) + 1
+        out = []
+        for found in drops(self.bank, self.own, u, s):
+            term = self.bank.terms[found.term]
+            k = found.coefficients.size
+            evidence = found.drop / 2 - k / 2 * np.log(n) - np.log(tried[term.name])
+            out.append((evidence, found, term))
+        out.sort(key=lambda item: -item[0])
+        return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in out[:40] if e > 0]
+
+    def size(self, d: Design, found: Drop) -> float:
+        """RMS of the term over the floor, in the block where it is largest."""
+        most = 0.0
+        for key in self.keys:
+            place = self.bank.places[key[1]][found.term]
+            if place is not None and key in self.bank.columns:
+                f = self.bank.columns[key][:, place] @ found.coefficients
+                most = max(most, float(np.sqrt(np.mean(f**2))) / d.eq.noise.sigma[key[1]])
+        return most
+
+
+def search(d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach) -> Found:
+    """Add the best term again and again, then drop and swap what the later ones made needless."""
+    s = fit(d)
+    fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered)
+    u = cross(bank, d, keys, 0)
+    ranking: tuple[Scored, ...] = ()
+    for _ in range(MOST):
+        ranked = fixed.ranked(s, u)
+        ranking = ranking or _best_of_each(ranked)
+        chosen = next((r for r in ranked if r.evidence > EVIDENCE and r.size > SMALLEST and _new(r.term, s)), None)
+        if chosen is None:
+            break
+        s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
+        d, first = s.design, len(BASELINE)
+        new = cross(bank, d, keys, first)
+        u = {c: m[:first] for c, m in u.items()}
+        u = {c: np.vstack([u[c], new[c]]) for c in u}
+        d, s, u = _pruned(s, u)
+    return Found(s, ranking)
+
+
+def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
+    for _ in range(ROUNDS):
+        d, before, now = s.design, s.design.eq.runs[runs[0]].pieces[0].gear, known_of(s.values)
+        if _change(before, now) < SETTLED:
+            break
+        terms = d.terms
+        d = reduced(d, range(len(terms)))
+        d = replace(d, eq=d.eq.knowing(now))
+        for term in terms[:-1]:
+            d = extended(d, term, runs)
+        s = refine(d, terms[-1], runs, covered)[1]
+    return s
+
+
+def _change(before: Known, now: Known) -> float:
+    """Relative, of what effects lean on."""
+    a, b = before.kinematic_error, now.kinematic_error
+    old = np.array([*a.a, *a.b])
+    series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
+    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1))
+
+
+def _new(term: Term, s: Solution) -> bool:
+    return all(t.name != term.name or not _same(t, term) for t in s.design.terms)
+
+
+def _same(a: Term, b: Term) -> bool:
+    """The same effect again in a shape that the refit would have found."""
+    fixed = [i for i, loose in enumerate(a.effect.loose) if not loose]
+    return a.effect.expands(a.shape) or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
+
+
+def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
+    best: dict[str, Scored] = {}
+    for r in ranked:
+        best.setdefault(r.term.name, r)
+    return tuple(best.values())
+
+
+def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[str, Array]]:
+    """Without terms that explain nothing any more beside the newer ones."""
+    d = s.design
+    while len(d.terms) > 1:
+        full = sse(s)
+        n = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
+        loss = [
+            (sse(without(s, [i])) - full) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))
+        ]
+        worst = int(np.argmin(loss))
+        if loss[worst] > EVIDENCE:
+            break
+        stay = np.setdiff1d(np.arange(d.size), np.arange(d.size)[d.place(worst)])
+        d = reduced(d, [worst])
+        s = fit(d)
+        u = {c: m[stay] for c, m in u.items()}
+    return d, s, u
+
+
+def reduced(d: Design, gone: Sequence[int]) -> Design:
+    """The design without some of its terms."""
+    lost = np.concatenate([np.arange(d.size)[d.place(i)] for i in gone]) if gone else np.zeros(0, int)
+    stay = np.setdiff1d(np.arange(d.size), lost)
+    new = np.full(d.size, -1)
+    new[stay] = np.arange(stay.size)
+    keep = {key: np.isin(at, stay) for key, at in d.at.items()}
+    left = [i for i in range(len(d.terms)) if i not in set(gone)]
+    return Design(
+        d.eq,
+        tuple(d.terms[i] for i in left),
+        tuple(d.widths[i] for i in left),
+        d.y,
+        {key: z[:, keep[key]] for key, z in d.z.items()},
+        {key: new[at[keep[key]]] for key, at in d.at.items()},
+        {key: (y, z[:, keep[key]]) for key, (y, z) in d.spoilt.items()},
+        d.gram[np.ix_(stay, stay)],
+        d.right[stay],
+    )
