@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rig.campaign.plan import digest
+from rig.bench import BENCHES
+from rig.campaign.plan import PLANS, digest
 from rig.campaign.planner import Campaign
 from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
@@ -120,8 +121,8 @@ def new_journal(root: Path, campaign: Campaign, clock: str, overrides: Sequence[
     book: dict[str, Any] = {
         "schema": SCHEMA, "uid": uid, "name": plan.file.name, "title": plan.file.title, "status": "running",
         "sentence": "", "started_utc": now, "backend": "sim" if bench.simulated else "rig", "clock": clock,
-        "seed": campaign.seed, "plan": {"source": plan.source, "sha256": plan.sha256},
-        "bench": {"source": bench.source, "sha256": digest(bench.text), "overrides": list(overrides)},
+        "seed": campaign.seed, "plan": {"source": found_again(plan.source), "sha256": plan.sha256},
+        "bench": {"source": found_again(bench.source), "sha256": digest(bench.text), "overrides": list(overrides)},
         "process": this_process(), "sessions": [now], "rigging": Rigging().conditions(), "pending": None,
         "runs": [entry_of(item.record()) for item in campaign.items], "changes": [], "notes": [],
     }  # fmt: skip
@@ -133,6 +134,14 @@ def new_journal(root: Path, campaign: Campaign, clock: str, overrides: Sequence[
     journal = Journal(folder, book)
     journal._save()
     return journal
+
+
+def found_again(source: str) -> str:
+    """What names a bench or plan from any folder: of those that ship the bare name, of a file the whole path."""
+    path = Path(source)
+    if path.parent in (BENCHES, PLANS):
+        return path.stem
+    return str(path.resolve()) if path.exists() else source
 
 
 def entry_of(record: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any
 from rig.campaign.journal import Journal
 from rig.core.errors import HdrigError, NotReady
 from rig.runfile import manifest
+from rig.runfile.finalise import is_closed
 from rig.runfile.listing import run_folders
 from rig.runfile.recover import recover
 
@@ -23,6 +24,7 @@ def take_up(journal: Journal) -> list[str]:
     """
     journal.reopen()
     told = []
+    running = [k for k, entry in enumerate(journal.book["runs"], 1) if entry["status"] == "running"]
     for folder, about in unclosed(journal.folder):
         try:
             said = _closed(folder)
@@ -31,7 +33,7 @@ def take_up(journal: Journal) -> list[str]:
         told.append(said)
         journal.tell(said)
         number = (about.get("campaign") or {}).get("run")
-        if isinstance(number, int) and 0 < number <= len(journal.book["runs"]):
+        if number in running:
             journal.end(number - 1, "interrupted", said, folder)
     for index, entry in enumerate(journal.book["runs"]):
         if entry["status"] == "running":  # it died before there was a folder
@@ -52,11 +54,11 @@ def _closed(folder: Path) -> str:
 
 
 def unclosed(folder: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
-    """Runs in `folder` that still call themselves running."""
+    """Runs in `folder` whose samples nobody put into their archive: killed, or killed while that was done."""
     for path in map(Path, run_folders(str(folder))):
         try:
             about = manifest.read(path)
         except HdrigError:
             continue
-        if about.get("status") == "running":
+        if not is_closed(about):
             yield path, about

@@ -37,7 +37,7 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
 
     Returns the exit code: PASS when every run was made, or skipped by somebody.
     """
-    exit = Exit.INTERNAL
+    exit, session.facts = Exit.INTERNAL, {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
     try:
         _settle(session, journal, desk)
         exit = _runs(session, campaign, journal, desk)
@@ -123,7 +123,7 @@ def _by_hand(session: Session, journal: Journal, desk: Desk, change: Change) -> 
 def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk, index: int) -> Exit:
     """One run, whatever becomes of it written down."""
     item = campaign.items[index]
-    session.note = item.note
+    session.note, checks = item.note, session.facts
     session.facts = {"campaign": {"uid": journal.book["uid"], "run": index + 1, "kind": item.kind,
                                   "repeat": item.repeat, "of": item.of}}  # fmt: skip
     journal.begin(index)
@@ -136,7 +136,7 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
         desk.say(f"run {status}: {error}")
         return error.exit
     finally:
-        session.note, session.facts = "", {}
+        session.note, session.facts = "", checks
     return _ended(journal, desk, index, done)
 
 

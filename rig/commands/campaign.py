@@ -21,11 +21,23 @@ from rig.campaign.steps import Item
 from rig.commands.options import bench_arguments
 from rig.commands.person import Person
 from rig.commands.progress import Progress
-from rig.core.errors import UsageError
+from rig.core.errors import DataError, UsageError
 from rig.interrupts import Interrupts
 from rig.session import Session, Watch, operator
 
 DEFAULT = "twin"
+STUMBLES = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    OSError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)  # what analysis and report of a run can break off with; the campaign goes on
 SEEDS = 2**31  # of the order, drawn when none is given
 
 
@@ -69,8 +81,7 @@ def _resume(args: argparse.Namespace) -> int:
     """Go on with plan, bench, seed and clock it began with; what is named again has to be the same."""
     journal = read_journal(args.resume)
     book = journal.book
-    began = Path(book["plan"]["source"])
-    plan = read_plan(args.plan or str(began if began.exists() else journal.folder / "plan.toml"))
+    plan = read_plan(args.plan or _plan_of(journal))
     overrides = _overrides(args) if args.set or args.seed is not None else list(book["bench"]["overrides"])
     bench = read_bench(args.bench or book["bench"]["source"], overrides)
     campaign = planned(plan, bench, book["seed"] if args.seed is None else args.seed)
@@ -120,9 +131,20 @@ class Terminal(Desk):
             yield progress.watch
 
     def figure(self, folder: Path) -> str:
-        from rig.commands.analyse import analyse_folder
+        """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""
+        try:
+            from rig.commands.analyse import analyse_folder
 
-        return analyse_folder(folder, folder)[0].sentence
+            return analyse_folder(folder, folder)[0].sentence
+        except STUMBLES as error:
+            raise DataError(f"its analysis broke off ({type(error).__name__}: {error})") from error
+
+
+def _plan_of(journal: Journal) -> str:
+    """Where the plan came from; a sweep asked for by name, or a plan that is no longer there, from the campaign."""
+    source = str(journal.book["plan"]["source"])
+    ships = source in {path.stem for path in PLANS.glob("*.toml")}
+    return source if ships or Path(source).is_file() else str(journal.folder / "plan.toml")
 
 
 def _overrides(args: argparse.Namespace) -> list[str]:

@@ -40,7 +40,7 @@ def session(root: Path, *overrides: str, instead: dict[Change, Change | None] | 
 
 
 class Quiet(Desk):
-    """Keeps what it is told. During run number `stop_at`, from 1, it asks for a stop; during `trip_at` the drive trips."""
+    """Keeps what it is told. Run `stop_at`, from 1, is asked to stop; during run `trip_at` the drive trips."""
 
     def __init__(self, rig: Session, stop_at: int = 0, requests: int = 1, trip_at: int = 0) -> None:
         self.rig, self.interrupts = rig, rig.interrupts
