@@ -50,9 +50,9 @@ def run(args: argparse.Namespace) -> int:
     rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
     doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate)
-    process = Process(assembly, doors)
     if args.priority:
         hurry(args.priority)
+    process = Process(assembly, doors)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())
     assembly.agenda.at(args.seconds, process.reactor.stop)

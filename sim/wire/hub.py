@@ -37,7 +37,8 @@ def listen(path: Path, kind: socket.SocketKind) -> socket.socket:
     try:
         listening.bind(str(path))
     except OSError as error:
-        raise NotReady(f"cannot listen at {path}: {error.strerror}") from None
+        listening.close()
+        raise NotReady(f"cannot listen at {path}: {error.strerror or error}") from None
     listening.listen()
     listening.setblocking(False)
     return listening

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import math
+from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple, final
 
@@ -46,8 +47,10 @@ class Process:
         self.serial: dict[str, SerialLine] = {}
         self._sensors: dict[str, Sensor] = {}
         self.lines: list[str] = []
-        self._doors: list[Source] = []
-        self._open(doors)
+        with ExitStack() as opened:  # all of them, or none
+            self._opened = opened
+            self._open(doors)
+            self._opened = opened.pop_all()
 
     def _open(self, doors: Doors) -> None:
         bus = self.assembly.bus
@@ -85,7 +88,7 @@ class Process:
         self._add(self.serial[name])
 
     def _add(self, door: Source) -> None:
-        self._doors.append(door)
+        self._opened.callback(door.close)
 
     def _tell(self, what: str, how: str) -> None:
         self.lines.append(f"{what:8s} {how}")
@@ -93,8 +96,5 @@ class Process:
     def run(self) -> None:
         """Serve until the reactor is stopped; then everything is closed."""
         gc.freeze()  # what was made so far stays: collections of it would only cost time
-        try:
+        with self._opened:
             self.reactor.run()
-        finally:
-            for door in self._doors:
-                door.close()

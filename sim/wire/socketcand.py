@@ -27,6 +27,7 @@ class SocketCand(Source):
         try:
             self._socket.bind(("127.0.0.1", port))
         except OSError as error:
+            self._socket.close()
             raise NotReady(f"cannot serve socketcand at port {port}: {error.strerror}") from None
         self._socket.listen()
         self.port = self._socket.getsockname()[1]
