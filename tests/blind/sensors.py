@@ -78,10 +78,12 @@ def delayed(t: np.ndarray, x: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def lagged(x: np.ndarray, dt: float, tau: float) -> np.ndarray:
+    """First-order lag, exact for an input that is straight between ticks (first-order hold)."""
     a = float(np.exp(-dt / tau))
-    # trapezoidal input keeps the lag at tau, not tau - dt/2
-    drive = 0.5 * (x + np.concatenate([[x[0]], x[:-1]]))
-    return np.asarray(lfilter([1 - a], [1.0, -a], drive - x[0])) + x[0]
+    now = 1 - (1 - a) * tau / dt
+    start = x[0] - tau * (x[1] - x[0]) / dt  # in steady motion from before the record on
+    y, _ = lfilter([now, 1 - a - now], [1.0, -a], x[1:], zi=[a * start + (1 - a - now) * x[0]])
+    return np.concatenate([[start], y])
 
 
 def stamps(rng: np.random.Generator, n: int, dt: float, noise: Noise) -> np.ndarray:
