@@ -1,0 +1,41 @@
+"""Ramps join without a step, and holding lasts whole turns."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.control.profile import Ramp
+from rig.control.spin import hold_duration, hold_time, hold_travel
+
+speeds = st.floats(-60.0, 60.0)
+
+
+@given(start=speeds, end=speeds, t=st.floats(0.0, 20.0))
+def test_the_speed_of_a_ramp_is_the_slope_of_its_offset(start: float, end: float, t: float) -> None:
+    ramp, h = Ramp(start, end, 20.0), 1e-4
+    slope = (ramp.at(t + 2 * h)[0] - ramp.at(t)[0]) / (2 * h)
+    assert slope == pytest.approx(ramp.at(t + h)[1], abs=20.0 * h + 1e-6)
+
+
+@given(start=speeds, end=speeds)
+def test_a_ramp_ends_at_its_speed_after_its_travel_and_goes_on(start: float, end: float) -> None:
+    ramp = Ramp(start, end, 20.0)
+    offset, speed = ramp.at(ramp.duration + 1.0)
+    assert speed == end
+    assert offset == pytest.approx(ramp.travel + end, abs=1e-9)
+
+
+@given(omega=st.floats(0.5, 60.0), seconds=st.floats(0.1, 10.0))
+def test_holding_lasts_whole_turns_and_no_more_than_one_too_many(omega: float, seconds: float) -> None:
+    turns = omega * hold_time(omega, seconds) / (2 * math.pi)
+    assert turns == pytest.approx(round(turns), abs=1e-6)
+    assert seconds - 1e-9 <= hold_time(omega, seconds) < seconds + 2 * math.pi / omega + 1e-9
+
+
+def test_travel_and_duration_of_a_hold_are_mirrored_with_its_speed() -> None:
+    assert hold_travel(-30.0, 2.0) == -hold_travel(30.0, 2.0)
+    assert hold_duration(-30.0, 2.0) == hold_duration(30.0, 2.0)
