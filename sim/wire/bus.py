@@ -9,6 +9,7 @@ from sim.wire.agenda import Agenda
 from sim.wire.frame import Frame
 
 WINDOW = 0.5  # s over which the load is averaged
+MOST_WAITING = 64  # frames of one host that may wait for the bus; then it is not read, and its socket fills
 Receive = Callable[[Frame, float], None]  # frame, modelled time [s] at which it had passed
 
 
@@ -43,6 +44,11 @@ class Port:
             self._bus.request()
         else:
             self.lost += 1
+
+    @property
+    def has_room(self) -> bool:
+        """Whether a host may be read further."""
+        return len(self.queue) < MOST_WAITING
 
     def disconnect(self, keeps: bool) -> None:
         """The cable is out; `keeps` says whether what is sent meanwhile goes out on return."""

@@ -19,7 +19,6 @@ from sim.wire.frame import REMOTE, Frame
 from sim.wire.reactor import Reactor, Source
 
 PACKET = struct.Struct("<IB3x8sQ")
-WAITING = 64  # frames of one client that may wait for the bus; then it is not read, and its socket fills
 
 
 def listen(path: Path, kind: socket.SocketKind) -> socket.socket:
@@ -87,7 +86,7 @@ class Client(Source):
         return self._socket.fileno()
 
     def wants(self) -> bool:
-        return len(self.port.queue) < WAITING
+        return self.port.has_room
 
     def ready(self) -> None:
         while self.wants():

@@ -27,6 +27,10 @@ class LineDevice(ABC):
     def receive(self, data: bytes) -> None:
         """Bytes from the host, cut anywhere."""
 
+    def wants(self) -> bool:
+        """Whether it can take more now."""
+        return True
+
     @abstractmethod
     def plugged(self) -> None:
         """Power is there: start from the beginning."""
@@ -56,6 +60,9 @@ class SerialLine(Source):
 
     def fileno(self) -> int:
         return self._master
+
+    def wants(self) -> bool:
+        return self.device.wants()
 
     def plug(self) -> None:
         """There it is, under a new pty and the same link."""

@@ -27,6 +27,9 @@ class SerialCan(LineDevice):
     def plugged(self) -> None:
         self._open, self._text, self._rate = False, b"", self._bus.bitrate
 
+    def wants(self) -> bool:
+        return self.port.has_room
+
     def receive(self, data: bytes) -> None:
         *commands, self._text = (self._text + data).split(b"\r")
         for command in commands:

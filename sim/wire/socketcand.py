@@ -64,6 +64,9 @@ class Guest(Source):
     def fileno(self) -> int:
         return self._socket.fileno()
 
+    def wants(self) -> bool:
+        return self.station.has_room
+
     def ready(self) -> None:
         try:
             got = self._socket.recv(LONGEST)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import pytest
+
+pytestmark = pytest.mark.slow
 ENDS = [("sim.wire.process", "drivers"), ("drivers.unixbus", "sim")]
 
 

@@ -73,6 +73,13 @@ def test_late_and_doubled_frames(op: Operator) -> None:
     op.do("heal")
 
 
+def test_a_station_that_sent_its_frames_is_gone(op: Operator) -> None:
+    before = len(op.host.twin.bus.ports)
+    op.do("send", identifier=0x7E, data="01", every=0.001, count=5)
+    assert op.host.hears(0x7E, 0.1) == ["01"] * 5
+    assert len(op.host.twin.bus.ports) == before
+
+
 def test_swapped_frames_arrive_in_pairs_the_second_first(op: Operator) -> None:
     op.do("reorder", identifier=0x7E)
     op.do("send", identifier=0x7E, data="01")

@@ -12,6 +12,7 @@ from sim.wire.faults.words import Number, number
 from sim.wire.frame import ERROR, EXTENDED, Frame
 from sim.wire.tampers import Delay, Drop, Duplicate, Reorder, Resize
 
+GONE = 0.01  # s after its last frame a station that should not be there is no longer there
 BUS_OFF = Frame(ERROR | 0x40, bytes(8))  # CAN_ERR_BUSOFF of linux/can/error.h
 
 
@@ -106,6 +107,17 @@ class BusFaults:
             ghost.send(frame)
         if left > 1:
             self._bus.agenda.after(every, lambda: self._repeat(ghost, frame, every, left - 1))
+        else:
+            self._bus.agenda.after(GONE, lambda: self._retire(ghost))
+
+    def _retire(self, ghost: Port) -> None:
+        if ghost not in self._ghosts:
+            return
+        if ghost.queue:  # it has not had the bus yet
+            self._bus.agenda.after(GONE, lambda: self._retire(ghost))
+            return
+        self._ghosts.remove(ghost)
+        ghost.leave()
 
     def _tamper(self, tamper: Tamper) -> None:
         self._bus.tampers.append(tamper)
