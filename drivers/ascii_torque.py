@@ -63,6 +63,7 @@ class AsciiTorque(TorqueSensor):
     def read(self) -> TorqueReading:
         """The newest line; never waits."""
         data = self.port.read()
+        self.trouble = self.port.dead
         if not data:
             return self._last
         for line in reversed(self._lines.feed(data)):

@@ -222,14 +222,16 @@ class Cia402(Drive):
         word, mode, permille = decode_status(status.data)
         self._judge(word, mode)
         flags = self._saturated | (Flag.SATURATED_DRIVE if word & 1 << 11 else 0)
-        if motion.latched != self._last.t:
+        latched = min(status.latched, motion.latched)  # the older of the two: neither may fall silent alone
+        if latched != self._last.t:
+            self.node.answered(motion)
             jump = self._angle.step(struct.unpack("<i", motion.data)[0])
             if jump:
                 flags |= Flag.EPOCH
                 self._blame(f"the motor's count jumped by {jump} between two readings: reset, or a count lost")
         counts = self._direction * (self._angle.counts or 0)
         tau = self._direction * permille / PERMILLE * self._rated
-        self._last = DriveReading(motion.latched, counts * self._step, counts, tau, flags)
+        self._last = DriveReading(latched, counts * self._step, counts, tau, flags)
         return self._told(self._last)
 
     def _judge(self, statusword: int, mode: int) -> None:

@@ -71,9 +71,11 @@ class Cia404(TorqueSensor):
     def read(self) -> TorqueReading:
         """The newest torque; never waits. At the end of its range it is flagged."""
         self.bus.drain()
+        self.trouble = self.node.trouble(self.bus.clock.now())
         frame = self.bus.frames.get(self._identifier)
         if frame is None or len(frame.data) < 4 or frame.latched == self._last.t:
             return self._last
+        self.node.answered(frame)
         raw = struct.unpack("<i" if self._whole else "<f", frame.data[:4])[0]
         tau = self._direction * raw * self._scale
         over = not math.isfinite(tau) or abs(tau) >= 0.999 * self.place.range

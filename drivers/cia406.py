@@ -79,13 +79,14 @@ class Cia406(Encoder):
         return per_turn, per_turn * max(self.node.read_uint(0x6502, default=1), 1)
 
     def read(self) -> AngleReading:
-        """The newest position; never waits. Rebooted or silent nodes go stale; a jump is marked as a new epoch."""
+        """The newest position; never waits. A jump is marked as a new epoch; `trouble` says what else is wrong."""
         self.bus.drain()
+        self.trouble = self.node.trouble(self.bus.clock.now())
         frame = self.bus.frames.get(self._identifier)
         if frame is None or len(frame.data) < 4 or frame.latched == self._last.t:
             return self._last
-        flags = Flag.EPOCH if self._angle.step(decode_position(frame.data)) or self.node.rebooted else 0
-        self.node.rebooted = False
+        self.node.answered(frame)
+        flags = Flag.EPOCH if self._angle.step(decode_position(frame.data)) else 0
         counts = self._direction * (self._angle.counts or 0)
         self._last = AngleReading(frame.latched, counts * self._step, counts, int(flags))
         return self._last

@@ -16,7 +16,7 @@ import can
 import canopen
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
-from drivers.bus import HEARTBEAT, Bus
+from drivers.bus import HEARTBEAT, Bus, Frame
 from rig.core.devices import Identity
 from rig.core.errors import NotReady
 
@@ -27,6 +27,7 @@ BOOT_UP, STOPPED, OPERATIONAL, PREOP = 0x00, 0x04, 0x05, 0x7F  # NMT states in a
 NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational", PREOP: "pre-operational"}
 PRODUCE = 50  # ms between a node's heartbeats
 PATIENCE = 3.5  # heartbeats that may stay away
+TWICE = 5  # SYNCs in a row answered twice that are no accident
 INVALID = 1 << 31  # of a PDO's identifier: not in use
 NO_OBJECT = {0x06020000, 0x06090011}  # abort codes: no such object, no such sub-index
 MISSING = object()
@@ -73,6 +74,8 @@ class Node:
         self.state: int | None = None  # NMT state it last told
         self.heard = float("-inf")  # s on the loop's clock, last heartbeat
         self._sdo: Any = None
+        self._number = 0  # of the frame seen last
+        self._twice = 0  # SYNCs in a row that were answered more than once
 
     def open(self) -> None:
         """Open the bus and listen to the node; it is asked nothing yet. Raises NotReady."""
@@ -199,10 +202,17 @@ class Node:
             told = "nothing" if self.state is None else NMT_NAMES.get(self.state, f"state {self.state:#x}")
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
 
+    def answered(self, frame: Frame) -> None:
+        """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error."""
+        self._twice = self._twice + 1 if frame.number - self._number > 1 else 0
+        self._number = frame.number
+
     def trouble(self, now: float) -> str:
         """What is wrong with the node as such, in words; "" when nothing is."""
         if self.bus.dead:
             return self.bus.dead
+        if self._twice > TWICE:
+            return f"every SYNC is answered twice for {self.who}: are there two nodes of this number?"
         if self.rebooted:
             return f"{self.who} rebooted: its configuration and position are lost"
         if self.emergency:

@@ -84,6 +84,7 @@ class Qsb(Encoder):
 
     def read(self) -> AngleReading:
         """The newest count; never waits."""
+        self.trouble = self.port.dead
         for line in self._lines.feed(self.port.read()):
             answer = decode_answer(line)
             if answer and answer[0] in "rs" and answer[1] == ENCODER:

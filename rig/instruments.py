@@ -80,10 +80,11 @@ class Instruments:
         if t_m == last[0]:
             flags |= Flag.STALE_M
         last[0] = t_m
-        theta_l, counts_l, tau_l = NAN, 0, NAN
+        theta_l, counts_l, tau_l, fault = NAN, 0, NAN, motor[5]
         if self.load_encoder is not None:
             t_l, theta_l, counts_l, more = self.load_encoder.read()
             flags |= more
+            fault = fault or self.load_encoder.trouble
             if t_l == last[1]:
                 flags |= Flag.STALE_L
             last[1] = t_l
@@ -92,6 +93,7 @@ class Instruments:
         if self.torque_sensor is not None:
             t_tau, tau_l, more = self.torque_sensor.read()
             flags |= more
+            fault = fault or self.torque_sensor.trouble
             if t_tau == last[2]:
                 flags |= Flag.STALE_TAU
             if tau_l != self._tau:
@@ -104,7 +106,7 @@ class Instruments:
         t = t_m - self.started
         age = now - oldest
         omega = self.speed_filter.step(t, motor[1])
-        return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), motor[5])
+        return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), fault)
 
     def write(self, setpoint: Setpoint) -> float:
         """Command the drive; returns what it could be given [N·m]."""

@@ -87,12 +87,16 @@ class Loop:
         return self._leave(ending, confirmed)
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
-        self.instruments.start()
-        self.supervisor.act(Act.ENABLE)
-        self.instruments.drive.enable()
-        self.supervisor.act(Act.RUN, procedure.name)
-        self.running = True
-        return self._tick(procedure, setting)
+        try:
+            self.instruments.start()
+            self.supervisor.act(Act.ENABLE)
+            self.instruments.drive.enable()
+            self.supervisor.act(Act.RUN, procedure.name)
+            self.running = True
+            return self._tick(procedure, setting)
+        except BaseException:
+            self.instruments.safe()  # before anything else, giving memory and priority back included
+            raise
 
     def _tick(self, procedure: Procedure, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write

@@ -57,6 +57,7 @@ class Device(ABC):
     """Anything the bench can open."""
 
     name: str
+    trouble: str = ""  # what is wrong with the device itself, in words, as of the last reading; a drive says it there
 
     @abstractmethod
     def connect(self) -> Identity:
