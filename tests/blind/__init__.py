@@ -10,9 +10,9 @@ reader whether it takes a folder. What is here, in the order it is used:
   set-valued dry friction, so that stiction is true; `sensors.py` makes counts, noise, zeros that jump and clocks that
   jitter of the motion; `campaign.py` runs a plan through them; `folder.py` writes run folders with pyarrow.
 - `residual.py` and `strength.py` size an effect: residual RMS with it over residual RMS without it, at the same noise
-  seed, after a baseline fit of their own. Strengths are drawn from 1.3 to 20 times the floor of the channel that shows most;
-  where a form reaches its physical bound first, the truth states what was reached.
-- `cases.py`, `suite.py`, `generate.py` make cases; the truth lies apart and its sha256 is in HASHES before anything is traced.
+  seed, after a baseline fit of their own. Strengths are drawn from 1.3 to 20 times the floor of the channel that
+  shows most; where a form reaches its physical bound first, the truth states what was reached.
+- `cases.py`, `suite.py`, `generate.py` make cases; truth lies apart, its sha256 in HASHES before anything is traced.
 - `score.py` runs the tracer on each case and compares; `peers/` gives other methods the same splits.
 
     python -m tests.blind.generate --kind single --effect stribeck_friction --form lorentzian --seed 7 --out DIR
@@ -20,12 +20,12 @@ reader whether it takes a folder. What is here, in the order it is used:
     python -m tests.blind.score DIR
 
 Kinds: single (textbook form), single_other (another form), crowded (one main effect among eight at 2 to 6 % of their
-typical size), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper, noreps,
-one_direction, no_torque_sensor.
+typical size), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper,
+noreps, one_direction, no_torque_sensor.
 
 Limits of this test: rig, noise and effects are simulated by people who had read the same notes as the tracer's authors;
-the declared inertias are exact; every run starts from the same home position; one effect at a time claims the extra body,
-the friction memory or the hysteresis.
+the declared inertias are exact; every run starts from the same home position; one effect at a time claims the extra
+body, the friction memory or the hysteresis.
 """
 
 import os

@@ -67,14 +67,15 @@ class Builder:
     def par(self, locked: bool) -> Par:
         """Scalars of a run; `locked` holds the output."""
         rig = self.rig
-        values = dict(
-            N=rig.N, J_m=rig.J_m, J_l=rig.J_l, K=rig.K, B_m=rig.B_m, B_l=rig.B_l, B_ml=rig.B_ml, B_sp=rig.B_sp,
-            T_c=rig.T_c, T_l=rig.T_l, extra=0, J_x=1.0, k_x=0.0, c_x=0.0, dry_x=0.0, friction=0, sigma_0=300.0,
-            sigma_1=0.0, share=0.5, hysteresis=0, bw_k=0.0, bw_x=1.0, bw_beta=0.5, bw_n=1.0, t_slow=0.03,
-            back_driven=1.0, heat_gain=0.0, heat_tau=900.0, warm_c=0.0, warm_v=0.0, warm_tau_1=600.0,
-            warm_tau_2=600.0, warm_share=1.0, aging=0.0, aging_tau=1800.0, ke_aging=0.0, lag_angle=0.0,
-            lag_scale=0.05, dead_zone=0.0, locked=int(locked),
-        )  # fmt: skip
+        values: dict[str, float] = {
+            "N": rig.N, "J_m": rig.J_m, "J_l": rig.J_l, "K": rig.K, "B_m": rig.B_m, "B_l": rig.B_l,
+            "B_ml": rig.B_ml, "B_sp": rig.B_sp, "T_c": rig.T_c, "T_l": rig.T_l, "extra": 0, "J_x": 1.0, "k_x": 0.0,
+            "c_x": 0.0, "dry_x": 0.0, "friction": 0, "sigma_0": 300.0, "sigma_1": 0.0, "share": 0.5,
+            "hysteresis": 0, "bw_k": 0.0, "bw_x": 1.0, "bw_beta": 0.5, "bw_n": 1.0, "t_slow": 0.03,
+            "back_driven": 1.0, "heat_gain": 0.0, "heat_tau": 900.0, "warm_c": 0.0, "warm_v": 0.0,
+            "warm_tau_1": 600.0, "warm_tau_2": 600.0, "warm_share": 1.0, "aging": 0.0, "aging_tau": 1800.0,
+            "ke_aging": 0.0, "lag_angle": 0.0, "lag_scale": 0.05, "dead_zone": 0.0, "locked": int(locked),
+        }  # fmt: skip
         integers = {name: int(self.scalars.get(name, values[name])) for name in ("extra", "friction", "hysteresis")}
         return Par(**{**values, **self.scalars, **integers})
 

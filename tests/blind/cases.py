@@ -20,7 +20,7 @@ KINDS = ("single", "single_other", "crowded", "pair", "clean", "outside", "ambig
 
 @dataclass(frozen=True)
 class Request:
-    """What to make: a kind, optionally a named effect and form, a plan, a seed, a strength over the floor (0: draw it)."""
+    """What to make: kind, effect and form ('': drawn), plan, seed, strength over the floor (0: drawn)."""
 
     kind: str
     seed: int
@@ -28,6 +28,27 @@ class Request:
     effect: str = ""
     form: str = ""
     over_floor: float = 0.0
+
+
+@dataclass(frozen=True)
+class Part:
+    """One hidden effect. `alone`: residual over floor it reaches by itself (foretold; 0 for the small ones)."""
+
+    form: Form
+    strength: float
+    role: str
+    alone: float
+
+    def described(self) -> dict[str, object]:
+        return {
+            "effect": self.form.effect,
+            "form": self.form.name,
+            "textbook": self.form.textbook,
+            "role": self.role,
+            "strength": self.strength,
+            "size_alone": self.alone,
+            "coordinates": list(self.form.coordinates),
+        }
 
 
 @dataclass(frozen=True)
@@ -116,38 +137,28 @@ def make(request: Request) -> Case:
     clean = simulate(Builder(stage.rig), plan, stage.noise, stage.seed)
     kept = {run.name for run in short(plan).runs}
     brief = [run for run in clean if run.plan.name in kept]
-    parts: list[tuple[Form, float, str]] = []
+    parts: list[Part] = []
     for place, form in enumerate(found):
         target = request.over_floor or float(np.exp(rng.uniform(np.log(1.3), np.log(20.0))))
-        parts.append((form, calibrate(stage, form, place, target, brief), "main"))
+        strength, alone = calibrate(stage, form, place, target, brief)
+        parts.append(Part(form, strength, "main", alone))
     if request.kind == "crowded":
-        parts += [(form, share, "small") for form, share in small_ones(found[0], rng)]
+        parts += [Part(form, share, "small", 0.0) for form, share in small_ones(found[0], rng)]
     return assemble(request, stage, parts, clean)
 
 
-def assemble(request: Request, stage: Stage, parts: list[tuple[Form, float, str]], clean: list[Taken]) -> Case:
+def assemble(request: Request, stage: Stage, parts: list[Part], clean: list[Taken]) -> Case:
     """Put all parts into one plant, run it, and write down what was done."""
     builder, described = Builder(stage.rig), []
-    for place, (form, strength, role) in enumerate(parts):
-        parameters = form.build(builder, shape_rng(stage.seed, place), strength)
-        described.append(describe(form, strength, role) | {"parameters": {k: float(v) for k, v in parameters.items()}})
+    for place, part in enumerate(parts):
+        parameters = part.form.build(builder, shape_rng(stage.seed, place), part.strength)
+        described.append(part.described() | {"parameters": {k: float(v) for k, v in parameters.items()}})
     runs = clean if not parts else simulate(builder, stage.plan, stage.noise, stage.seed)
     excess = over_floor(runs, clean)
     inside = [d["effect"] for d in described if d["role"] == "main" and not d["coordinates"]]
     truth: Truth = {
         "kind": request.kind, "plan": stage.plan.name, "seed": request.seed, "effects": inside, "hidden": described,
-        "over_floor": excess, "size": size(excess, tuple(inside)), "rig": stage.rig.as_truth(), "noise": asdict(stage.noise),
-        "resonance_hz": stage.rig.resonance_hz(),
+        "over_floor": excess, "size": size(excess, tuple(inside)), "rig": stage.rig.as_truth(),
+        "noise": asdict(stage.noise), "resonance_hz": stage.rig.resonance_hz(),
     }  # fmt: skip
     return Case(stage, runs, truth)
-
-
-def describe(form: Form, strength: float, role: str) -> dict[str, object]:
-    return {
-        "effect": form.effect,
-        "form": form.name,
-        "textbook": form.textbook,
-        "role": role,
-        "strength": strength,
-        "coordinates": list(form.coordinates),
-    }

@@ -1,4 +1,4 @@
-"""Write run folders by /work/shared/run-format.md with pyarrow alone: samples.parquet and manifest.json, nothing of ours."""
+"""Write run folders (format hdrig.run/1) with pyarrow alone: samples.parquet and manifest.json, nothing of ours."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FIRST_RUN = datetime(2026, 11, 3, 8, 0, 0, tzinfo=UTC)
 
 
 def manifest(plan: RunPlan, rig: Rig) -> dict[str, object]:
-    """What a stranger's logger writes beside the samples: declared numbers, conditions, encoders; no word of effects."""
+    """What a stranger's logger writes beside the samples: declared numbers, conditions, encoders; no effects."""
     conditions: dict[str, object] = {"tau_ext": plan.tau_ext, "output_locked": plan.locked}
     if plan.procedure == "constant_torque":
         conditions["speed_rpm"] = int(plan.speed_rpm)

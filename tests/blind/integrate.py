@@ -142,7 +142,7 @@ def step(s, par, tab, data, tau, on_load, noise_m, noise_l, scale_c, scale_v, ag
 
 @compiled
 def warmth(s, par, t):
-    """Factors of dry and viscous friction at campaign time t: warm-up with two time constants, and heat made by rubbing."""
+    """Factors of dry and viscous friction at campaign time t: warm-up by the clock, and heat made by rubbing."""
     fade = par.warm_share * np.exp(-t / par.warm_tau_1) + (1.0 - par.warm_share) * np.exp(-t / par.warm_tau_2)
     heated = np.exp(-par.heat_gain * s[HEAT])
     return (1.0 + par.warm_c * fade) * heated, (1.0 + par.warm_v * fade) * heated

@@ -1,4 +1,4 @@
-"""The gear's forces and one integration step, compiled. Written for the blind test alone; shares no line with `sim` or `rig`.
+"""The gear's forces and one integration step, compiled. Written for the blind test alone.
 
 Scheme: drift-kick-drift in the positions (Moreau's midpoint rule), rigid dry friction as the exact set-valued law at
 velocity level, so a motor at rest sticks for good and no regularisation creeps. Second order for the conservative part;

@@ -1,8 +1,8 @@
 """What the baseline model leaves over, by a fit of this test's own: to size effects and to feed the peers.
 
-Three channels: angle (theta_l), load torque (tau_l), motor torque (tau_m). The torque sensor's zero is free in every run,
-the others are one for the campaign. The model is the paper's: 15 orders, constant stiffness, viscous damping, constant
-friction.
+Three channels: angle (theta_l), load torque (tau_l), motor torque (tau_m). The torque sensor's zero is free in every
+run, the others are one for the campaign. The model is the paper's: 15 orders, constant stiffness, viscous damping,
+constant friction.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The true rig of a case: numbers of its own, spread ±30 % around a drive of size 40 like the paper's, all of it assumed."""
+"""The true rig of a case: its own numbers, ±30 % around a drive of size 40 like the paper's, all of it assumed."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def kinematic_error(rng: np.random.Generator) -> tuple[tuple[float, ...], tuple[
 
 
 def draw(rng: np.random.Generator, lowest_hz: float, highest_hz: float) -> Rig:
-    """A rig whose resonance lies between the two frequencies, so that no steady run sits on it (redrawn until it does)."""
+    """A rig whose resonance lies between the two frequencies (redrawn until it does): no steady run sits on it."""
     while True:
         spread = rng.uniform(0.7, 1.3, 9)
         a, b = kinematic_error(rng)

@@ -1,4 +1,4 @@
-"""From the true motion to what the loggers write: counts, noise, zeros that jump, a clock that jitters, and sensor effects."""
+"""From the true motion to what the loggers write: counts, noise, zeros that jump, a clock that jitters, effects."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Noise:
 
 
 def draw_noise(rng: np.random.Generator) -> Noise:
-    """Noise of one rig: near the level of the reference campaigns, spread ±30 %; one rig in three has a jittering clock."""
+    """Noise of one rig: the level of the reference campaigns ±30 %; one rig in three has a clock that jitters."""
     u = rng.uniform(0.7, 1.3, 10)
     jitter = float(rng.choice([0.0, 0.0, 2e-5]))
     return Noise(
-        friction_m=1.5e-3 * u[0], friction_l=0.035 * u[1], wander=2.4e-6 * u[2], tau_l=0.048 * u[3], tau_m=1.7e-3 * u[4],
-        encoder_l=1.5e-6 * u[5], zero=0.05 * float(rng.standard_normal()), zero_jump=0.004 * u[7], zero_drift=0.002 * u[8],
-        gain=1.5e-4 * u[9], jitter=jitter,
+        friction_m=1.5e-3 * u[0], friction_l=0.035 * u[1], wander=2.4e-6 * u[2], tau_l=0.048 * u[3],
+        tau_m=1.7e-3 * u[4], encoder_l=1.5e-6 * u[5], zero=0.05 * float(rng.standard_normal()),
+        zero_jump=0.004 * u[7], zero_drift=0.002 * u[8], gain=1.5e-4 * u[9], jitter=jitter,
     )  # fmt: skip
 
 
@@ -55,7 +55,7 @@ def coloured(rng: np.random.Generator, n: int, dt: float, corner_hz: float) -> n
 
 @dataclass(frozen=True)
 class Context:
-    """Of the run whose columns are changed: clock time of the campaign at t = 0 and generator for effects with chance."""
+    """The run whose columns are changed: campaign time at its t = 0, and a generator for effects with chance."""
 
     name: str
     start_s: float
@@ -100,7 +100,8 @@ def measure(
 ) -> Columns:
     """Rows of one run from the 1 kHz record `raw` (t from 0; theta_m, theta_l, tau_l, tau_m in SI)."""
     grid = raw["t"]
-    n = int(round((grid[-1] - grid[0]) / plan_dt))
+    n = round((grid[-1] - grid[0]) / plan_dt)
+    every = round(plan_dt / 1e-3)
     t = stamps(rng, n, plan_dt, noise)
     out: Columns = {"t": t}
     for name in ("theta_m", "theta_l", "tau_l", "tau_m"):
@@ -109,7 +110,7 @@ def measure(
             x = lagged(x, float(grid[1] - grid[0]), sensors.lag[name])
         shift = sensors.late.get(name, 0.0)
         if shift == 0.0 and noise.jitter == 0.0:
-            out[name] = x[: n * int(round(plan_dt / 1e-3)) : int(round(plan_dt / 1e-3))].copy()
+            out[name] = x[: n * every : every].copy()
         elif name == "tau_m":  # a command is held between ticks
             index = np.clip(np.floor((t - shift) / 1e-3 + 1e-9).astype(int), 0, len(x) - 1)
             out[name] = x[index]

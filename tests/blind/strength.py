@@ -1,4 +1,4 @@
-"""How strong an effect is: residual with it over residual without it, same rig, same noise seed, baseline refitted to each."""
+"""How strong an effect is: residual with it over residual without it, same rig, same noise seed, baseline refitted."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def over_floor(runs: list[Taken], clean: list[Taken]) -> Excess:
 
 
 def at_reversals(runs: list[Taken], clean: list[Taken]) -> float:
-    """The same for tau_m - tau_l/N where the motor turns back, compared in time; the floor is the scatter of clean repeats."""
+    """The same for tau_m - tau_l/N where the motor turns back, compared in time; floor: scatter of clean repeats."""
     other = {run.plan.name: passing(run) for run in runs}
     change, scatter = [], []
     by_name = {run.plan.name: run for run in clean if run.plan.amplitude and not (run.plan.one_way or run.plan.locked)}
@@ -91,8 +91,10 @@ def shape_rng(seed: int, place: int) -> np.random.Generator:
     return np.random.default_rng([seed, 77, place])
 
 
-def calibrate(stage: Stage, form: Form, place: int, target: float, clean: list[Taken]) -> float:
-    """Strength at which `form` alone reaches `target` times the floor, within the form's physical bounds."""
+def calibrate(stage: Stage, form: Form, place: int, target: float, clean: list[Taken]) -> tuple[float, float]:
+    """Strength at which `form` alone reaches `target` times the floor, within the form's physical bounds, and what it
+    then reaches (foretold from the last try).
+    """
     plan = short(stage.plan)
 
     def excess_at(strength: float) -> float:
@@ -103,13 +105,14 @@ def calibrate(stage: Stage, form: Form, place: int, target: float, clean: list[T
     return secant(excess_at, target, form.weakest, form.strongest)
 
 
-def secant(excess_at: Callable[[float], float], target: float, low: float, high: float) -> float:
-    """Excess power grows about as strength squared: three corrections along that line."""
+def secant(excess_at: Callable[[float], float], target: float, low: float, high: float) -> tuple[float, float]:
+    """Excess power grows about as strength squared: up to three corrections along that line."""
     strength, want = min(max(1.0, low), high), np.sqrt(target**2 - 1)
     for _ in range(3):
         have = np.sqrt(max(excess_at(strength) ** 2 - 1, 1e-4))
         better = float(np.clip(strength * np.clip(want / have, 0.05, 20.0), low, high))
-        if abs(np.log(better / strength)) < 0.15:
-            return better
+        change = better / strength
         strength = better
-    return strength
+        if abs(np.log(change)) < 0.15:
+            break
+    return strength, float(np.sqrt(1 + (have * change) ** 2))

@@ -27,7 +27,7 @@ def counts(total: int) -> dict[str, int]:
 
 
 def requests(total: int, seed: int) -> list[Request]:
-    """`total` requests; effects come in turn, so that none is left out by chance; one single in ten has a poorer plan."""
+    """`total` requests; effects come in turn, so that none is left out; one single in ten has a poorer plan."""
     rng = np.random.default_rng([seed, 9])
     seeds = iter(int(s) for s in rng.choice(2**31, size=total, replace=False))
     inside, outside = endless(rng, EFFECTS), endless(rng, tuple(form.effect for form in OUTSIDE))

@@ -125,7 +125,7 @@ def test_a_campaign_holds_no_word_of_what_is_hidden(tmp_path: Path) -> None:
     words = {*EFFECTS, "strength", "hidden", "true", "K_true", str(on.rig.K)}
     for path in (tmp_path / "case").rglob("manifest.json"):
         text = path.read_text(encoding="utf-8")
-        assert not [word for word in words if f'"{word}"' in text or word == str(on.rig.K) and word in text]
+        assert not [word for word in words if f'"{word}"' in text or (word == str(on.rig.K) and word in text)]
         assert json.loads(text)["declared"]["K"] == rigs.NOMINAL_K
 
 

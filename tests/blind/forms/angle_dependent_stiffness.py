@@ -1,4 +1,4 @@
-"""Stiffness modulated by angle [physics B5]: order two of the motor (textbook), several orders, once per output turn."""
+"""Stiffness modulated by angle [physics B5]: order two of the motor (textbook), several orders, two flat lobes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One channel read later than another [physics D7]: load angle late (textbook), motor angle late, torque behind a filter."""
+"""One channel read later than another [physics D7]: load angle late (textbook), motor angle late, load angle dull."""
 
 from __future__ import annotations
 

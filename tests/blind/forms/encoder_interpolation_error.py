@@ -1,4 +1,4 @@
-"""Orders of an encoder's line count [physics D5]: one per line (textbook), offset-gain-phase mix, in the motor encoder."""
+"""Orders of an encoder's line count [physics D5]: one per line (textbook), faulty sine pair, motor encoder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fixed frequency whatever the speed [physics E7]: sine on the load (textbook), two lines with beating, shaken read head."""
+"""Fixed frequency whatever the speed [physics E7]: sine on the load (textbook), two lines that swell, shaken head."""
 
 from __future__ import annotations
 

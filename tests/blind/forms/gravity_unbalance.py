@@ -1,4 +1,4 @@
-"""Torque once per output turn on the load [physics E4]: sine (textbook), with a second order, a cable that pulls one way."""
+"""Torque once per output turn on the load [physics E4]: sine (textbook), with a second order, eccentric mass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rate-independent loop of torque against wind-up [physics B2]: elasto-slip elements, Bouc-Wen, Dahl in the deflection."""
+"""Rate-independent loop of torque against wind-up [physics B2]: elasto-slip (textbook), Bouc-Wen, Dahl."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kinematic error that shrinks with load [physics C1]: exponential (textbook), rational, orders that shrink unequally."""
+"""Kinematic error that shrinks with load [physics C1]: exponential (textbook), rational, unequal orders."""
 
 from __future__ import annotations
 

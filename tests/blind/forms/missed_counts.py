@@ -1,4 +1,4 @@
-"""A permanent step in one encoder [physics D8]: steps of the load encoder (textbook), a random walk, steps of the motor's."""
+"""A permanent step in one encoder [physics D8]: load encoder (textbook), a random walk, motor encoder."""
 
 from __future__ import annotations
 

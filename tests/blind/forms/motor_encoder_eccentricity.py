@@ -1,4 +1,4 @@
-"""Once per motor turn in the motor encoder alone [physics D3]: sine (textbook), exact disc geometry, with ellipticity."""
+"""Once per motor turn in the motor encoder alone [physics D3]: sine (textbook), exact disc, with ellipticity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Friction modulated by the wave generator [physics A4]: order two (textbook), several orders, two sharp tight spots."""
+"""Friction modulated by the wave generator [physics A4]: order two (textbook), several orders, tight spots."""
 
 from __future__ import annotations
 

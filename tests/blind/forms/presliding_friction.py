@@ -1,4 +1,4 @@
-"""Friction with memory around reversals [physics A3]: LuGre (textbook), two elasto-slip elements, a soft Dahl spring."""
+"""Friction with memory around reversals [physics A3]: LuGre (textbook), two elasto-slip elements, Dahl."""
 
 from __future__ import annotations
 

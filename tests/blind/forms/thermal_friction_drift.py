@@ -1,4 +1,4 @@
-"""Friction that falls as the drive warms [physics A5]: one time constant (textbook), two, or heated by its own losses."""
+"""Friction that falls as the drive warms [physics A5]: one constant (textbook), two, heated by its losses."""
 
 from __future__ import annotations
 

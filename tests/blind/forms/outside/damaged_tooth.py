@@ -1,4 +1,4 @@
-"""Outside the library: a local bump of the kinematic error at one output angle, and a flat one in the friction there."""
+"""Outside the library: a local bump of the kinematic error at one output angle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outside the library: the kinematic error grows while the campaign is taken (a wave-generator bearing coming loose)."""
+"""Outside the library: the kinematic error grows while the campaign is taken: a bearing comes loose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outside the library: the motor's torque lags its current by magnetic memory (play operators on the reported torque)."""
+"""Outside the library: the motor's torque lags its current by magnetic memory (play operators)."""
 
 from __future__ import annotations
 

@@ -1,0 +1,106 @@
+"""Trace every case of a suite and mark it: `python -m tests.blind.score DIR`.
+
+Runs `hdrig trace DIR/case-001 --json DIR/traces/case-001.json` for every case that has no trace yet, after a check that
+truth and campaigns are still those of HASHES; prints the table, and writes it where --table says.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import hashlib
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from tests.blind.folder import digest
+from tests.blind.marks import Mark, mark
+from tests.blind.table import markdown
+
+ANSWERS = (0, 6)  # exit codes of `hdrig trace` with a complete report
+HDRIG = Path(sys.executable).with_name("hdrig")
+
+
+class Tampered(Exception):
+    """Truth or campaign is not what HASHES says was made."""
+
+
+def check_hashes(suite: Path) -> None:
+    """Raise Tampered when a truth or a campaign has changed since it was made."""
+    for line in (suite / "HASHES").read_text(encoding="utf-8").splitlines():
+        wanted, name = line.split()
+        path = suite / name
+        found = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else digest(path)
+        if found != wanted:
+            raise Tampered(f"{path} has sha256 {found[:12]}…, HASHES says {wanted[:12]}…: make the suite anew")
+
+
+def trace(campaign: Path, answer: Path, limit_s: float) -> None:
+    """Run the tracer; without an answer in time, what it said lies beside the place of the answer."""
+    answer.parent.mkdir(exist_ok=True)
+    began = time.perf_counter()
+    try:
+        done = subprocess.run(
+            [HDRIG, "trace", campaign, "--json", answer], capture_output=True, text=True, timeout=limit_s, check=False
+        )
+        said, code = done.stderr[-2000:], done.returncode
+    except subprocess.TimeoutExpired:
+        said, code = f"no answer within {limit_s:g} s", -1
+    about = {"seconds": time.perf_counter() - began, "exit": code, "stderr": said}
+    answer.with_suffix(".about").write_text(json.dumps(about), encoding="utf-8")
+
+
+def read_answer(answer: Path) -> tuple[dict[str, Any], float]:
+    """trace.json and the seconds it took; empty when the tracer gave none."""
+    about_file = answer.with_suffix(".about")
+    about = json.loads(about_file.read_text(encoding="utf-8")) if about_file.exists() else {"seconds": 0.0, "exit": 0}
+    if not answer.exists() or about["exit"] not in ANSWERS:
+        return {}, about["seconds"]
+    return json.loads(answer.read_text(encoding="utf-8")), about["seconds"]
+
+
+def marks(suite: Path, limit_s: float) -> list[Mark]:
+    """Every case of the suite, traced if it has not been."""
+    check_hashes(suite)
+    out = []
+    for truth_file in sorted((suite / "truth").glob("case-*.json")):
+        case = truth_file.stem
+        answer = suite / "traces" / f"{case}.json"
+        if not answer.exists() and not answer.with_suffix(".about").exists():
+            trace(suite / case, answer, limit_s)
+            print(f"{case} traced", file=sys.stderr, flush=True)
+        said, seconds = read_answer(answer)
+        out.append(mark(case, json.loads(truth_file.read_text(encoding="utf-8")), said, seconds))
+    return out
+
+
+def heading() -> str:
+    """Date and commit of the tracer under test."""
+    asked = ["git", "-C", str(Path(__file__).parent), "rev-parse", "--short", "HEAD"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}, commit {done.stdout.strip() or 'unknown'}"
+
+
+def main(arguments: list[str]) -> int:
+    """Exit code 0 when every case was marked, 2 with a sentence when the suite cannot be trusted."""
+    parser = argparse.ArgumentParser(prog="tests.blind.score", description=__doc__)
+    parser.add_argument("suite", type=Path)
+    parser.add_argument("--table", type=Path, help="also write the table to this file")
+    parser.add_argument("--limit", type=float, default=300.0, help="seconds a trace may take")
+    options = parser.parse_args(arguments)
+    try:
+        page = markdown(marks(options.suite, options.limit), heading())
+    except (Tampered, FileNotFoundError) as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    print(page)
+    if options.table:
+        options.table.write_text(page, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
