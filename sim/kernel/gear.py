@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from sim.kernel import layout as at
-from sim.kernel.layout import Error, Four, Mesh, Slow, Spring, Three, Vector
+from sim.kernel.layout import Error, Four, Mesh, Pair, Slow, Spring, Three, Vector
 
 
 @njit
@@ -69,6 +69,28 @@ def mesh(y: Four, slow: Slow | None, error: Error, outside: Three, spring: Sprin
 
 
 @njit
+def on_the_motor(theta_m: float, tau: float, p: Vector) -> Pair:
+    """Cogging and ripple [N·m], and of that the ripple: r·τ·cos(nθ_m − ψ) of the torque asked."""
+    cogging, ripple = 0.0, 0.0
+    if p[at.COGGING] != 0.0:
+        cogging = p[at.COGGING] * math.cos(p[at.COGGING_ORDER] * theta_m - p[at.COGGING_PHASE])
+    if p[at.RIPPLE] != 0.0:
+        ripple = p[at.RIPPLE] * tau * math.cos(p[at.RIPPLE_ORDER] * theta_m - p[at.RIPPLE_PHASE])
+    return cogging + ripple, ripple
+
+
+@njit
+def on_the_load(theta_l: float, t: float, p: Vector) -> Pair:
+    """Unbalance and vibration [N·m], and of that the vibration."""
+    weight, shake = 0.0, 0.0
+    if p[at.UNBALANCE] != 0.0:
+        weight = -p[at.UNBALANCE] * math.sin(theta_l - p[at.UNBALANCE_PHASE])
+    if p[at.SHAKE] != 0.0:
+        shake = p[at.SHAKE] * math.sin(p[at.SHAKE_RATE] * t + p[at.SHAKE_PHASE])
+    return weight + shake, shake
+
+
+@njit
 def full_mesh(
     y: Four,
     slow: Slow,
@@ -84,8 +106,9 @@ def full_mesh(
     """The same with everything the paper's model lacks. φ̇ has a part θ̃_p by load, whose work stands apart."""
     theta_m, omega_m, _, omega_l = y
     lever, bent = error.slope - p[at.PER_N], spring.live * (phi - spring.shift)
-    aside_m, aside_l = -(spring.bristles.offset + spring.bristles.slope * theta_m), 0.0
-    ripple, shake = 0.0, 0.0
+    aside_m, ripple = on_the_motor(theta_m, outside[0], p)
+    aside_l, shake = on_the_load(y[2], outside[2], p)
+    aside_m -= spring.bristles.offset + spring.bristles.slope * theta_m
     elastic += p[at.CUBIC] * bent**3
     if p[at.KAPPA] != 0.0:  # V = ½·κ·cos(nθ − ψ)·φ²
         angle = p[at.KAPPA_ORDER] * theta_m - p[at.KAPPA_PHASE]
@@ -100,16 +123,6 @@ def full_mesh(
     phi_rate += shrinking
     torque = elastic + p[at.B_SP] * phi_rate
     drag = p[at.B_ML] * (omega_m + p[at.SIGMA] * omega_l)
-    if p[at.COGGING] != 0.0:
-        aside_m += p[at.COGGING] * math.cos(p[at.COGGING_ORDER] * theta_m - p[at.COGGING_PHASE])
-    if p[at.RIPPLE] != 0.0:
-        push = p[at.RIPPLE] * outside[0] * math.cos(p[at.RIPPLE_ORDER] * theta_m - p[at.RIPPLE_PHASE])
-        aside_m, ripple = aside_m + push, push * omega_m
-    if p[at.UNBALANCE] != 0.0:
-        aside_l -= p[at.UNBALANCE] * math.sin(y[2] - p[at.UNBALANCE_PHASE])
-    if p[at.SHAKE] != 0.0:
-        push = p[at.SHAKE] * math.sin(p[at.SHAKE_RATE] * outside[2] + p[at.SHAKE_PHASE])
-        aside_l, shake = aside_l + push, push * omega_l
     return Mesh(
         on_motor=-torque * lever - drag,
         on_load=-torque - p[at.SIGMA] * drag,
@@ -125,6 +138,6 @@ def full_mesh(
         creep_2=creep_2,
         lost_creep=lost_creep,
         schedule=torque * shrinking,
-        ripple=ripple,
-        shake=shake,
+        ripple=ripple * omega_m,
+        shake=shake * omega_l,
     )

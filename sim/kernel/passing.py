@@ -10,7 +10,7 @@ from sim.kernel import layout as at
 from sim.kernel.events import attempt, balance, halted, locate, way
 from sim.kernel.friction import breakaway, heat, wandered, warm
 from sim.kernel.gear import mesh
-from sim.kernel.layout import Energies, Error, Four, Mesh, Point, Slow, Spring, Three, Vector
+from sim.kernel.layout import Energies, Error, Four, Mesh, Pair, Point, Slow, Spring, Three, Vector
 from sim.kernel.spring import follow, piece, stiffest
 from sim.kernel.step import accelerated
 
@@ -109,6 +109,35 @@ def passing(
 
 
 @njit
+def beginning(slow: Slow | None, state: Vector) -> Point:
+    """Where the state says the rig is."""
+    y = (state[at.THETA_M], state[at.OMEGA_M], state[at.THETA_L], state[at.OMEGA_L])
+    return Point(y, slow, Error(state[at.VALUE], state[at.SLOPE], state[at.PER_LOAD]))
+
+
+@njit
+def judged(end: Point, net: Three, h: float, events: int, p: Vector) -> int:
+    """Whether the plant could be followed through a substep."""
+    y = end.y
+    if not math.isfinite(y[0] + y[1] + y[2] + y[3] + net[0]):
+        return at.NOT_FINITE
+    if p[at.TOP_ORDER] * abs(y[1]) * h > 2.0 * at.C_ORDER:  # what pushed it came up inside the substep, unforeseen
+        return at.TOO_FAST
+    return at.CHATTER if events > at.MOST_EVENTS else at.FINE
+
+
+@njit
+def put_down(here: Point, shaft: Four, wander: Pair, t: float, state: Vector) -> None:
+    """The rig back into the state vector; `shaft`: τ_m, τ_l, τ̇_l, low-passed τ_l."""
+    state[at.THETA_M], state[at.OMEGA_M], state[at.THETA_L], state[at.OMEGA_L] = here.y
+    state[at.TAU_M], state[at.TAU_L], state[at.RATE], state[at.FILTERED] = shaft
+    state[at.WANDER_M], state[at.WANDER_L] = wander
+    state[at.VALUE], state[at.SLOPE], state[at.PER_LOAD] = here.error
+    state[at.CLOCK] = t
+    put_away(here.slow, state)
+
+
+@njit
 def substeps(
     state: Vector,
     slow: Slow | None,
@@ -124,15 +153,10 @@ def substeps(
     wander_m, wander_l = wandered(state[at.WANDER_M], dt, xi_m, p), wandered(state[at.WANDER_L], dt, xi_l, p)
     level_m, friction_l = max(0.0, 1.0 + wander_m), max(0.0, 1.0 + wander_l) * p[at.F_CL]  # friction never pushes
     hold_l = math.inf if locked else friction_l
-    here = Point(
-        (state[at.THETA_M], state[at.OMEGA_M], state[at.THETA_L], state[at.OMEGA_L]),
-        slow,
-        Error(state[at.VALUE], state[at.SLOPE], state[at.PER_LOAD]),
-    )
-    filtered, outside, lag = state[at.FILTERED], (tau, tau_ext, state[at.CLOCK]), state[at.TAU_M] - tau
+    here, filtered = beginning(slow, state), state[at.FILTERED]
+    outside, lag = (tau, tau_ext, state[at.CLOCK]), state[at.TAU_M] - tau
     phi = here.y[2] - here.y[0] * p[at.PER_N] + here.error.value
-    spring = piece(here.y, phi, 0.0, slow, state, p)
-    m, spring = on_its_piece(here, slow, outside, spring, state, p)
+    m, spring = on_its_piece(here, slow, outside, piece(here.y, phi, 0.0, slow, state, p), state, p)
     net = balance(here.y, m, state[at.TAU_M], tau_ext, p)
     left, rate, events, status = dt, state[at.RATE], 0, at.FINE
     while True:
@@ -158,14 +182,8 @@ def substeps(
             after = attempt(here, k1, h, outside, lag, grip, hold_l, spring, p)
         end, keep = after.end, after.keep
         outside = (tau, tau_ext, outside[2] + h)
-        if not math.isfinite(end.y[0] + end.y[1] + end.y[2] + end.y[3] + after.net[0]):
-            status = at.NOT_FINITE
-            break
-        if p[at.TOP_ORDER] * abs(end.y[1]) * h > 2.0 * at.C_ORDER:  # pushed inside the substep, unforeseen
-            status = at.TOO_FAST
-            break
-        if events > at.MOST_EVENTS:
-            status = at.CHATTER
+        status = judged(end, after.net, h, events, p)
+        if status != at.FINE:
             break
         follow(after.mesh.phi - m.phi, end.y[0] - y[0], end.slow, spring, state, p)
         m, net_end = after.mesh, after.net
@@ -181,12 +199,7 @@ def substeps(
         lag *= keep
         left = 0.0 if h == left else left - h
         here, net = end, net_end
+    shaft = (tau + lag, net[2], rate, filtered)
     if status == at.FINE:
-        y = here.y
-        state[at.THETA_M], state[at.OMEGA_M], state[at.THETA_L], state[at.OMEGA_L] = y
-        state[at.TAU_M], state[at.TAU_L], state[at.FILTERED] = tau + lag, net[2], filtered
-        state[at.WANDER_M], state[at.WANDER_L] = wander_m, wander_l
-        state[at.VALUE], state[at.SLOPE], state[at.PER_LOAD] = here.error.value, here.error.slope, here.error.per_load
-        state[at.RATE], state[at.CLOCK] = rate, outside[2]
-        put_away(here.slow, state)
-    return status, (y[0], y[1], a_m), (y[2], y[3], k1.a_l), (tau + lag, net[2], rate, filtered)
+        put_down(here, shaft, (wander_m, wander_l), outside[2], state)
+    return status, (y[0], y[1], a_m), (y[2], y[3], k1.a_l), shaft
