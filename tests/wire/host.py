@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import struct
+from functools import cache
 
 from rig.bench import read, twin_parameters
+from sim.parameters import TwinParameters
 from sim.wire.assembly import Assembly
 from sim.wire.frame import Frame
 from sim.wire.motor import Rating
@@ -13,10 +15,16 @@ BOOTED = 0.1  # s
 ANSWERED = 0.003  # s, an SDO answer has come
 
 
+@cache
+def parameters(*overrides: str) -> TwinParameters:
+    """Of the bench 'twin' with some numbers changed."""
+    found: TwinParameters = twin_parameters(read("twin", overrides).file)
+    return found
+
+
 def assembly(*overrides: str, bitrate: float = 1e6) -> Assembly:
     """The twin of the bench 'twin': 10 000 counts a turn, 3 N·m rated, gear 50, 900 000 counts a turn of the load."""
-    bench = read("twin", overrides)
-    return Assembly(twin_parameters(bench.file), 1, Rating(3.0, 0.5), bitrate)
+    return Assembly(parameters(*overrides), 1, Rating(3.0, 0.5), bitrate)
 
 
 class Host:

@@ -44,7 +44,7 @@ class Plugged:
         """What arrives in the next `seconds`."""
         self.twin.agenda.run_until(self.twin.agenda.now + seconds)
         got = b""
-        while select.select([self.end], [], [], 0.05)[0]:
+        while select.select([self.end], [], [], 0.02)[0]:
             got += os.read(self.end, 65536)
         return got
 
