@@ -12,6 +12,7 @@ from rig.analysis.result import Array
 
 Complex = npt.NDArray[np.complex128]
 NEAR = 0.5  # r²  above it an order is too near its resonance (or beyond) for a law without damping
+LEFT_OUT = 9.0  # χ² an order left out is charged with, 2 for its noise: a law that misses by 2 σ must not lose to none
 SLOWEST_HZ, FASTEST_HZ, TRIALS = 1.0, 2000.0, 600  # natural frequencies tried, 1.3 % apart
 
 
@@ -77,8 +78,8 @@ def speed_at(pure: Complex, omega_0: float, tolerance: float) -> float:
 def fit_law(steps: list[SpeedStep]) -> Law:
     """Weighted least squares over all speeds and orders; ω_0 by trial, θ̃_p,n linear for each trial.
 
-    An order nearer its resonance than r² = NEAR is left out at that speed and counted as if it fitted as well as noise
-    does, so that leaving out gains nothing. The scatter widens the interval where the law misses more than noise.
+    An order nearer its resonance than r² = NEAR is left out at that speed and charged with LEFT_OUT, so that
+    leaving out gains nothing. The scatter widens the interval where the law misses more than noise.
     """
     z = np.array([s.phasor for s in steps])  # (speeds, k)
     weight = 1.0 / np.array([s.u for s in steps]) ** 2
@@ -88,8 +89,9 @@ def fit_law(steps: list[SpeedStep]) -> Law:
     best = int(np.argmin(costs))
     x = _refined(z, weight, frequency, trials, best)
     cost, pure, total = _cost(z, weight, frequency, x)
-    dof = max(2 * (z.size - z.shape[1]) - 1, 1)
-    misfit = max(cost / dof, 1e-300)
+    out = int(np.sum(x * frequency**2 >= NEAR))
+    dof = max(2 * (z.size - out - z.shape[1]) - 1, 1)
+    misfit = max((cost - LEFT_OUT * out) / dof, 1e-300)
     step = 0.02 * x
     bend = (_masked(z, weight, frequency, x + step, x) + _masked(z, weight, frequency, x - step, x)) / step**2
     bend -= 2.0 * _masked(z, weight, frequency, x, x) / step**2
@@ -100,14 +102,14 @@ def fit_law(steps: list[SpeedStep]) -> Law:
 
 
 def _cost(z: Complex, weight: Array, frequency: Array, x: float) -> tuple[float, Complex, Array]:
-    """(χ², θ̃_p,n, its weight) for 1/ω_0² = `x`; an order left out counts as noise does: 2 for its two parts."""
+    """(χ², θ̃_p,n, its weight) for 1/ω_0² = `x`; orders left out are charged."""
     r2 = x * frequency**2
     used = r2 < NEAR
     gain = 1.0 / (1.0 - np.where(used, r2, 0.0))
     w = np.where(used, weight, 0.0)
     total = np.sum(w * gain**2, axis=0)
     pure = np.sum(w * gain * z, axis=0) / np.maximum(total, 1e-300)
-    return float(np.sum(w * np.abs(z - gain * pure) ** 2) + 2.0 * np.sum(~used)), pure, total
+    return float(np.sum(w * np.abs(z - gain * pure) ** 2) + LEFT_OUT * np.sum(~used)), pure, total
 
 
 def _masked(z: Complex, weight: Array, frequency: Array, x: float, at: float) -> float:

@@ -203,7 +203,7 @@ def _table(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float) 
                 "order_2_change_percent": 100 * order2,
                 "from_standstill_percent": 100 * float(np.sqrt(max(away**2 - u**2, 0.0))),
                 "from_standstill_u_percent": 100 * u,
-                "law_percent": 100 * law.deviation(step.omega_m),
+                "law_percent": 100 * by_law if np.isfinite(by_law := law.deviation(step.omega_m)) else float("nan"),
             }
         )
     found.tables["speeds"] = rows
