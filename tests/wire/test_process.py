@@ -37,7 +37,12 @@ class Twin:
             [sys.executable, "-m", "rig.cli", "twin", *doors, *options], stdout=subprocess.PIPE, text=True
         )
         assert self.process.stdout is not None
-        self.said = [line.strip() for line in iter(self.process.stdout.readline, "ready\n")]
+        self.said: list[str] = []
+        for line in self.process.stdout:  # ends when the process does
+            self.said.append(line.strip())
+            if line == "ready\n":
+                break
+        assert self.said[-1:] == ["ready"]
         self._channel = socket.socket(socket.AF_UNIX)
         self._channel.connect(f"{self.folder}/control")
         self._answers = self._channel.makefile("r")
@@ -126,6 +131,36 @@ def test_canopen_reads_names_and_moves_the_motor(twin: Twin, network: canopen.Ne
     assert twin.do("truth")["omega_m"] > 0.0
     put(network, 1, 0x6040, 0, "H", 0)
     wait_for(lambda: twin.do("truth")["omega_m"] == 0.0)
+
+
+def test_canopens_own_402_machine_walks_the_drive_up_and_resets_its_fault(twin: Twin, network: canopen.Network) -> None:
+    dictionary = canopen.ObjectDictionary()
+    kinds = canopen.objectdictionary
+    for index, kind in [
+        (0x6040, kinds.UNSIGNED16),
+        (0x6041, kinds.UNSIGNED16),
+        (0x6060, kinds.INTEGER8),
+        (0x6061, kinds.INTEGER8),
+        (0x6502, kinds.UNSIGNED32),
+    ]:
+        variable = kinds.ODVariable(f"{index:X}", index, 0)
+        variable.data_type = kind
+        dictionary.add_object(variable)
+    network[1].nmt.state = "OPERATIONAL"
+    drive = canopen.BaseNode402(1, dictionary)
+    network.add_node(drive)
+    drive.sdo.RESPONSE_TIMEOUT = drive.TIMEOUT_SWITCH_OP_MODE = drive.TIMEOUT_SWITCH_STATE_FINAL = PATIENCE
+    drive.setup_402_state_machine(read_pdos=False)
+    assert drive.is_op_mode_supported("CYCLIC SYNCHRONOUS TORQUE")
+    assert not drive.is_op_mode_supported("HOMING")
+    drive.op_mode = "CYCLIC SYNCHRONOUS TORQUE"
+    assert drive.op_mode == "CYCLIC SYNCHRONOUS TORQUE"
+    drive.state = "OPERATION ENABLED"
+    assert drive.state == "OPERATION ENABLED"
+    twin.do("trip", code=0x2310)
+    wait_for(lambda: drive.state == "FAULT")
+    drive.state = "SWITCH ON DISABLED"
+    assert drive.state == "SWITCH ON DISABLED"
 
 
 def test_canopen_gets_its_aborts(network: canopen.Network) -> None:
