@@ -33,7 +33,7 @@ def entries(text: int) -> tuple[Callable[..., Any], ...]:
         failed.
         """
         _ = text
-        return substeps(state, None, p, dt, tau, tau_ext, locked, xi_m, xi_l)
+        return substeps(state, None, p, dt, tau, tau_ext, locked, (xi_m, xi_l))
 
     @njit(cache=True)
     def advance_full(

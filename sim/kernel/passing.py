@@ -100,7 +100,7 @@ def passing(
     before, lost = state.copy(), motor_heat(state)
     warm(state, p)
     slow = Slow(state[at.LOAD_SEEN], state[at.CREEP_1], state[at.CREEP_2])
-    found = substeps(state, slow, p, dt, tau, tau_ext, locked, xi_m, xi_l)
+    found = substeps(state, slow, p, dt, tau, tau_ext, locked, (xi_m, xi_l))
     if found[0] != at.FINE:
         state[:] = before
     elif dt > 0.0:
@@ -139,18 +139,10 @@ def put_down(here: Point, shaft: Four, wander: Pair, t: float, state: Vector) ->
 
 @njit
 def substeps(
-    state: Vector,
-    slow: Slow | None,
-    p: Vector,
-    dt: float,
-    tau: float,
-    tau_ext: float,
-    locked: bool,
-    xi_m: float,
-    xi_l: float,
+    state: Vector, slow: Slow | None, p: Vector, dt: float, tau: float, tau_ext: float, locked: bool, xi: Pair
 ) -> Passed:
     """Friction wanders once, then substeps until `dt` s are over; `state` follows unless it failed."""
-    wander_m, wander_l = wandered(state[at.WANDER_M], dt, xi_m, p), wandered(state[at.WANDER_L], dt, xi_l, p)
+    wander_m, wander_l = wandered(state[at.WANDER_M], dt, xi[0], p), wandered(state[at.WANDER_L], dt, xi[1], p)
     level_m, friction_l = max(0.0, 1.0 + wander_m), max(0.0, 1.0 + wander_l) * p[at.F_CL]  # friction never pushes
     hold_l = math.inf if locked else friction_l
     here, filtered = beginning(slow, state), state[at.FILTERED]
