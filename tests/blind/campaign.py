@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from tests.blind import integrate
@@ -27,21 +25,14 @@ from tests.blind.kernel import (
     X,
 )
 from tests.blind.plans import STROKE_SPEED, Plan, RunPlan
-from tests.blind.sensors import MOTOR_COUNTS, Columns, Context, Noise, coloured, measure
+from tests.blind.sensors import MOTOR_COUNTS, Context, Noise, coloured, measure
+from tests.blind.taken import Taken
 
 TICK = integrate.TICK
 SLOW_INNER, FAST_INNER = (
     5,
     10,
 )  # steps of 200 µs and 100 µs per tick: 30 or more per period of the fastest mode (300 Hz: 17)
-
-
-@dataclass(frozen=True)
-class Taken:
-    """A run as the loggers wrote it."""
-
-    plan: RunPlan
-    columns: Columns
 
 
 def triangle(n: int, amplitude: float, period: float) -> np.ndarray:

@@ -8,11 +8,13 @@ import numpy as np
 
 from tests.blind import rig as rigs
 from tests.blind.builder import Builder
-from tests.blind.campaign import Taken, simulate
+from tests.blind.campaign import simulate
 from tests.blind.forms import EFFECTS, LIBRARY, OUTSIDE, Form, form_of, forms_of
 from tests.blind.plans import PLANS
+from tests.blind.residual import residuals, rms
 from tests.blind.sensors import draw_noise
 from tests.blind.strength import Stage, calibrate, over_floor, shape_rng, short, size
+from tests.blind.taken import Taken
 
 Truth = dict[str, object]
 KINDS = ("single", "single_other", "crowded", "pair", "clean", "outside", "ambiguous")
@@ -155,10 +157,11 @@ def assemble(request: Request, stage: Stage, parts: list[Part], clean: list[Take
         described.append(part.described() | {"parameters": {k: float(v) for k, v in parameters.items()}})
     runs = clean if not parts else simulate(builder, stage.plan, stage.noise, stage.seed)
     excess = over_floor(runs, clean)
+    floor = {channel: {name: rms(e) for name, e in by.items()} for channel, by in residuals(clean)[0].items()}
     inside = [d["effect"] for d in described if d["role"] == "main" and not d["coordinates"]]
     truth: Truth = {
         "kind": request.kind, "plan": stage.plan.name, "seed": request.seed, "effects": inside, "hidden": described,
         "over_floor": excess, "size": size(excess, tuple(inside)), "rig": stage.rig.as_truth(),
-        "noise": asdict(stage.noise), "resonance_hz": stage.rig.resonance_hz(),
+        "noise": asdict(stage.noise), "floor": floor, "resonance_hz": stage.rig.resonance_hz(),
     }  # fmt: skip
     return Case(stage, runs, truth)

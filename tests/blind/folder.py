@@ -10,10 +10,10 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.blind.campaign import Taken
 from tests.blind.plans import Plan, RunPlan
 from tests.blind.rig import HARMONICS, NOMINAL_K, Rig
 from tests.blind.sensors import LOAD_COUNTS, MOTOR_COUNTS
+from tests.blind.taken import Taken
 
 UNITS = {"t": "s", "theta_m": "rad", "theta_l": "rad", "tau_l": "N·m", "tau_m": "N·m", "temperature": "°C"}
 MEANING = {

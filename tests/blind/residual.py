@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from tests.blind.campaign import Taken
 from tests.blind.rig import HARMONICS
 from tests.blind.sensors import Columns
+from tests.blind.taken import Taken
 
 LIGHT = 5  # rows of the window that smooths every column of the angle channel alike
 HEAVY = 21  # rows of the window for the torque channels, whose accelerations come from counts
@@ -94,13 +94,12 @@ def series_slope(angle: np.ndarray) -> np.ndarray:
     return np.hstack([-order * np.sin(angle[:, None] * order), order * np.cos(angle[:, None] * order)])
 
 
-def fit(columns: list[np.ndarray], values: list[np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Least squares over all runs; returns coefficients and residuals per run."""
+def fit(columns: list[np.ndarray], values: list[np.ndarray]) -> np.ndarray:
+    """Coefficients of least squares over all runs."""
     gram = sum(x.T @ x for x in columns)
     right = sum(x.T @ y for x, y in zip(columns, values, strict=True))
     scale = np.sqrt(np.diag(gram)) + 1e-30
-    beta = np.linalg.lstsq(gram / np.outer(scale, scale), right / scale, rcond=1e-12)[0] / scale
-    return beta, [y - x @ beta for x, y in zip(columns, values, strict=True)]
+    return np.linalg.lstsq(gram / np.outer(scale, scale), right / scale, rcond=1e-12)[0] / scale
 
 
 def centred(x: np.ndarray) -> np.ndarray:
@@ -150,20 +149,43 @@ def turning_runs(done: list[Smooth]) -> list[Smooth]:
     return [s for s in done if not s.run.plan.locked and np.sum(s.moving) * s.run.plan.dt * STRIDE > 1.0]
 
 
-def residuals(runs: list[Taken], ratio: float = 50.0) -> tuple[Residuals, Baseline]:
-    """Residual per channel and run name; the torque channels hold the rows in which the motor turns."""
-    done = usable(runs)
-    beta_a, left_a = fit([angle_columns(s) for s in done], [angle_value(s, ratio) for s in done])
+def angle_left(s: Smooth, beta: np.ndarray, ratio: float) -> np.ndarray:
+    return angle_value(s, ratio) - angle_columns(s) @ beta
+
+
+def load_left(s: Smooth, beta: np.ndarray) -> np.ndarray:
+    return centred(s.torque[s.moving]) - load_columns(s) @ beta
+
+
+def motor_left(s: Smooth, baseline: Baseline, ratio: float) -> np.ndarray:
+    return motor_value(s, baseline.angle[: 2 * HARMONICS], ratio) - motor_columns(s) @ baseline.motor
+
+
+def fit_baseline(done: list[Smooth], ratio: float = 50.0) -> Baseline:
+    """The paper's model fitted to these runs, channel by channel."""
+    angle = fit([angle_columns(s) for s in done], [angle_value(s, ratio) for s in done])
     free = turning_runs(done)
-    beta_l, left_l = fit([load_columns(s) for s in free], [centred(s.torque[s.moving]) for s in free])
-    p = beta_a[: 2 * HARMONICS]
-    beta_m, left_m = fit([motor_columns(s) for s in free], [motor_value(s, p, ratio) for s in free])
-    out: Residuals = {
-        "theta_l": {s.name: e for s, e in zip(done, left_a, strict=True)},
-        "tau_l": {s.name: e for s, e in zip(free, left_l, strict=True)},
-        "tau_m": {s.name: e for s, e in zip(free, left_m, strict=True)},
+    load = fit([load_columns(s) for s in free], [centred(s.torque[s.moving]) for s in free])
+    p = angle[: 2 * HARMONICS]
+    motor = fit([motor_columns(s) for s in free], [motor_value(s, p, ratio) for s in free])
+    return Baseline(angle, load, motor)
+
+
+def left_over(done: list[Smooth], baseline: Baseline, ratio: float = 50.0) -> Residuals:
+    """Residual per channel and run name; the torque channels hold the rows in which the motor turns."""
+    free = turning_runs(done)
+    return {
+        "theta_l": {s.name: angle_left(s, baseline.angle, ratio) for s in done},
+        "tau_l": {s.name: load_left(s, baseline.load) for s in free},
+        "tau_m": {s.name: motor_left(s, baseline, ratio) for s in free},
     }
-    return out, Baseline(beta_a, beta_l, beta_m)
+
+
+def residuals(runs: list[Taken]) -> tuple[Residuals, Baseline]:
+    """Baseline fitted to all runs, and what it leaves of them."""
+    done = usable(runs)
+    baseline = fit_baseline(done)
+    return left_over(done, baseline), baseline
 
 
 def rms(x: np.ndarray) -> float:

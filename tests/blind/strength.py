@@ -9,12 +9,13 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from tests.blind.builder import Builder
-from tests.blind.campaign import Taken, simulate
+from tests.blind.campaign import simulate
 from tests.blind.forms import Form
 from tests.blind.plans import Plan
 from tests.blind.residual import AROUND, AT_REST, residuals, rms
 from tests.blind.rig import Rig
 from tests.blind.sensors import Noise
+from tests.blind.taken import Taken
 
 Excess = dict[str, float]
 

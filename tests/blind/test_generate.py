@@ -13,11 +13,12 @@ import pytest
 from tests.blind import cases, folder, plans, suite
 from tests.blind import rig as rigs
 from tests.blind.builder import Builder
-from tests.blind.campaign import Taken, simulate
+from tests.blind.campaign import simulate
 from tests.blind.forms import EFFECTS, LIBRARY, OUTSIDE
 from tests.blind.plans import Plan, RunPlan
 from tests.blind.sensors import draw_noise
 from tests.blind.strength import Stage, shape_rng
+from tests.blind.taken import Taken
 
 HERE = Path(__file__).parent
 COORDINATES = {

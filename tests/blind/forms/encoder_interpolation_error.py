@@ -44,7 +44,7 @@ def motor_lines(builder: Builder, rng: np.random.Generator, strength: float) -> 
 
 
 FORMS = (
-    Form("encoder_interpolation_error", "per_line", per_line, textbook=True),
-    Form("encoder_interpolation_error", "sine_cosine_faults", sine_cosine_faults),
-    Form("encoder_interpolation_error", "motor_lines", motor_lines),
+    Form("encoder_interpolation_error", "per_line", per_line, textbook=True, strongest=5.0),
+    Form("encoder_interpolation_error", "sine_cosine_faults", sine_cosine_faults, strongest=5.0),
+    Form("encoder_interpolation_error", "motor_lines", motor_lines, strongest=5.0),
 )

@@ -13,11 +13,13 @@ SHARES = {"order_102": {102: 1.0}, "with_204": {102: 1.0, 204: 0.4}, "both_gears
 
 
 def mesh(name: str, builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
-    size, out = pick(rng, 2e-6, 7e-6) * strength, {}
+    size, out = pick(rng, 3e-6, 1e-5) * strength, {}
     for order, share in SHARES[name].items():
         builder.add("p", share * size * np.cos(order * ANGLE - phase(rng)))
         out[f"amplitude_{order}_rad"] = share * size
     return out
 
 
-FORMS = tuple(Form("tooth_mesh_error", name, partial(mesh, name), textbook=name == "order_102") for name in SHARES)
+FORMS = tuple(
+    Form("tooth_mesh_error", name, partial(mesh, name), textbook=name == "order_102", strongest=4.0) for name in SHARES
+)

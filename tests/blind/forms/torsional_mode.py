@@ -29,7 +29,7 @@ def disc(builder: Builder, rng: np.random.Generator, strength: float) -> Paramet
 def coupling(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
     """An elastic coupling between rotor (with the encoder) and wave generator; softer when stronger."""
     share, damping = pick(rng, 0.3, 0.5), pick(rng, 0.01, 0.04)
-    hz = pick(rng, 100.0, 150.0) / np.sqrt(max(strength, 0.05))
+    hz = pick(rng, 60.0, 110.0) / np.sqrt(max(strength, 0.05))
     J_x, J_m = share * builder.rig.J_m, (1 - share) * builder.rig.J_m
     k = (2 * np.pi * hz) ** 2 * coupled(J_x, J_m)
     builder.rig = replace(builder.rig, J_m=J_m)
