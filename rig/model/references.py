@@ -30,4 +30,12 @@ REFERENCES: dict[str, str] = {
     "IEEE Trans. Instrumentation and Measurement 48 (1999) 1201-1207",
     "harmonicdrive": "Harmonic Drive SE / LLC, CSF and CSG component sets, engineering data of the catalogue",
     "astrom2006": "K. J. Åström, T. Hägglund, Advanced PID Control, ISA (2006)",
+    "iso11898": "ISO 11898-1, Road vehicles, Controller area network (CAN), Part 1: Data link layer",
+    "cia301": "CAN in Automation, CiA 301, CANopen application layer and communication profile",
+    "cia303": "CAN in Automation, CiA 303-2, CANopen additional specification: Representation of SI units and prefixes",
+    "cia402": "CAN in Automation, CiA 402, CANopen device profile for drives and motion control; IEC 61800-7-201",
+    "cia404": "CAN in Automation, CiA 404, CANopen device profile for measuring devices and closed-loop controllers",
+    "cia406": "CAN in Automation, CiA 406, CANopen device profile for encoders",
+    "lawicel": "Lawicel AB, CANUSB, ASCII commands of its manual (the slcan protocol)",
+    "usdigital": "US Digital, QSB, list of commands, version 1.28",
 }

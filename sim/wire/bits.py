@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-CRC = 0x4599  # x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1      [ISO 11898-1]
+CRC = 0x4599  # x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1      [iso11898]
 Progress = tuple[int, int, int, int]  # bits so far with stuffing, last level, length of its run, CRC
 
 
@@ -34,7 +34,7 @@ def append(state: Progress, value: int, width: int) -> Progress:
 
 @njit(cache=True)
 def wire_bits(identifier: int, extended: int, remote: int, data: npt.NDArray[np.uint8]) -> int:
-    """Bits from start of frame to the end of the CRC with stuff bits      [ISO 11898-1]"""
+    """Bits from start of frame to the end of the CRC with stuff bits      [iso11898]"""
     state = append((0, 1, 0, 0), 0, 1)  # start of frame; the bus was recessive, its run does not count
     if extended:
         state = append(state, identifier >> 18, 11)

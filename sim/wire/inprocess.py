@@ -22,6 +22,11 @@ class VirtualWire(Clock):
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly = assembly
+        self._stalled = 0.0  # s by which the next wait ends too late
+
+    def stall(self, seconds: float) -> None:
+        """Whoever waits next gets the processor so much too late."""
+        self._stalled = seconds
 
     def now(self) -> float:
         """s since the twin was switched on."""
@@ -30,6 +35,9 @@ class VirtualWire(Clock):
     def wait_until(self, t: float) -> float:
         """Let frames pass and the plant move until `t` s."""
         self.assembly.agenda.run_until(t)
+        if self._stalled:
+            late, self._stalled = self._stalled, 0.0
+            self.assembly.agenda.run_until(t + late)
         return self.assembly.agenda.now
 
     def relax(self) -> bool:

@@ -6,7 +6,7 @@ from sim.wire.motion import Settings
 from sim.wire.motor import Motor, Rating
 from sim.wire.objects import I8, I16, I32, U8, U16, U32, Entry, Objects
 
-INCREMENTS, INCREMENTS_PER_SECOND = 0x00B50000, 0x00B50300  # 60A8, 60A9      [cia303-2]
+INCREMENTS, INCREMENTS_PER_SECOND = 0x00B50000, 0x00B50300  # 60A8, 60A9      [cia303]
 
 
 def add_plate(o: Objects, motor: Motor, rating: Rating) -> None:

@@ -1,4 +1,4 @@
-"""A US Digital QSB at the twin's load encoder: text commands, a counter of 32 bits, time stamps      [usdigital-qsb]
+"""A US Digital QSB at the twin's load encoder: text commands, a counter of 32 bits, time stamps      [usdigital]
 
 `R`, `W` or `S` + register (2 hex digits) + data (up to 8) + CR or LF; answers `r`, `w`, `s`, or `e` for an error, with
 register, 8 digits, 8 digits of time stamp unless register 0D is 0, `!` and the end of line register 15 asks for.
