@@ -18,6 +18,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "list": ("rig.commands.list_", "the runs in a folder"),
     "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),
     "verify": ("rig.commands.verify", "check hashes, row counts, time order and gaps of runs"),
+    "trace": ("rig.commands.trace", "the physical effect the model lacks, found in a campaign of measured runs"),
     "export": ("rig.commands.export", "write a run as CSV, MDF4, MCAP or HDF5"),
     "identify": ("rig.commands.identify", "all runs of a gear to its parameters with intervals, and a gear file"),
     "simulate": ("rig.commands.simulate", "the kinematic error at speed that the model predicts for a gear"),

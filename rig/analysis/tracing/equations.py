@@ -127,7 +127,7 @@ def spoiling(eq: Equations, fitted: Sequence[int]) -> Equations:
     chosen: dict[int, list[int]] = {}
     for procedure in sorted({eq.runs[i].procedure for i in fitted}):
         mine = sorted((i for i in fitted if eq.runs[i].procedure == procedure), key=lambda i: eq.runs[i].turning)
-        chosen |= {i: mine for i in (mine[0], mine[-1])}
+        chosen |= dict.fromkeys((mine[0], mine[-1]), mine)
     stands_for: dict[Key, float] = {}
     for c in CHANNELS:
         for i, mine in chosen.items():

@@ -96,7 +96,9 @@ def _ends(runs: Sequence[Recording], moving: list[int]) -> Split:
         held.append(len(made) - 1)
     if not held:
         raise UsageError("no run is long enough to hold a part of it out: at least two turns or strokes are needed")
-    return Split(tuple(made), tuple(moving), tuple(held), "the last turns or strokes of every run: there are no repeats")
+    return Split(
+        tuple(made), tuple(moving), tuple(held), "the last turns or strokes of every run: there are no repeats"
+    )
 
 
 def _cut(run: Recording) -> int | None:

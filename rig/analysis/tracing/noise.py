@@ -56,7 +56,9 @@ def measure(eq: Equations, e: Mapping[Key, Array], among: Sequence[int]) -> Meas
         words = f"{len(found)} pairs of repeats compared at equal motor angle"
         if not found:
             found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
-            words = f"neighbouring turns or strokes of {len(found)} runs compared at equal motor angle, no repeats there"
+            words = (
+                f"neighbouring turns or strokes of {len(found)} runs compared at equal motor angle, no repeats there"
+            )
         if not found:
             continue
         how[channel] = words
@@ -86,7 +88,10 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
     if len(parts) >= 3:
         made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
     else:
-        made = [compare(theta[p] - TURN * np.sign(theta[p][-1] - theta[p][0]), e[key][p], theta[p], e[key][p]) for p in parts]
+        made = [
+            compare(theta[p] - TURN * np.sign(theta[p][-1] - theta[p][0]), e[key][p], theta[p], e[key][p])
+            for p in parts
+        ]
     d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
     if d.size < FLOOR_LEAST / 4:
         return None
@@ -99,7 +104,9 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
         return measured.by_run[key]
     run, channel = key
     said = [v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].said == eq.runs[run].said]
-    same = [v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure]
+    same = [
+        v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure
+    ]
     pool = said or same
     return float(np.sqrt(np.mean(np.square(pool)))) if pool else measured.noise.sigma[channel]
 

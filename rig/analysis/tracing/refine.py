@@ -71,9 +71,7 @@ def _moved(shape: Shape, step: Array, free: Sequence[int], bounds: Sequence[tupl
     return tuple(out)
 
 
-def _expanded(
-    d: Design, best: Design, found: Solution, runs: Sequence[int]
-) -> tuple[Design, Solution]:
+def _expanded(d: Design, best: Design, found: Solution, runs: Sequence[int]) -> tuple[Design, Solution]:
     """An effect whose columns are an expansion about its own coefficient: take that as the next point."""
     for _ in range(3):
         term = best.terms[-1]

@@ -16,7 +16,6 @@ from rig.analysis.tracing.scan import Drop, Own, cross, drops, own
 from rig.analysis.tracing.thresholds import EVIDENCE, MOST, SMALLEST
 from rig.model.effect import Array, Known, Reach
 
-
 ROUNDS = 4
 SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
 
@@ -147,9 +146,7 @@ def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[st
     while len(d.terms) > 1:
         full = sse(s)
         n = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
-        loss = [
-            (sse(without(s, [i])) - full) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))
-        ]
+        loss = [(sse(without(s, [i])) - full) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))]
         worst = int(np.argmin(loss))
         if loss[worst] > EVIDENCE:
             break

@@ -1,0 +1,109 @@
+"""What each effect is worth on runs the fit has not seen, and which ones may be named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.model import Design, Solution, design, fit, without
+from rig.analysis.tracing.noise import Measured, floor_of
+from rig.analysis.tracing.search import reduced
+from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST
+from rig.model.effect import Array
+
+
+@dataclass(frozen=True)
+class Court:
+    """Held-out blocks with their floors. Nothing here goes back into the fit."""
+
+    runs: tuple[int, ...]
+    floors: dict[Key, float]
+
+    def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
+        """Of a solution on the held-out design `d`."""
+        return {key: d.y[key] - d.z[key] @ s.x[d.at[key]] for key in d.y}
+
+    def excess(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> tuple[float, int]:
+        """Sum of squares over squared floors, and rows."""
+        return (
+            float(sum(e[k] @ e[k] / self.floors[k] ** 2 for k in keys)),
+            sum(e[k].size for k in keys),
+        )
+
+    def ratio(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
+        """RMS over floor of some blocks."""
+        total, n = self.excess(e, keys)
+        return float(np.sqrt(total / max(n, 1)))
+
+
+@dataclass(frozen=True)
+class Worth:
+    """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
+    ratio that remains there. `true` is what it takes away over what it would if it were all real."""
+
+    name: str
+    share: float
+    size: float
+    left: float
+    true: float
+    ground: tuple[Key, ...]
+
+    @property
+    def named(self) -> bool:
+        """Whether it may be named."""
+        real = self.size > SMALLEST and self.true > REAL
+        return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
+
+
+def court(eq: Equations, measured: Measured, held_out: Sequence[int]) -> Court:
+    """The held-out blocks, each with the floor of its condition."""
+    return Court(tuple(held_out), {key: floor_of(measured, eq, key) for key in eq.of(held_out)})
+
+
+def unseen(s: Solution, at: Court) -> Design:
+    """The model's columns on the held-out runs."""
+    return design(replace(s.design.eq, noisy={}), s.design.terms, at.runs)
+
+
+def worths(s: Solution, d: Design, at: Court) -> list[Worth]:
+    """Every effect in the model, weighed by taking it away."""
+    whole = at.residuals(s, d)
+    return [worth(s, d, at, whole, name) for name in dict.fromkeys(t.name for t in d.terms)]
+
+
+def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: str) -> Worth:
+    """One effect: the others are fitted again without it."""
+    mine = [i for i, t in enumerate(d.terms) if t.name == name]
+    bare = at.residuals(without(s, mine), d)
+    places = np.concatenate([np.arange(d.size)[d.place(i)] for i in mine])
+    size: dict[Key, float] = {}
+    for key in d.y:
+        chosen = np.isin(d.at[key], places)
+        if chosen.any():
+            f = bare[key] - whole[key]
+            size[key] = float(np.sqrt(np.mean(f**2))) / at.floors[key]
+    if not size:
+        return Worth(name, 0.0, 0.0, 1.0, 0.0, ())
+    most = max(size.values())
+    ground = tuple(key for key, r in size.items() if r >= 0.5 * most)
+    before, n = at.excess(bare, ground)
+    after, _ = at.excess(whole, ground)
+    share = (before - after) / max(before - n, 0.02 * n)
+    own = sum(size[key] ** 2 * whole[key].size for key in ground)
+    return Worth(name, float(share), most, float(np.sqrt(after / n)), float((before - after) / own), ground)
+
+
+def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:
+    """The model with the effects alone that may be named; the least worth goes first, then all are weighed again."""
+    d = unseen(s, at)
+    while True:
+        weighed = worths(s, d, at)
+        failing = [w for w in weighed if not w.named]
+        if not failing:
+            return s, d, weighed
+        worst = min(failing, key=lambda w: min(w.share, 1.0) * w.size)
+        gone = [i for i, t in enumerate(d.terms) if t.name == worst.name]
+        s, d = fit(reduced(s.design, gone)), reduced(d, gone)

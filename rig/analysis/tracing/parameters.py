@@ -1,0 +1,89 @@
+"""Coefficients in the words of the field, with intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rig.analysis.angle import ARCSEC
+from rig.analysis.tracing.channels import INDEX, ORDERS
+from rig.analysis.tracing.model import Solution, covariance, extended, fit
+from rig.analysis.tracing.refine import nudged
+from rig.model.effect import Array, Fit, Parameter, parameter
+
+PLAIN = {
+    "J_m": "kg·m²",
+    "B_m": "N·m·s/rad",
+    "tau_c": "N·m",
+    "J_l": "kg·m²",
+    "B_l": "N·m·s/rad",
+    "tau_cl": "N·m",
+}
+TOGETHER = (("B_m", "B_ml"), ("B_l", "B_ml"))
+"""Viscous terms of equations 6 and 7 that stand before the same speed: what is given is B_m + B_ml, and B_l with it."""
+
+
+def baseline(s: Solution) -> tuple[Parameter, ...]:
+    """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured."""
+    c, out = covariance(s), []
+    seen = np.diag(s.gram) > 1e-12
+    stiff = 1 / s.value("compliance") if s.value("compliance") > 0 else np.nan
+    if seen[INDEX["compliance"]] and np.isfinite(stiff):
+        along = _unit(c, "compliance") * -(stiff**2)
+        out.append(_of("K", stiff, along, c, "N·m/rad"))
+        damping = -s.value("damping") * stiff**2
+        both = _unit(c, "damping") * -(stiff**2) + _unit(c, "compliance") * 2 * s.value("damping") * stiff**3
+        out.append(_of("B_sp", damping, both, c, "N·m·s/rad"))
+    out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    if seen[INDEX["a1"]]:
+        out += [_order(s, c, n) for n in range(1, ORDERS + 1)]
+    return tuple(out)
+
+
+def _order(s: Solution, c: Array, n: int) -> Parameter:
+    a, b = s.value(f"a{n}"), s.value(f"b{n}")
+    size = max(float(np.hypot(a, b)), 1e-15)
+    along = (_unit(c, f"a{n}") * a + _unit(c, f"b{n}") * b) / size * ARCSEC
+    return _of(f"theta_p_order_{n}", size * ARCSEC, along, c, "arcsec")
+
+
+def _unit(c: Array, name: str) -> Array:
+    out = np.zeros(c.shape[0])
+    out[INDEX[name]] = 1.0
+    return out
+
+
+def _of(name: str, value: float, along: Array, c: Array, unit: str) -> Parameter:
+    return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, along @ c @ along))), unit)
+
+
+def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
+    """Parameters of every effect in the model; the shape's uncertainty is in all intervals."""
+    d, slopes = s.design, []
+    for i, term in enumerate(s.design.terms):
+        for j, loose in enumerate(term.effect.loose):
+            if loose:
+                slopes.append((i, j))
+                d = extended(d, nudged(term, j, s.x[s.design.place(i)]), runs)
+    wide = fit(d)
+    # about the solution itself: the added columns only widen the intervals
+    c = covariance(replace(wide, x=np.concatenate([s.x, np.zeros(len(slopes))])))
+    out: dict[str, tuple[Parameter, ...]] = {}
+    for i, term in enumerate(s.design.terms):
+        out[term.name] = (*out.get(term.name, ()), *term.effect.parameters(_fit(s, c, i, slopes)))
+    return out
+
+
+def _fit(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]]) -> Fit:
+    """The part of coefficients and covariance that belongs to one term."""
+    term, place = s.design.terms[i], s.design.place(i)
+    k, size = place.stop - place.start, place.stop - place.start + len(term.shape)
+    spread = np.zeros((size, c.shape[0]))
+    spread[np.arange(k), np.arange(place.start, place.stop)] = 1.0
+    for at, (owner, j) in enumerate(slopes):
+        if owner == i:  # the column is the change with the logarithm
+            spread[k + j, s.design.size + at] = term.shape[j]
+    first = s.design.eq.runs[0]
+    return Fit(s.x[place], term.shape, spread @ c @ spread.T, first.pieces[0].gear, first.ratio)

@@ -1,0 +1,98 @@
+"""From the fit to what is said: verdict, floors, errors before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rig.analysis.tracing import parameters
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.curves import curves
+from rig.analysis.tracing.equations import Key
+from rig.analysis.tracing.errors import errors
+from rig.analysis.tracing.judge import Worth, unseen
+from rig.analysis.tracing.model import Design, Solution
+from rig.analysis.tracing.noise import floor_of
+from rig.analysis.tracing.result import Candidate, Floor, Found, Trace
+from rig.analysis.tracing.search import Found as Searched
+from rig.analysis.tracing.unknown import smooth_term
+from rig.analysis.tracing.verdict import decide
+from rig.model.effect import Array
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
+
+
+def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequence[Worth]) -> Trace:
+    """All of it as one value."""
+    empty = p.baseline
+    before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
+    floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
+    ruling = decide(p, s, worths, before, after, floors, found)
+    final = after
+    if ruling.home is not None:
+        rest = {key: s.residual(key) for key in s.keys}
+        final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+    named = {w.name: w for w in worths}
+    words = parameters.effects(s, p.split.fitted) if s.design.terms else {}
+    return Trace(
+        campaign=p.campaign.name,
+        simulated=p.campaign.simulated,
+        fitted=tuple(p.eq.runs[i].name for i in p.split.fitted),
+        held_out=tuple(p.eq.runs[i].name for i in p.split.held_out),
+        held_out_how=p.split.how,
+        floors=tuple(
+            Floor(SENSORS[c][0], p.measured.noise.sigma[c], SENSORS[c][1], p.measured.how[c])
+            for c in CHANNELS
+            if c in p.measured.how
+        ),
+        baseline=parameters.baseline(empty),
+        baseline_after=parameters.baseline(s),
+        cannot_be_told_apart=parameters.TOGETHER,
+        unexplained=unexplained(p, before),
+        ratios_before=ratios(p, before),
+        ratios_after=ratios(p, final),
+        lives_in=ruling.lives_in,
+        candidates=tuple(
+            Candidate(
+                r.term.name, r.evidence, f"alone it would take {r.evidence:.0f} nats; {r.size:.1f} × floor at most"
+            )
+            for r in found.ranking
+        ),
+        verdict=ruling.verdict,
+        effects=tuple(
+            Found(name, words.get(name, ()), named[name].share) for name in ruling.verdict.effects if name in named
+        ),
+        before=errors(p.eq, p.court, before),
+        after=errors(p.eq, p.court, final),
+        next_run=ruling.next_run,
+        notes=p.campaign.notes,
+        cannot=ruling.cannot,
+        curves=curves(p, before, final),
+    )
+
+
+def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
+    """RMS over floor, by sensor, on held-out runs."""
+    out = {}
+    for c in CHANNELS:
+        keys = [k for k in e if k[1] == c]
+        if keys:
+            out[SENSORS[c][0]] = p.court.ratio(e, keys)
+    return out
+
+
+def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
+    """Share of the held-out variance the baseline leaves beyond the floor, by sensor."""
+    out = {}
+    for c in CHANNELS:
+        keys = [k for k in e if k[1] == c]
+        total = sum(float(np.sum((y := p.eq.bare(k, p.eq.rows[k].y)) @ y)) for k in keys)
+        left = sum(float(e[k] @ e[k]) - p.court.floors[k] ** 2 * e[k].size for k in keys)
+        if total > 0:
+            out[SENSORS[c][0]] = float(np.clip(left / total, 0.0, 1.0))
+    return out

@@ -1,0 +1,236 @@
+"""Where the rest lives when no effect of the library explains it: a coordinate, an order or a frequency, never a name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
+from rig.model.effect import Array
+
+TURN = 2 * np.pi
+BINS = 60  # of a turn: 6°, a few teeth
+LEVELS = 24  # of a range
+
+
+@dataclass(frozen=True)
+class Home:
+    """A coordinate the rest lives in: the share of the excess it predicts in rows it was not fitted to."""
+
+    coordinate: str
+    channel: str
+    share: float
+    order: float | None = None  # cycles per turn
+    frequency_hz: float | None = None
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name."""
+
+    e: Array
+    run: Array
+    at: dict[str, Array]
+    dt: float
+
+
+def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Rest | None:
+    """Join the runs of one channel."""
+    keys = [k for k in e if k[1] == channel]
+    if not keys:
+        return None
+    made = [_coordinates(eq, k) for k in keys]
+    at = {name: np.concatenate([m[name] for m in made]) for name in made[0]}
+    run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
+    smooth = eq.runs[keys[0][0]].smoother
+    return Rest(np.concatenate([e[k] / floors[k] for k in keys]), run, at, smooth.dt * smooth.step)
+
+
+def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:
+    run, kept = eq.runs[key[0]], eq.rows[key].keep
+    rows = [run.smoother.centres(p.t.size) for p in run.pieces]
+
+    def of(name: str) -> Array:
+        return np.concatenate([getattr(p, name)[r] for p, r in zip(run.pieces, rows, strict=True)])[kept]
+
+    names = {
+        "motor_angle": "theta_m",
+        "load_angle": "theta_l",
+        "speed": "omega_m",
+        "load": "torque",
+        "direction": "way",
+        "time": "t",
+        "temperature": "temperature",
+        "torque_rate": "torque_rate",
+    }
+    return {name: of(column) for name, column in names.items()}
+
+
+def homes(r: Rest, channel: str) -> list[Home]:
+    """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
+    fold = _folds(r)
+    total = float(np.mean(r.e**2)) - 1.0
+    out = [Home(name, channel, score(r, fold, index(r)) / max(total, 0.05)) for name, index in INDICES.items()]
+    orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
+    out += [h for h in orders if h is not None]
+    line = _line(r, channel)
+    out += [line] if line else []
+    return sorted(out, key=lambda h: -h.share)
+
+
+def _folds(r: Rest) -> Array:
+    """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
+    return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
+
+
+def score(r: Rest, fold: Array, index: Array) -> float:
+    """Mean square that bin means of one fold explain in the other; `index` −1 is left out."""
+    gain, n = 0.0, 0
+    for test in (0, 1):
+        train, seen = (fold != test) & (index >= 0), (fold == test) & (index >= 0)
+        size = int(index.max()) + 1 if index.size else 0
+        count = np.bincount(index[train], minlength=size)
+        mean = np.bincount(index[train], r.e[train], minlength=size) / np.maximum(count, 1)
+        mean[count < 8] = 0.0
+        guess = mean[index[seen]]
+        gain += float(np.sum(r.e[seen] ** 2 - (r.e[seen] - guess) ** 2))
+        n += int(np.sum(fold == test))
+    return gain / max(n, 1)
+
+
+def _levels(x: Array, count: int = LEVELS) -> Array:
+    good = np.isfinite(x)
+    if good.sum() < 100 or np.ptp(x[good]) == 0:
+        return np.full(x.size, -1)
+    edges = np.unique(np.quantile(x[good], np.linspace(0, 1, count + 1)[1:-1]))
+    return np.where(good, np.digitize(x, edges), -1)
+
+
+def _turn(x: Array, bins: int) -> Array:
+    good = np.isfinite(x)
+    return np.where(good, (np.mod(np.where(good, x, 0.0), TURN) / TURN * bins).astype(int) % bins, -1)
+
+
+INDICES: Mapping[str, Callable[[Rest], Array]] = {
+    "motor_angle": lambda r: _turn(r.at["motor_angle"], BINS),
+    "load_angle": lambda r: _turn(r.at["load_angle"], 6 * BINS),
+    "speed": lambda r: _levels(np.abs(r.at["speed"])),
+    "load": lambda r: _levels(r.at["load"]),
+    "direction": lambda r: (r.at["direction"] + 1).astype(int),
+    "time": lambda r: _levels(r.at["time"], 80),
+    "temperature": lambda r: _levels(r.at["temperature"]),
+    "memory": lambda r: _levels(r.at["load"]) * 2 + (r.at["torque_rate"] > 0),
+}
+
+
+def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
+    """One harmonic of an angle, order free: its share on the other fold."""
+    x = r.at[name]
+    good = np.isfinite(x)
+    if not good.any():
+        return None
+    x, e = x[good], r.e[good]
+    rough = np.arange(0.5, 130.0, 0.02) if name == "motor_angle" else np.arange(1.0, 400.0, 1.0)
+    power = spectrum(x, e, rough)
+    k = float(rough[int(np.argmax(power))])
+    z = np.stack([np.cos(k * x), np.sin(k * x)], 1)
+    train, test = fold[good] == 0, fold[good] == 1
+    c = np.linalg.lstsq(z[train], e[train], rcond=None)[0]
+    gain = float(np.mean(e[test] ** 2) - np.mean((e[test] - z[test] @ c) ** 2))
+    return Home(name, channel, gain / max(float(np.mean(r.e**2)) - 1.0, 0.05), order=k)
+
+
+def spectrum(x: Array, e: Array, orders: Array) -> Array:
+    """|Σ e·exp(−i·k·x)|² for orders on a uniform grid, rows counted into fine bins of x first; (orders,)."""
+    step = float(orders[1] - orders[0])
+    period = TURN / step
+    size = 2 ** int(np.ceil(np.log2(4 * orders[-1] / step)))
+    binned = np.bincount((np.mod(x, period) / period * size).astype(int) % size, e, minlength=size)
+    lines = np.abs(np.fft.rfft(binned)) ** 2
+    return np.asarray(lines[np.round(orders / step).astype(int)])
+
+
+def _line(r: Rest, channel: str) -> Home | None:
+    """A frequency that stands out in runs of differing speed."""
+    hits: dict[int, list[tuple[float, float, float]]] = {}
+    for run in np.unique(r.run):
+        e, mine = r.e[r.run == run], r.run == run
+        if e.size < 512:
+            continue
+        power = np.abs(np.fft.rfft(e * np.hanning(e.size))) ** 2
+        hz = np.fft.rfftfreq(e.size, r.dt)
+        top = int(np.argmax(power[3:])) + 3
+        speed = float(np.mean(np.abs(r.at["speed"][mine])))
+        near = slice(max(0, top - 3), top + 4)
+        hits.setdefault(round(hz[top] * 5), []).append((hz[top], speed, float(power[near].sum() / power.sum())))
+    best = max(hits.values(), key=len, default=[])
+    speeds = np.array([s for _, s, _ in best])
+    if len(best) < 3 or speeds.max() < 1.5 * speeds.min():
+        return None
+    share = float(np.mean([s for _, _, s in best])) * len(best) / max(1, np.unique(r.run).size)
+    return Home("time_periodic", channel, share, frequency_hz=float(np.median([f for f, _, _ in best])))
+
+
+def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
+    """Best coordinates of the channel with the most left, simpler ones first when they do as well."""
+    parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
+    channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
+    found = homes(most, channel)
+    best = found[0].share
+    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, SIMPLE.index(h.coordinate), -h.share))
+
+
+SIMPLE: Sequence[str] = (
+    "direction",
+    "time_periodic",
+    "motor_angle",
+    "load_angle",
+    "speed",
+    "load",
+    "memory",
+    "temperature",
+    "time",
+)
+
+
+def smooth_term(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float], found: Home
+) -> dict[Key, Array]:
+    """Held-out residuals with bin means over that coordinate, taken from the fitted runs, taken away."""
+    out = dict(unseen)
+    train, test = rest(eq, fitted, floors, found.channel), rest(eq, unseen, floors, found.channel)
+    if train is None or test is None:
+        return out
+    both = Rest(
+        np.concatenate([train.e, test.e]),
+        np.concatenate([train.run, test.run]),
+        {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
+        train.dt,
+    )
+    guess = _guess(both, train.e.size, found)
+    start = 0
+    for key in [k for k in unseen if k[1] == found.channel]:
+        n = unseen[key].size
+        out[key] = unseen[key] - guess[start : start + n] * floors[key]
+        start += n
+    return out
+
+
+def _guess(both: Rest, n: int, found: Home) -> Array:
+    if found.order is not None:
+        x = np.nan_to_num(both.at[found.coordinate])
+        z = np.stack([np.cos(found.order * x), np.sin(found.order * x)], 1)
+        return np.asarray(z[n:] @ np.linalg.lstsq(z[:n], both.e[:n], rcond=None)[0])
+    if found.coordinate not in INDICES:
+        return np.zeros(both.e.size - n)
+    index = INDICES[found.coordinate](both)
+    inside = index[:n] >= 0
+    size = int(index.max()) + 1
+    count = np.bincount(index[:n][inside], minlength=size)
+    mean = np.bincount(index[:n][inside], both.e[:n][inside], minlength=size) / np.maximum(count, 1)
+    mean[count < 8] = 0.0
+    return np.where(index[n:] >= 0, mean[np.maximum(index[n:], 0)], 0.0)

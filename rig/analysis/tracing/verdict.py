@@ -1,0 +1,97 @@
+"""What may be said: explained, nothing missing, unknown, ambiguous."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.equations import Key
+from rig.analysis.tracing.judge import Worth
+from rig.analysis.tracing.model import Solution
+from rig.analysis.tracing.next_run import deciding
+from rig.analysis.tracing.result import NextRun, Status, Verdict
+from rig.analysis.tracing.search import Found
+from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, MOSTLY
+from rig.analysis.tracing.unknown import Home, home
+from rig.model.effect import Array
+from rig.model.effects import CATALOGUE
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """The verdict, and what follows from it."""
+
+    verdict: Verdict
+    home: Home | None
+    lives_in: tuple[str, ...]
+    next_run: NextRun | None
+    cannot: tuple[str, ...] = ()
+
+
+def decide(
+    p: Prepared,
+    s: Solution,
+    worths: Sequence[Worth],
+    before: Mapping[Key, Array],
+    after: Mapping[Key, Array],
+    floors: Mapping[Key, float],
+    found: Found,
+) -> Ruling:
+    """From held-out ratios and the effects that may be named."""
+    order = {r.term.name: i for i, r in enumerate(found.ranking)}
+    names = tuple(sorted((w.name for w in worths), key=lambda n: order.get(n, 99)))
+    total, single = worst(p, after)
+    first, _ = worst(p, before)
+    loud = total > EXPLAINED or single > MISSING
+    done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
+    if not loud:
+        return _settled(p, names, found, first, total)
+    where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+    if names and done > MOSTLY and total < 2 * EXPLAINED:
+        ruling = _settled(p, names, found, first, total)
+        return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
+    best = where[0]
+    sentence = (
+        f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
+        f"{best.coordinate.replace('_', ' ')} ({best.share:.0%} of it)"
+        + (f", order {best.order:.2f}" if best.order else "")
+        + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
+        + (f"; beside it stand {', '.join(names)}" if names else "")
+        + "."
+    )
+    verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
+    return Ruling(verdict, best, _lives(where), None)
+
+
+def _lives(where: Sequence[Home]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
+
+
+def worst(p: Prepared, e: Mapping[Key, Array]) -> tuple[float, float]:
+    """Largest RMS over floor of a channel, and of a single run in a channel."""
+    by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
+    return (
+        max(p.court.ratio(e, keys) for keys in by_channel if keys),
+        max(p.court.ratio(e, [k]) for k in e),
+    )
+
+
+def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Ruling:
+    """Nothing loud remains."""
+    if not names:
+        sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
+        return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
+    words = " and ".join(f"{n.replace('_', ' ')} ({CATALOGUE[n].in_short})" for n in names)
+    rivals, next_run = deciding(p, names, found)
+    sentence = (
+        f"The model lacks {words}: with it the held-out error falls from {before:.1f} to {after:.2f} times the floor."
+    )
+    if rivals:
+        sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
+    status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
+    return Ruling(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)

@@ -1,0 +1,69 @@
+"""hdrig trace CAMPAIGN: what the paper's model lacks, found in measured runs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.core.errors import Exit, UsageError
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.result import Trace
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig trace`."""
+    parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of run folders of one rig")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write trace.json there too")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write there instead of into the campaign")
+    parser.add_argument(
+        "--hold-out",
+        action="append",
+        default=[],
+        metavar="GLOB",
+        help="runs, by folder name, that the fit must not see; may be given again",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Trace, write, tell."""
+    from rig.analysis.tracing.record import write_trace
+    from rig.analysis.tracing.trace import trace
+
+    found = trace(args.campaign, args.hold_out)
+    target = args.out or args.campaign
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        written = write_trace(target / "trace.json", found)
+        if args.json:
+            write_trace(args.json, found)
+    except OSError as error:
+        raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
+    tell(found)
+    print(f"written {written}")
+    return int(exit_of(found))
+
+
+def exit_of(found: Trace) -> Exit:
+    """0 when explained or nothing is missing, 6 when ambiguous or unknown."""
+    return Exit.PASS if found.verdict.status in ("explained", "no_missing_effect") else Exit.INCOMPLETE
+
+
+def tell(found: Trace) -> None:
+    """Verdict, parameters, errors before and after, on stdout."""
+    print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
+    print(f"  {found.verdict.sentence}")
+    for effect in found.effects:
+        for p in effect.parameters:
+            print(f"  {effect.effect} {p.name} {p.value:.4g} ({p.ci95[0]:.4g} to {p.ci95[1]:.4g}) {p.unit}")
+    for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):
+        if name in found.ratios_before:
+            print(
+                f"  {label} on {len(found.held_out)} held-out runs: "
+                f"{found.ratios_before[name]:.2f} → {found.ratios_after[name]:.2f} times the floor"
+            )
+    if found.next_run:
+        print(f"  next run: {found.next_run.procedure} {found.next_run.conditions} {found.next_run.because}")
+    for note in (*found.notes, *found.cannot):
+        print(f"  note: {note}")
