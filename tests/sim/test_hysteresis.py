@@ -141,6 +141,7 @@ def lock_cycles(calm: TwinParameters, seconds: float, cycles: int = 2) -> tuple[
     return lost[-1] - lost[-n - 1], loss_per_cycle((high - low) / 2), high
 
 
+@pytest.mark.slow
 def test_in_the_lock_test_the_loss_is_that_of_the_loop_at_any_rate(calm: TwinParameters) -> None:
     losses = []
     for seconds in (2.0, 6.0, 20.0):

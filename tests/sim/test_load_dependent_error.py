@@ -55,6 +55,7 @@ def test_load_of_either_sign_counts(calm: TwinParameters) -> None:
     assert measured(having(calm), 5.0) == pytest.approx(measured(having(calm), -5.0), rel=0.02)
 
 
+@pytest.mark.slow
 def test_deeper_the_error_is_smaller_at_no_load_with_the_same_plateau_and_a_harder_start(calm: TwinParameters) -> None:
     flat, deep = having(calm), having(calm, 0.3)
     assert measured(deep, 0.0) / measured(flat, 0.0) == pytest.approx(1 - 0.8 * 0.3, abs=0.02)
