@@ -14,13 +14,13 @@ from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
 from rig.analysis.friction import add_friction
 from rig.analysis.full_turn import add_full_turn
-from rig.analysis.lock import add_lock
 from rig.analysis.overview import add_overview
 from rig.analysis.result import Result
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.speed_convergence import add_speed_convergence
 from rig.analysis.standstill import add_standstill
+from rig.analysis.stiffness import add_stiffness
 from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
 
@@ -70,7 +70,7 @@ def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | Non
 
 
 def _lock(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    add_lock(found, run, motion)
+    add_stiffness(found, run, motion, reference=None)
 
 
 def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
@@ -102,7 +102,6 @@ PROCEDURES: Mapping[str, Part] = {
     "constant_torque": _constant_torque,
     "constant_speed": _at_speed,
     "sentinel": _constant_torque,
-    "stiffness_lock": _lock,
     "coast_down": _coast_down,
     "standstill": _standstill,
     "friction": _friction,
@@ -117,7 +116,7 @@ def analyse(run: Source, reference: Source | None = None) -> Result:
     """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
     `reference` is a slow run of the same gear: a run at speed is then split into the pure kinematic error and what
-    flexibility makes of it.
+    flexibility makes of it; from the wind-up of a lock test the kinematic error is taken off.
 
     `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
     holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
@@ -156,7 +155,10 @@ def _analyse(run: Tame, reference: Source | None) -> Result:
     found.cannot += motion.notes
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
-    PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
+    if run.procedure == "stiffness_lock":
+        add_stiffness(found, run, motion, reference)
+    else:
+        PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
     if run.procedure in AT_SPEED and not found.rejected:
         add_decomposition(found, run, motion, reference)
     found.cannot += run.notes

@@ -38,4 +38,5 @@ REFERENCES: dict[str, str] = {
     "cia406": "CAN in Automation, CiA 406, CANopen device profile for encoders",
     "lawicel": "Lawicel AB, CANUSB, ASCII commands of its manual (the slcan protocol)",
     "usdigital": "US Digital, QSB, list of commands, version 1.28",
+    "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
 }

@@ -57,7 +57,7 @@ def test_hysteresis_shows_as_a_loop_of_its_true_width(shared: Path) -> None:
     force = truth["parameters"]["bw_k"] * truth["parameters"]["bw_xy"]
     expected = 2 * force / truth["baseline"]["K"] * ARCSEC / 60
     result = analyse(Run.open(shared / "cases" / "open-3" / "lock_20_1"))
-    width = next(e for e in result.estimates if e.name == "loop_width").value
+    width = next(e for e in result.estimates if e.name == "hysteresis_loss").value
     assert abs(width - expected) < 0.1 * expected
 
 

@@ -103,6 +103,20 @@ def curves(seed: int = 1, revolutions: int = 28, grid: int = 512) -> dict[str, A
         "torsion.angle": torsion,
         "torsion.fit_torque": np.array([-15.0, 0.0, 15.0]),
         "torsion.fit_angle": np.array([-15.0, 0.0, 15.0]) / 7160 * 180 * 60 / np.pi,
+        "lock.windup": torsion,
+        "lock.torque": cycle,
+        "lock.departure": cycle - torsion * 7160 / (180 * 60 / np.pi),
+        "lock.fit_windup": np.array([-7.2, -5.3, -1.6, 1.6, 5.3, 7.2]),
+        "lock.fit_torque": np.array([-15.0, -11.5, -3.2, 3.2, 11.5, 15.0]),
+        "tangent.torque": np.linspace(-15, 15, 41),
+        "tangent.fit": 7160 + 4.0 * np.linspace(-15, 15, 41) ** 2,
+        "tangent.measured_torque": np.linspace(-13, 13, 27),
+        "tangent.measured": 7160 + 4.0 * np.linspace(-13, 13, 27) ** 2 + rng.normal(0, 40, 27),
+        "loop.rate": np.array([0.39, 0.4, 0.12, 0.12, 1.2, 1.21]),
+        "loop.half_width": np.array([0.51, 0.5, 0.49, 0.48, 0.55, 0.56]),
+        "loop.fit": np.array([0.48, 0.06]),
+        "creep.time": np.geomspace(0.1, 2.0, 20),
+        "creep.windup": 2.0 + 2.0 * np.log10(np.geomspace(0.1, 2.0, 20)),
     }
 
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from rig.analysis.result import Check, Estimate, Result, Verdict
 from rig.report import page
+from rig.report.figures import CATALOGUE
 from rig.report.palette import DARK, LIGHT
 from tests.report import made_up
 
@@ -111,7 +112,7 @@ def test_a_simulated_run_says_so_on_top_in_the_title_at_the_foot_on_paper_and_on
     assert "No gear was measured" in FULL
     assert '@top-right { content: "SIMULATED"' in FULL
     figures = re.findall(r"<svg[^>]*class=\"plot\".*?</svg>", FULL, re.DOTALL)
-    assert len(figures) == 14
+    assert len(figures) == 2 * len(CATALOGUE)
     assert all(">SIMULATED<" in figure for figure in figures)
     assert "MEASURED" not in READ.words.replace("No gear was measured", "")
 

@@ -13,9 +13,13 @@ from matplotlib.figure import Figure
 from rig.report.figures import (
     coast_down,
     convergence,
+    creep,
     decomposition,
     full_turn,
     kinematic_error,
+    local_stiffness,
+    lock,
+    loop_rate,
     orders,
     spectrum,
     speed_convergence,
@@ -43,6 +47,10 @@ CATALOGUE: tuple[Drawing, ...] = (
     speed_convergence.DRAWING,
     coast_down.DRAWING,
     torsion.DRAWING,
+    lock.DRAWING,
+    local_stiffness.DRAWING,
+    loop_rate.DRAWING,
+    creep.DRAWING,
     timeline.DRAWING,
 )
 

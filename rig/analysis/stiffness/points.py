@@ -1,0 +1,59 @@
+"""The ramps as points: means over small cells of wind-up, so that where the motor stuck weighs like elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.result import Array
+from rig.analysis.stiffness.branches import Ramp
+
+CELLS = 150  # over the whole wind-up: a tenth of the zone of the softest line
+LATE = 0.25  # of the whole wind-up: a ramp that began inside the loop is used once it has gone this far
+
+
+@dataclass(frozen=True)
+class Points:
+    """Means over the rows of one ramp in one cell; every array (p,)."""
+
+    windup: Array  # rad, less the kinematic error where it is known
+    tau: Array  # N·m
+    gone: Array  # rad, from the turn the ramp started at
+    direction: Array  # +1 or −1
+    rate: Array  # rad/s of the ramp
+    error: Array  # rad, the kinematic error that was subtracted; zeros without a reference
+    ramp: npt.NDArray[np.int64]  # which ramp
+
+    def pick(self, which: npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> Points:
+        """Those where `which` (p,) is true, or those at the places `which`."""
+        return Points(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+
+    def with_share(self, share: float) -> Points:
+        """As if `share` of the kinematic error had been subtracted instead of all of it."""
+        return replace(self, windup=self.windup + (1.0 - share) * self.error)
+
+    @property
+    def reach(self) -> float:
+        """Half of the whole wind-up, rad."""
+        return float(np.ptp(self.windup)) / 2
+
+
+def points_of(ramps: list[Ramp], windup: Array, tau: Array, error: Array) -> Points:
+    """All ramps of a run as points; `windup` and `error` rad, `tau` N·m, all (n,)."""
+    low, whole = float(windup.min()), float(np.ptp(windup))
+    parts = []
+    for k, ramp in enumerate(ramps):
+        piece = slice(ramp.lo, ramp.hi)
+        cell = np.minimum(((windup[piece] - low) / whole * CELLS).astype(np.int64), CELLS - 1)
+        rows = np.bincount(cell, minlength=CELLS)
+        here = rows > 0
+        w, y, e = (np.bincount(cell, x[piece], CELLS)[here] / rows[here] for x in (windup, tau, error))
+        gone = np.abs(w - ramp.begin)
+        use = np.full(gone.size, True) if ramp.on_loop else gone > LATE * whole
+        one = np.ones(gone.size)
+        rate = 0.0 if np.isnan(ramp.rate) else ramp.rate
+        parts.append(np.stack((w, y, gone, one * ramp.direction, one * rate, e, one * k))[:, use])
+    w, y, gone, direction, rates, e, which = np.concatenate(parts, axis=1) if parts else np.empty((7, 0))
+    return Points(w, y, gone, direction, rates, e, which.astype(np.int64))
