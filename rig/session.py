@@ -69,6 +69,8 @@ class Session:
     hand: Operator | None = None  # the person who makes changes; the twin has a hand of its own
     rigging: Rigging = field(default_factory=Rigging)  # weight, lock pin, depth: as last shown by the sensors
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of every manifest: the campaign a run belongs to
+    create: Callable[[Path, str, dict[str, Any], str], Path] = create  # how run folders lie in `root`
+    checks: str = ""  # folder within `root` for the runs that only show how the rig is
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
     folder: Path | None = None  # of the newest run; None when it got none
     _proof: Proof | None = None
@@ -206,7 +208,7 @@ class Session:
 
     def _found(self, procedure: Procedure) -> Any:
         """The finding of a run that others build on. Raises Ended when it came to no end."""
-        done = self._run(procedure)
+        done = self._run(procedure, self.root / self.checks)
         if done.ending.status != "completed":
             raise Ended(f"the {procedure.title()} run did not finish: {done.ending.reason}", done.ending.exit)
         return done.ending.finding
@@ -216,16 +218,16 @@ class Session:
         if self.unsure:
             raise NotReady(f"what the rig is like is not known: '{self.unsure}' was asked for and could not be shown")
         refuse_rigging(self.rigging, procedure)
-        return self._run(procedure, watch)
+        return self._run(procedure, self.root, watch)
 
-    def _run(self, procedure: Procedure, watch: Watch = lambda sample: None) -> Done:
+    def _run(self, procedure: Procedure, root: Path, watch: Watch = lambda sample: None) -> Done:
         self.folder = None
         self.check(procedure)
         if self.interrupts.count:
             raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
-        folder = self.folder = create(self.root, procedure.name, self._manifest(procedure), self.bench.text)
+        folder = self.folder = self.create(root, procedure.name, self._manifest(procedure), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
         self._log = EventLog(folder)
         for kind, text in self._early:

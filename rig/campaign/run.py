@@ -6,12 +6,15 @@ from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+from rig.bench import ClockName
 from rig.campaign.changes import bare, changes_between
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
 from rig.core.errors import Exit, HdrigError
-from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Rigging
+from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Rigging
+from rig.interrupts import Interrupts
+from rig.runfile.folder import create_in
 from rig.session import Done, Session, Watch
 from rig.supervisor import State
 
@@ -30,6 +33,18 @@ class Desk(ABC):
     @abstractmethod
     def figure(self, folder: Path) -> str:
         """Analyse a run; its main figure in one sentence. Raises HdrigError."""
+
+
+def open_session(
+    campaign: Campaign,
+    journal: Journal,
+    clock: ClockName,
+    interrupts: Interrupts,
+    note: str = "",
+    hand: Operator | None = None,
+) -> Session:
+    """The campaign's runs directly in its folder; proofs and weighings, which are no part of the data, beside them."""
+    return Session(campaign.bench, clock, journal.folder, interrupts, note, hand, create=create_in, checks="checks")
 
 
 def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:

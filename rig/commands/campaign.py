@@ -16,14 +16,14 @@ from rig.campaign.journal import Journal, new_journal, read_journal, refuse_othe
 from rig.campaign.plan import PLANS, Plan, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
-from rig.campaign.run import Desk, conduct
+from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
 from rig.commands.options import bench_arguments
 from rig.commands.person import Person
 from rig.commands.progress import Progress
 from rig.core.errors import DataError, UsageError
 from rig.interrupts import Interrupts
-from rig.session import Session, Watch, operator
+from rig.session import Watch, operator
 
 DEFAULT = "twin"
 STUMBLES = (
@@ -105,9 +105,9 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, note: str) -> i
         print(f"SIMULATED: bench '{campaign.bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     print(f"campaign folder {journal.folder}", file=sys.stderr)
     with Interrupts() as interrupts:
-        desk = Terminal(campaign.bench)
-        with Session(campaign.bench, clock, journal.folder, interrupts, note, Person(interrupts)) as session:
-            exit = conduct(session, campaign, journal, desk)
+        hand = Person(interrupts)
+        with open_session(campaign, journal, clock, interrupts, note, hand) as session:
+            exit = conduct(session, campaign, journal, Terminal(campaign.bench))
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     print(f"{text}campaign folder {journal.folder}")

@@ -16,19 +16,35 @@ from rig.runfile.process import this_process
 
 
 def create(root: Path | str, procedure: str, manifest: Mapping[str, Any], bench_toml: str = "") -> Path:
-    """Make the folder of one run under `root` and write its manifest, status "running". Returns the folder.
+    """Make the folder of one run under `root`, by date, and write its manifest, status "running". Returns the folder.
 
     `procedure` as in the manifest, with underscores. `manifest` holds what the caller knows (backend, gear, declared,
     conditions, encoders, software, clock …) and wins over what is filled in here (uid, started_utc, clock, process).
     `bench_toml` is the resolved configuration. Raises NotReady when nothing can be written there; nothing moved.
     """
     first = _first_manifest(procedure, manifest)
+    began = _began(first)
     with told(NotReady, f"no run folder can be made in {root}"):
-        folder = _new_folder(Path(root), procedure, first)
-        write(folder, first)
-        if bench_toml:
-            write_atomic(folder / "bench.toml", bench_toml.encode())
+        return _create(Path(root) / f"{began:%Y-%m-%d}", f"{began:%H%M}", procedure, first, bench_toml)
+
+
+def create_in(root: Path | str, procedure: str, manifest: Mapping[str, Any], bench_toml: str = "") -> Path:
+    """As `create`, but directly in `root`: a campaign is a folder of run folders."""
+    first = _first_manifest(procedure, manifest)
+    with told(NotReady, f"no run folder can be made in {root}"):
+        return _create(Path(root), f"{_began(first):%m%d-%H%M}", procedure, first, bench_toml)
+
+
+def _create(parent: Path, start: str, procedure: str, first: Manifest, bench_toml: str) -> Path:
+    folder = _new_folder(parent, start, procedure, first)
+    write(folder, first)
+    if bench_toml:
+        write_atomic(folder / "bench.toml", bench_toml.encode())
     return folder
+
+
+def _began(manifest: Manifest) -> datetime:
+    return datetime.fromisoformat(manifest["started_utc"]).astimezone(UTC)
 
 
 def _first_manifest(procedure: str, given: Mapping[str, Any]) -> Manifest:
@@ -45,19 +61,17 @@ def _first_manifest(procedure: str, given: Mapping[str, Any]) -> Manifest:
     }
 
 
-def _new_folder(root: Path, procedure: str, manifest: Manifest) -> Path:
+def _new_folder(parent: Path, start: str, procedure: str, manifest: Manifest) -> Path:
     """The folder, empty and surely ours: two runs in one minute differ in their uid."""
-    began = datetime.fromisoformat(manifest["started_utc"]).astimezone(UTC)
     serial = re.sub(r"[^A-Za-z0-9._-]+", "-", str(manifest.get("gear", {}).get("serial") or "no-serial"))
-    name = f"{began:%H%M}-{manifest.get('label') or procedure.replace('_', '-')}-{serial}-{manifest['uid'][:4]}"
-    day = root / f"{began:%Y-%m-%d}"
-    day.mkdir(parents=True, exist_ok=True)
-    folder = day / name
+    name = f"{start}-{manifest.get('label') or procedure.replace('_', '-')}-{serial}-{manifest['uid'][:4]}"
+    parent.mkdir(parents=True, exist_ok=True)
+    folder = parent / name
     while True:
         try:
             folder.mkdir()
             break
         except FileExistsError:  # one chance in 65 536 for two runs in the same minute
-            folder = day / f"{name[:-4]}{uuid.uuid4().hex[:4]}"
-    sync_folder(day)
+            folder = parent / f"{name[:-4]}{uuid.uuid4().hex[:4]}"
+    sync_folder(parent)
     return folder

@@ -9,7 +9,7 @@ from pathlib import Path
 from rig.bench import read
 from rig.campaign.journal import Journal, new_journal
 from rig.campaign.planner import Campaign
-from rig.campaign.run import Desk, conduct
+from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
 from rig.core.errors import Exit
 from rig.core.operator import Change, Operator
@@ -81,7 +81,7 @@ def go_on(
     journal: Journal, campaign: Campaign, instead: dict[Change, Change | None] | None = None, **desk: int
 ) -> tuple[Exit, Journal, Quiet]:
     """A campaign that was begun, to whatever end."""
-    with Session(campaign.bench, "virtual", journal.folder, Interrupts()) as opened:
+    with open_session(campaign, journal, "virtual", Interrupts()) as opened:
         assert opened.instruments.operator is not None
         opened.instruments.operator = Liar(opened.instruments.operator, instead or {})
         quiet = Quiet(opened, **desk)
