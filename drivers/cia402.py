@@ -6,6 +6,7 @@ goes on to OPERATION ENABLED. Commands are sent at once (RPDO type 255), reading
 
 from __future__ import annotations
 
+import contextlib
 import math
 import struct
 from typing import ClassVar
@@ -25,6 +26,7 @@ DISABLE, SHUTDOWN, SWITCH_ON, ENABLE, RESET = 0x00, 0x06, 0x07, 0x0F, 0x80  # co
 TURN = 2 * math.pi
 NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
+CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
 PERMILLE = 1000.0
 SCALE_TOLERANCE = 0.02  # a rated torque that differs by more is another scale, not rounding
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
@@ -271,16 +273,27 @@ class Cia402(Drive):
             return False
         for _ in range(2):  # one may meet a full queue
             self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
-        try:
-            until = self.bus.clock.now() + 0.2
-            while state_of(self.node.read_uint(0x6041)) in ("operation enabled", "quick stop active"):
-                if self.bus.clock.now() > until:
-                    return False
-                self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
+        off = self._confirmed_off()
+        with contextlib.suppress(
+            NotReady
+        ):  # who cannot be disarmed trips by its watchdog: it is without torque already
             self._disarm()
-        except NotReady:
-            return False
-        return True
+        return off
+
+    def _confirmed_off(self) -> bool:
+        """By the statusword after a SYNC: SDO answers may be late, or somebody else's."""
+        command, status, _ = self._identifiers
+        until = self.bus.clock.now() + CONFIRM
+        while self.bus.clock.now() < until and not self.bus.dead:
+            self.bus.frames.pop(status, None)
+            self.bus.sync()
+            self.bus.wait(CONFIRM / 10, lambda: status in self.bus.frames)
+            frame = self.bus.frames.get(status)
+            if frame is not None and len(frame.data) == 5:
+                if state_of(decode_status(frame.data)[0]) not in ("operation enabled", "quick stop active"):
+                    return True
+                self.bus.send(command, encode_command(DISABLE, 0))
+        return False
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""

@@ -83,7 +83,10 @@ class Cia406(Encoder):
         self.bus.drain()
         self.trouble = self.node.trouble(self.bus.clock.now())
         frame = self.bus.frames.get(self._identifier)
-        if frame is None or len(frame.data) < 4 or frame.latched == self._last.t:
+        if frame is None or frame.latched == self._last.t:
+            return self._last
+        if len(frame.data) != 4:
+            self.trouble = f"{self.node.who} sends PDOs of {len(frame.data)} bytes, expected 4: mapped anew?"
             return self._last
         self.node.answered(frame)
         flags = Flag.EPOCH if self._angle.step(decode_position(frame.data)) else 0

@@ -19,6 +19,7 @@ from rig.realtime import RealTime
 from rig.supervisor import Act, Supervisor
 from rig.timing import LoopTiming
 
+LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
 
@@ -100,7 +101,7 @@ class Loop:
 
     def _tick(self, procedure: Procedure, setting: Setting) -> Ending:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
-        latch, lead = self.instruments.latch, self.instruments.lead
+        latch = self.instruments.latch
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
         period, start, k, stopping = setting.period, clock.now(), 0, False
         steps: Steps = procedure.steps(setting)
@@ -108,13 +109,7 @@ class Loop:
         while True:
             k += 1
             deadline = start + k * period
-            if latch is None:
-                now = clock.wait_until(deadline)
-            else:
-                woken = clock.wait_until(deadline - lead)
-                latch()
-                # who woke late still gives the devices their time to answer, or would read the reading before
-                now = clock.wait_until(max(deadline, woken + lead))
+            now = clock.wait_until(deadline) if latch is None else self._latched(latch, deadline, period)
             lateness = now - deadline
             late(lateness if lateness > 0.0 else 0.0)
             skipped = 0
@@ -155,6 +150,22 @@ class Loop:
             if k % WATCH_TICKS == 0:
                 self.sink.check()
                 self.watch(sample)
+
+    def _latched(self, latch: Callable[[], None], deadline: float, period: float) -> float:
+        """Devices latch `lead` before the deadline; the time [s] when their answers are in.
+
+        Who woke late still gives them their time, or would read the reading before; who was away between latching and
+        reading latches again, a few times: what was latched is old by then.
+        """
+        wait, lead = self.instruments.clock.wait_until, self.instruments.lead
+        woken = wait(deadline - lead)
+        for _ in range(LATCHES):
+            latch()
+            now = wait(max(deadline, woken + lead))
+            if now - woken <= lead + period:
+                break
+            woken = now
+        return now
 
     def _last_row(self, sample: Sample, asked: Torque) -> None:
         """What was seen when the torque had just been taken off."""
