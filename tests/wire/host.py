@@ -8,7 +8,7 @@ from functools import cache
 from rig.bench import read, twin_parameters
 from sim.parameters import TwinParameters
 from sim.wire.assembly import Assembly
-from sim.wire.frame import Frame
+from sim.wire.frame import REMOTE, Frame
 from sim.wire.motor import Rating
 
 BOOTED = 0.1  # s
@@ -45,6 +45,10 @@ class Host:
     def send(self, identifier: int, data: str = "") -> None:
         """A frame; `data` in hexadecimal."""
         self.port.send(Frame(identifier, bytes.fromhex(data)))
+
+    def guards(self, identifier: int) -> None:
+        """A remote frame for one byte."""
+        self.port.send(Frame(identifier | REMOTE, bytes(1)))
 
     def hears(self, identifier: int, seconds: float) -> list[str]:
         """The data of all frames with that identifier in the next `seconds`."""

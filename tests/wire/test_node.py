@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from sim.wire.frame import EXTENDED
 from tests.wire.host import BOOTED, Host, assembly, host
 
 UNSUPPORTED, NOT_MAPPABLE, TOO_LONG, VALUE = "00 00 01 06", "41 00 04 06", "42 00 04 06", "30 00 09 06"
@@ -66,22 +67,16 @@ def test_heartbeats_say_the_state(rig: Host) -> None:
 def test_guarding_answers_with_a_toggle(rig: Host) -> None:
     answers = []
     for _ in range(3):
-        rig.port.send(rig_remote(0x701))
+        rig.guards(0x701)
         answers += rig.hears(0x701, 0.01)
     assert answers == ["7f", "ff", "7f"]
-
-
-def rig_remote(identifier: int):  # type: ignore[no-untyped-def]
-    from sim.wire.frame import REMOTE, Frame
-
-    return Frame(identifier | REMOTE, bytes(1))
 
 
 def test_life_guarding_notices_that_nobody_asks_any_more(rig: Host) -> None:
     rig.put(2, 0x100C, 0, "H", 50)
     rig.put(2, 0x100D, 0, "B", 2)
     assert rig.hears(0x082, 1.0) == []
-    rig.port.send(rig_remote(0x702))
+    rig.guards(0x702)
     assert rig.hears(0x082, 0.099) == []
     assert rig.hears(0x082, 1.0) == ["30 81 11 00 00 00 00 00"]
 
@@ -207,7 +202,5 @@ def test_a_short_rpdo_is_not_used_and_told(rig: Host) -> None:
 
 
 def test_29_bit_frames_are_not_for_us(rig: Host) -> None:
-    from sim.wire.frame import EXTENDED
-
     rig.send(0x601 | EXTENDED, "40 00 10 00 00 00 00 00")
     assert rig.hears(0x581, 0.01) == []

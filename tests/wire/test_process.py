@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import os
 import shutil
 import signal
 import socket
@@ -32,7 +31,9 @@ class Twin:
 
     def __init__(self, *options: str) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="twin-"))  # a socket's path must be short
-        doors = ["--bus", f"{self.folder}/can", "--control", f"{self.folder}/control"]
+        self.lines = self.folder / "lines"
+        doors = ["--bus", f"{self.folder}/can", "--control", f"{self.folder}/control", "--socketcand", "0"]
+        doors += ["--serial", f"{self.lines}", "--slcan", f"{self.lines}/slcan"]
         self.process = subprocess.Popen(
             [sys.executable, "-m", "rig.cli", "twin", *doors, *options], stdout=subprocess.PIPE, text=True
         )
@@ -68,12 +69,9 @@ class Twin:
 
 @pytest.fixture(scope="module")
 def twin() -> Iterator[Twin]:
-    folder = tempfile.mkdtemp(prefix="lines-")
-    made = Twin("--serial", folder, "--slcan", f"{folder}/slcan", "--socketcand", "0")
-    made.lines = Path(folder)  # type: ignore[attr-defined]
+    made = Twin()
     yield made
     made.close()
-    shutil.rmtree(folder)
 
 
 @pytest.fixture
@@ -211,6 +209,17 @@ def test_time_stamps_are_those_of_the_modelled_bus(twin: Twin) -> None:
         assert abs(stamps[-1] - time.time()) < PATIENCE
 
 
+def test_a_host_that_does_not_read_loses_the_newest_frames_without_a_word(twin: Twin) -> None:
+    with twin.bus() as sender, twin.bus() as sleeper:
+        before = twin.do("status")["frames"]
+        for number in range(1500):
+            sender.send(can.Message(arbitration_id=0x300, data=number.to_bytes(2, "little"), is_extended_id=False), 1.0)
+        wait_for(lambda: twin.do("status")["frames"] >= before + 1500)
+        kept = list(iter(lambda: sleeper.recv(0), None))
+        assert 10 < len(kept) < 1500
+        assert [int.from_bytes(message.data, "little") for message in kept] == list(range(len(kept)))
+
+
 def test_a_host_that_is_killed_stops_its_drive(twin: Twin, network: canopen.Network) -> None:
     put(network, 1, 0x1016, 1, "I", 0x007F0064)
     enable(network)
@@ -243,7 +252,7 @@ def test_a_host_that_is_killed_stops_its_drive(twin: Twin, network: canopen.Netw
 def test_the_same_bus_through_slcan_and_socketcand(twin: Twin) -> None:
     port = next(int(line.split("port=")[1].split(",")[0]) for line in twin.said if "socketcand" in line)
     ways: list[dict[str, Any]] = [
-        {"interface": "slcan", "channel": f"{twin.lines}/slcan", "sleep_after_open": 0.1, "bitrate": 1_000_000},  # type: ignore[attr-defined]
+        {"interface": "slcan", "channel": f"{twin.lines}/slcan", "sleep_after_open": 0.1, "bitrate": 1_000_000},
         {"interface": "socketcand", "channel": "can0", "host": "127.0.0.1", "port": port},
     ]
     request = can.Message(arbitration_id=0x601, data=bytes.fromhex("4000100000000000"), is_extended_id=False)
@@ -257,7 +266,7 @@ def test_the_same_bus_through_slcan_and_socketcand(twin: Twin) -> None:
 
 
 def test_serial_devices_are_read_with_pyserial_and_unplugged(twin: Twin) -> None:
-    folder: Path = twin.lines  # type: ignore[attr-defined]
+    folder = twin.lines
     with serial.Serial(str(folder / "torque"), 115_200, timeout=PATIENCE, exclusive=True) as port:
         port.readline()
         assert port.readline().endswith(b" Nm\r\n")
@@ -306,5 +315,6 @@ def test_it_ends_by_signal_by_word_and_by_time_and_leaves_nothing_behind() -> No
                 case "kill":
                     made.process.kill()
             assert made.process.wait(PATIENCE) == (-9 if end == "kill" else 0)
-        assert end == "kill" or os.listdir(made.folder) == []
+        left = [path for path in made.folder.rglob("*") if path.name != "lines"]
+        assert end == "kill" or left == []
         made.close()
