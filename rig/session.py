@@ -140,8 +140,12 @@ class Session:
         self.unsure = change.words()
         operator.make(change)
         wait_for_rest(self.instruments)  # what was touched swings
-        self.rigging = change.applied(self.rigging)
-        shown = self._show(change)
+        before, self.rigging = self.rigging, change.applied(self.rigging)
+        try:
+            shown = self._show(change)
+        except HdrigError:
+            self.rigging = before  # as last shown; `unsure` says that it may no longer be so
+            raise
         self.unsure = ""
         return shown
 

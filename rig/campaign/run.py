@@ -11,7 +11,7 @@ from rig.campaign.changes import bare, changes_between
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Rigging
 from rig.interrupts import Interrupts
 from rig.runfile.folder import create_in
@@ -33,6 +33,10 @@ class Desk(ABC):
     @abstractmethod
     def figure(self, folder: Path) -> str:
         """Analyse a run; its main figure in one sentence. Raises HdrigError."""
+
+    def again(self, why: str) -> bool:
+        """Whether somebody wants to make a change once more that could not be shown."""
+        return False
 
 
 def open_session(
@@ -130,9 +134,19 @@ def _by_hand(session: Session, journal: Journal, desk: Desk, change: Change) -> 
     """Raises NotReady when it is not made or not shown: no plan goes on from there."""
     desk.say(f"by hand: {change.words()}")
     journal.ask(change)
-    shown = session.change(change)
+    shown = _shown(session, desk, change)
     journal.show(change, session.rigging, shown)
     desk.say(shown)
+
+
+def _shown(session: Session, desk: Desk, change: Change) -> str:
+    """Asked for until it is shown, or nobody wants to try again. Raises NotReady with what the sensors show."""
+    while True:
+        try:
+            return session.change(change)
+        except NotReady as error:
+            if session.interrupts.count or not desk.again(str(error)):
+                raise
 
 
 def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk, index: int) -> Exit:

@@ -6,12 +6,13 @@ import argparse
 import contextlib
 import secrets
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
 from rig.campaign import dry_run, summary
+from rig.campaign.changes import ByHand, deeds
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
 from rig.campaign.plan import PLANS, Plan, read_plan
 from rig.campaign.planner import Campaign, planned
@@ -21,7 +22,8 @@ from rig.campaign.steps import Item
 from rig.commands.options import bench_arguments
 from rig.commands.person import Person
 from rig.commands.progress import Progress
-from rig.core.errors import DataError, UsageError
+from rig.core.errors import DataError, NotReady, UsageError
+from rig.core.operator import Rigging
 from rig.interrupts import Interrupts
 from rig.session import Watch, operator
 
@@ -73,6 +75,7 @@ def begin(plan: Plan, args: argparse.Namespace) -> int:
     if args.dry_run:
         print("\n".join(dry_run.lines(campaign)))
         return 0
+    refuse_nobody(campaign, range(len(campaign.items)))
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     return make(campaign, new_journal(args.out, campaign, clock, overrides), clock, args.note)
 
@@ -89,6 +92,7 @@ def _resume(args: argparse.Namespace) -> int:
     if args.dry_run:
         print("\n".join(dry_run.lines(campaign, journal.open_runs())))
         return 0
+    refuse_nobody(campaign, journal.open_runs())
     for told in take_up(journal):
         print(told, file=sys.stderr)
     for number in args.skip:
@@ -105,9 +109,9 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, note: str) -> i
         print(f"SIMULATED: bench '{campaign.bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     print(f"campaign folder {journal.folder}", file=sys.stderr)
     with Interrupts() as interrupts:
-        hand = Person(interrupts)
-        with open_session(campaign, journal, clock, interrupts, note, hand) as session:
-            exit = conduct(session, campaign, journal, Terminal(campaign.bench))
+        person = Person(interrupts)
+        with open_session(campaign, journal, clock, interrupts, note, person) as session:
+            exit = conduct(session, campaign, journal, Terminal(campaign.bench, person))
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     print(f"{text}campaign folder {journal.folder}")
@@ -116,11 +120,19 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, note: str) -> i
     return int(exit)
 
 
+def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:
+    """Raises NotReady when there is something to be changed by hand and nobody to be asked, before anything moves."""
+    todo = deeds([(k, campaign.items[k]) for k in runs], Rigging())
+    first = next((deed.change for deed in todo if isinstance(deed, ByHand)), None)
+    if first is not None and not campaign.bench.simulated and not sys.stdin.isatty():
+        raise NotReady(f"the campaign needs somebody to {first.words()}: standard input is no terminal")
+
+
 class Terminal(Desk):
     """Lines and a bar on stderr."""
 
-    def __init__(self, bench: Bench) -> None:
-        self.bench = bench
+    def __init__(self, bench: Bench, person: Person) -> None:
+        self.bench, self.person = bench, person
 
     def say(self, text: str) -> None:
         print(text, file=sys.stderr)
@@ -129,6 +141,9 @@ class Terminal(Desk):
     def watching(self, item: Item, duration: float) -> Iterator[Watch]:
         with Progress(item.title, duration, self.bench.file.gear.N) as progress:
             yield progress.watch
+
+    def again(self, why: str) -> bool:
+        return not self.bench.simulated and self.person.again(why)
 
     def figure(self, folder: Path) -> str:
         """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""

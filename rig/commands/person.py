@@ -35,6 +35,14 @@ class Person(Operator):
         if self._answer().strip().lower().startswith("n"):
             raise NotReady(f"the operator could not do this: {change.words()}")
 
+    def again(self, why: str) -> bool:
+        """Ask whether a change that could not be shown is made once more."""
+        if not sys.stdin.isatty():
+            return False
+        print(f"\n{why}", file=sys.stderr)
+        print("Enter to do it once more, n and Enter to end here: ", end="", file=sys.stderr, flush=True)
+        return not self._answer().strip().lower().startswith("n")
+
     def _answer(self) -> str:
         while not select.select([sys.stdin], [], [], LOOK)[0]:
             if self.interrupts.count:

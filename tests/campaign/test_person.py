@@ -10,10 +10,13 @@ from collections.abc import Iterator
 
 import pytest
 
+from rig.bench import Bench
+from rig.commands.campaign import refuse_nobody
 from rig.commands.person import NotMade, Person
 from rig.core.errors import Exit, NotReady
 from rig.core.operator import HangWeight
 from rig.interrupts import Interrupts
+from tests.campaign.plans import LOADED, REST, campaign
 
 CHANGE = HangWeight(5.0)
 
@@ -52,3 +55,22 @@ def test_without_a_terminal_nobody_can_be_asked(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(sys, "stdin", io.StringIO("\n"))
     with pytest.raises(NotReady, match="standard input is no terminal"):
         Person(Interrupts()).make(CHANGE)
+
+
+def test_who_hung_the_wrong_weight_may_try_once_more_or_end_it(
+    keyboard: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    os.write(keyboard, b"\nn\n")
+    assert Person(Interrupts()).again("it is another weight")
+    assert not Person(Interrupts()).again("it is another weight")
+    assert "it is another weight" in capsys.readouterr().err
+
+
+def test_a_campaign_that_needs_a_hand_is_refused_where_nobody_can_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("\n"))
+    real = campaign(REST, LOADED)
+    refuse_nobody(real, [0, 1])  # the twin has a hand of its own
+    monkeypatch.setattr(Bench, "simulated", False)
+    refuse_nobody(real, [0])
+    with pytest.raises(NotReady, match="needs somebody to hang 2 N·m"):
+        refuse_nobody(real, [0, 1])
