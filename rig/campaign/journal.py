@@ -30,6 +30,7 @@ class Journal:
     def __init__(self, folder: Path, book: dict[str, Any]) -> None:
         self.folder = folder
         self.book = book
+        self._before: float = book["rig_time_s"]  # s of earlier sessions
 
     @property
     def rigging(self) -> Rigging:
@@ -54,10 +55,15 @@ class Journal:
         """How many runs are in which status."""
         return dict(Counter(entry["status"] for entry in self.book["runs"]))
 
-    def begin(self, index: int) -> None:
-        """A run is about to be started."""
-        self.book["runs"][index]["status"] = "running"
+    def begin(self, index: int, t: float) -> float:
+        """A run is about to be started, `t` s on the clock of this session. Returns the rig's time in the campaign [s].
+
+        In virtual time the clock on the wall says little of how long the rig has run, and so of how warm it is.
+        """
+        rig_time: float = self._before + t
+        self.book["runs"][index]["status"], self.book["rig_time_s"] = "running", rig_time
         self._save()
+        return rig_time
 
     def end(self, index: int, status: str, sentence: str, folder: Path | None = None) -> None:
         """`status` done, failed, stopped or interrupted; `folder` is the run's, if it got one. Attempts are kept."""
@@ -103,6 +109,7 @@ class Journal:
             pid = self.book["process"]["pid"]
             raise NotReady(f"{self.folder} is being made by process {pid}; stop that first")
         self.book |= {"status": "running", "sentence": "", "process": this_process()}
+        self._before = self.book["rig_time_s"]
         self.book["sessions"].append(utc_now())
         self._save()
 
@@ -123,7 +130,7 @@ def new_journal(root: Path, campaign: Campaign, clock: str, overrides: Sequence[
         "sentence": "", "started_utc": now, "backend": "sim" if bench.simulated else "rig", "clock": clock,
         "seed": campaign.seed, "plan": {"source": found_again(plan.source), "sha256": plan.sha256},
         "bench": {"source": found_again(bench.source), "sha256": digest(bench.text), "overrides": list(overrides)},
-        "process": this_process(), "sessions": [now], "rigging": Rigging().conditions(), "pending": None,
+        "process": this_process(), "sessions": [now], "rig_time_s": 0.0, "rigging": Rigging().conditions(), "pending": None,
         "runs": [entry_of(item.record()) for item in campaign.items], "changes": [], "notes": [],
     }  # fmt: skip
     with told(NotReady, f"no campaign folder can be made in {root}"):

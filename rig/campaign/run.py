@@ -153,9 +153,11 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
     """One run, whatever becomes of it written down."""
     item = campaign.items[index]
     session.note, checks = item.note, session.facts
-    session.facts = {"campaign": {"uid": journal.book["uid"], "run": index + 1, "kind": item.kind,
-                                  "repeat": item.repeat, "of": item.of}}  # fmt: skip
-    journal.begin(index)
+    rig_time = journal.begin(index, session.instruments.clock.now())
+    session.facts = {"campaign": {
+        "uid": journal.book["uid"], "run": index + 1, "kind": item.kind, "repeat": item.repeat, "of": item.of,
+        "rig_time_s": round(rig_time, 3),
+    }}  # fmt: skip
     try:
         with desk.watching(item, campaign.envelope(item).duration) as watch:
             done = session.run(item.procedure, watch)

@@ -71,6 +71,18 @@ def test_what_is_done_is_what_the_dry_run_says(made: Made) -> None:
 
 
 @pytest.mark.slow
+def test_every_run_says_how_long_the_rig_had_run_before_it(made: Made) -> None:
+    _, journal, _, _ = made
+    found = [
+        json.loads((journal.folder / entry["run"] / "manifest.json").read_text()) for entry in journal.book["runs"]
+    ]
+    times = [about["campaign"]["rig_time_s"] for about in found]
+    assert times == sorted(times)
+    assert times[0] > 20.0  # the proof and the tare
+    assert times[1] - times[0] > 10.0  # the weighing between them
+
+
+@pytest.mark.slow
 def test_nothing_is_made_again_in_a_campaign_that_is_complete(made: Made) -> None:
     _, journal, _, planned = made
     assert read_journal(journal.folder).open_runs() == []
