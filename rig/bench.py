@@ -74,6 +74,8 @@ class Bench:
         gear = {"ratio": f.gear.N, "output": f.gear.output, "serial": f.gear.serial}
         keys = ("J_m", "J_l", "K", "B_m", "B_ml", "B_l", "B_sp", "fourier_terms")
         declared = {key: getattr(f.gear, key) for key in keys}
+        optional = {key: getattr(f.gear, key) for key in ("T_rated", "T1", "T2")} | f.path.model_dump()
+        declared |= {key: value for key, value in optional.items() if value is not None}
         backend = "sim" if self.simulated else f.devices.drive.type.partition(".")[0]
         return {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
 

@@ -78,6 +78,17 @@ class GearSection(Strict):
     B_l: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
     B_sp: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
     fourier_terms: Annotated[int, quantity("1", ge=1, le=100)]
+    T_rated: Annotated[float | None, quantity("N·m", **Positive)] = None  # maker's rated torque at the output
+    T1: Annotated[float | None, quantity("N·m", **Positive)] = None  # where the maker's K1 ends
+    T2: Annotated[float | None, quantity("N·m", **Positive)] = None  # and his K2
+
+
+class PathSection(Strict):
+    """[path]: what lies in series with the gear between motor encoder and lock, where it is known."""
+
+    K_sensor: Annotated[float | None, quantity("N·m/rad", **Positive)] = None
+    K_coupling: Annotated[float | None, quantity("N·m/rad", **Positive)] = None
+    K_fixture: Annotated[float | None, quantity("N·m/rad", **Positive)] = None
 
 
 class MotorSection(Strict):
@@ -187,6 +198,7 @@ class BenchFile(Strict):
     bus: dict[str, BusSection] = Field(default_factory=dict)
     devices: DevicesSection
     gear: GearSection
+    path: PathSection = Field(default_factory=PathSection)
     motor: MotorSection
     load_encoder: EncoderSection | None = None
     torque_sensor: TorqueSensorSection | None = None

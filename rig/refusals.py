@@ -44,8 +44,11 @@ def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
 def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:
     """(what, asked, limit, unit shown, SI → shown) of everything the procedure will ask for at most."""
     envelope, limits = procedure.envelope(bench.setting(lambda text: None)), bench.limits
-    return [
+    found = [
         ("travel", envelope.travel, limits.travel, "deg", 57.29577951308232),
         ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
         ("torque", envelope.torque, limits.torque, "N·m", 1.0),
     ]
+    if limits.shaft_torque is not None and math.isfinite(envelope.shaft_torque):
+        found.append(("shaft", envelope.shaft_torque, limits.shaft_torque, "N·m", 1.0))
+    return found

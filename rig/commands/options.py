@@ -83,4 +83,4 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
         lines.append(
             f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
         )
-    return lines
+    return [*lines, *procedure.remarks(bench.setting(lambda text: None))]

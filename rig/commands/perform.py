@@ -35,6 +35,8 @@ def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, no
             print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
         if procedure.output_locked:
             print(session.change(LockOutput()), file=sys.stderr)
+        for remark in procedure.remarks(bench.setting(lambda text: None)):
+            print(remark, file=sys.stderr)
         done = _watched(session, procedure)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
     print(f"run {done.ending.status}: {done.ending.reason}", file=sys.stderr)
