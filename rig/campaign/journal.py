@@ -130,7 +130,8 @@ def new_journal(root: Path, campaign: Campaign, clock: str, overrides: Sequence[
         "sentence": "", "started_utc": now, "backend": "sim" if bench.simulated else "rig", "clock": clock,
         "seed": campaign.seed, "plan": {"source": found_again(plan.source), "sha256": plan.sha256},
         "bench": {"source": found_again(bench.source), "sha256": digest(bench.text), "overrides": list(overrides)},
-        "process": this_process(), "sessions": [now], "rig_time_s": 0.0, "rigging": Rigging().conditions(), "pending": None,
+        "process": this_process(), "sessions": [now], "rig_time_s": 0.0,
+        "rigging": Rigging().conditions(), "pending": None,
         "runs": [entry_of(item.record()) for item in campaign.items], "changes": [], "notes": [],
     }  # fmt: skip
     with told(NotReady, f"no campaign folder can be made in {root}"):
