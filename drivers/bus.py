@@ -102,6 +102,12 @@ class Bus:
             return False
         return True
 
+    def discard(self) -> None:
+        """Throw away what waits to be sent, where the adapter can: old targets must not follow a stop. Never raises."""
+        if self._can is not None:
+            with contextlib.suppress(NotImplementedError, *GONE):
+                self._can.flush_tx_buffer()
+
     def drain(self) -> None:
         """Take what has arrived, without waiting. Never raises."""
         for _ in range(MOST):

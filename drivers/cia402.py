@@ -26,6 +26,7 @@ DISABLE, SHUTDOWN, SWITCH_ON, ENABLE, RESET = 0x00, 0x06, 0x07, 0x0F, 0x80  # co
 TURN = 2 * math.pi
 NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
+UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
 PERMILLE = 1000.0
 SCALE_TOLERANCE = 0.02  # a rated torque that differs by more is another scale, not rounding
@@ -262,6 +263,8 @@ class Cia402(Drive):
         tau = min(max(asked, -limit), limit)
         permille = int(tau / self._rated * PERMILLE)  # towards zero: never more than was asked
         self._saturated = int(Flag.SATURATED_DRIVE) if abs(asked) > limit else 0
+        if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
+            return 0.0  # a drive that is not heard may not hear: nothing is queued that could reach it later
         if not self.bus.send(self._identifiers[0], encode_command(ENABLE, self._direction * permille)):
             return 0.0
         return permille / PERMILLE * self._rated
@@ -271,6 +274,7 @@ class Cia402(Drive):
         self._enabled = False
         if not self._connected:
             return False
+        self.bus.discard()
         for _ in range(2):  # one may meet a full queue
             self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
         off = self._confirmed_off()

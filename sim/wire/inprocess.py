@@ -65,6 +65,10 @@ class InProcessBus(can.BusABC):
         flags = msg.is_extended_id * EXTENDED | msg.is_remote_frame * REMOTE
         self.port.send(Frame(msg.arbitration_id | flags, bytes(msg.data)))
 
+    def flush_tx_buffer(self) -> None:
+        """What waits is thrown away."""
+        self.port.queue.clear()
+
     def recv(self, timeout: float | None = None) -> can.Message | None:
         """The next frame; waits in virtual time. python-can's own would wait in real time."""
         until = self._agenda.now + (timeout or 0.0)

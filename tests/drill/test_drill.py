@@ -1,0 +1,74 @@
+"""The trip matrix over the wire, on virtual time: forty faults, six phases; and that a drill can fail."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from rig.commands import drill as verb
+from rig.drill.cause import Cause, Expected
+from rig.drill.causes import CAUSES
+from rig.drill.drill import drill
+from rig.drill.phase import PHASES, Phase
+from rig.drill.rig import DrillRig
+
+TRACKING = next(p for p in PHASES if p.name == "tracking")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("phase", PHASES, ids=lambda p: p.name)
+@pytest.mark.parametrize("cause", CAUSES, ids=lambda c: c.name)
+def test_every_fault_in_every_phase_ends_as_it_has_to(cause: Cause, phase: Phase) -> None:
+    outcome = drill(cause, phase)
+    assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"
+
+
+@pytest.mark.parametrize("name", ["host's cable pulled", "drive trips by itself", "safe torque off"])
+def test_a_fault_in_mid_run_takes_the_torque_off_in_time(name: str) -> None:
+    outcome = drill(next(c for c in CAUSES if c.name == name), TRACKING)
+    assert outcome.passed, outcome.wrong
+    assert outcome.ended == "tripped"
+    assert 0 < outcome.reaction <= outcome.allowed
+    assert outcome.rows > 900
+
+
+def test_a_harmless_cause_that_is_expected_to_trip_fails_the_drill() -> None:
+    nothing = Cause("nothing at all", lambda rig: None, 0.001)
+    outcome = drill(nothing, TRACKING)
+    assert not outcome.passed
+    assert "expected a trip" in outcome.wrong[0]
+
+
+def test_a_detection_declared_too_fast_fails_the_drill() -> None:
+    lost = next(c for c in CAUSES if c.name == "encoder's frames lost")
+    outcome = drill(dataclasses.replace(lost, detection=0.0), TRACKING)
+    assert any("ms after the cause" in what for what in outcome.wrong)
+
+
+def test_a_fault_that_was_to_be_ridden_out_fails_the_drill_when_it_trips() -> None:
+    trips = next(c for c in CAUSES if c.name == "drive trips by itself")
+    outcome = drill(dataclasses.replace(trips, expected=Expected.GO_ON), TRACKING)
+    assert "expected to go on" in outcome.wrong[0]
+
+
+def test_old_targets_queued_in_a_dead_bus_never_reach_the_drive() -> None:
+    rig = DrillRig()
+    heard: list[tuple[float, bytes]] = []
+    rig.assembly.bus.attach("ear", lambda f, t: heard.append((t, f.data)) if f.identifier == 0x201 else None)
+    struck = rig.wire.now() + 1.0
+    rig.assembly.agenda.after(1.0, lambda: next(c for c in CAUSES if "queued" in c.name).strike(rig) and None)
+    ending = rig.run(TRACKING.procedure)
+    rig.wire.wait_until(rig.wire.now() + 0.5)
+    rig.close()
+    assert ending.status == "tripped"
+    assert [data for t, data in heard if t > struck + 0.05 and data[:2] == b"\x0f\x00" and data[2:] != b"\0\0"] == []
+
+
+def test_the_verb_prints_one_line_a_fault_and_says_the_worst(capsys: pytest.CaptureFixture[str]) -> None:
+    from argparse import Namespace
+
+    assert verb.run(Namespace(only="safe torque off", phase="tracking")) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("SIMULATED")
+    assert "2 drills, 0 not as expected" in told
