@@ -194,8 +194,8 @@ class Cia402(Drive):
         self._arm()
         self._walk(ENABLE, "operation enabled")
         self._angle.forget()
+        self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
         self._enabled = True
-        self.bus.sync()
 
     def _walk(self, controlword: int, wanted: str) -> None:
         self.bus.send(self._identifiers[0], encode_command(controlword, 0))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
 import signal
 from pathlib import Path
 
 from rig.bench import read, twin_parameters
-from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.errors import Exit, UsageError
 from rig.realtime import RealTime
 
 FOLDER = Path("/tmp/hdrig-twin")
@@ -28,9 +27,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--socketcand", type=int, metavar="PORT", help="also the bus over TCP; 0: a free port")
     parser.add_argument("--control", type=Path, default=FOLDER / "control", metavar="PATH", help="command channel")
     parser.add_argument("--bitrate", type=float, default=1e6, metavar="BIT/S", help="of the bus; inf: takes no time")
-    parser.add_argument(
-        "--priority", type=int, default=0, metavar="N", help="real-time (FIFO) priority 1 to 99; 0: none"
-    )
     parser.add_argument("--for", type=float, default=math.inf, dest="seconds", metavar="SECONDS", help="then stop")
 
 
@@ -50,8 +46,6 @@ def run(args: argparse.Namespace) -> int:
     rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
     doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate)
-    if args.priority:
-        hurry(args.priority)
     process = Process(assembly, doors)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())
@@ -63,13 +57,3 @@ def run(args: argparse.Namespace) -> int:
     with RealTime():  # devices answer in time whatever else runs on the machine
         process.run()
     return Exit.PASS
-
-
-def hurry(priority: int) -> None:
-    """Real-time scheduling for this process. Raises UsageError, NotReady when it is not allowed to."""
-    if not 1 <= priority <= 99:
-        raise UsageError(f"--priority {priority}: expected 1 to 99, or 0 for none")
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except PermissionError:
-        raise NotReady(f"real-time priority {priority} is not allowed to this user; start without --priority") from None

@@ -16,7 +16,6 @@ from rig.cli import main
         (["--rate", "5000"], 2, "expected 0 to 900 lines/s"),
         (["--bench", "nothing"], 2, "no bench called 'nothing'"),
         (["--set", "twin.sede=3"], 2, "twin.sede"),
-        (["--priority", "100"], 2, "expected 1 to 99"),
     ],
 )
 def test_options_that_cannot_be_meant(
