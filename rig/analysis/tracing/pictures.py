@@ -1,0 +1,163 @@
+"""More arrays for the page of a trace: where the rest lives, close-ups of held-out runs, intervals of the errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.equations import Key
+from rig.analysis.tracing.errors import UNITS
+from rig.analysis.tracing.floor import strokes
+from rig.analysis.tracing.unknown import Rest, homes, rest
+from rig.model.effect import Array
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+Index = npt.NDArray[np.int64]
+
+TURN: Final = 2 * np.pi
+BINS: Final = 24  # of a turn, 15°: finer than the paper's strongest orders, with rows enough in each
+LEVELS: Final = 12  # of a range, equally full
+FEWEST: Final = 30  # rows of a bin: an RMS of fewer scatters by more than an eighth
+SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
+DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
+QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long
+COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "speed", "time")
+
+
+def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
+    """Curves by dotted name, of held-out residuals `before` and `after` (bare, SI). `<C>` is A (θ̃), M (τ_m) or L (τ_l).
+
+    where.<C>.<coordinate>.x, .before, .after (b,)
+        RMS over floor in bins of a coordinate; x in ° for angles, ±1, N·m, rpm, s
+    share.<C> (6,)
+        share of the excess before that each of `COORDINATES` predicts alone in rows it was not fitted to, 0 to 1
+    close.<run>.<C>.turns, .measured, .before, .after (n,)
+        two motor turns of a run that turns, arcsec or N·m, each less its mean over the run
+    run_at.<run> (2,)      motor speed in rpm and external torque in N·m
+    interval.<C>.before, .after (2,)
+        95 % of the RMS over all held-out runs, arcsec or N·m: quarters of runs drawn again with replacement
+    """
+    out: dict[str, Array] = {}
+    for channel in CHANNELS:
+        keys = [key for key in before if key[1] == channel]
+        if not keys:
+            continue
+        out |= where(p, before, after, channel)
+        for name, e in (("before", before), ("after", after)):
+            out[f"interval.{channel}.{name}"] = interval([e[key] for key in keys]) * UNITS[channel]
+        for key in keys:
+            out |= close_up(p, key, before[key], after[key])
+    for i in p.court.runs:
+        run = p.eq.runs[i]
+        speed = float(np.mean([q.omega_m.mean() for q in run.pieces])) * 60 / TURN
+        turning = float(np.mean([np.abs(q.omega_m).mean() for q in run.pieces])) * 60 / TURN
+        out[f"run_at.{run.name}"] = np.array(
+            [speed if abs(speed) > 0.5 * turning else turning, -run.pieces[0].tau_ext[0]]
+        )
+    return out
+
+
+def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], channel: str) -> dict[str, Array]:
+    """`where.*` and `share.*` of one channel."""
+    first, last = (rest(p.eq, e, p.court.floors, channel) for e in (before, after))
+    out: dict[str, Array] = {}
+    if first is None or last is None:
+        return out
+    for name in COORDINATES:
+        x = BINNED[name](first)
+        if x is None:
+            continue
+        index, middles = x
+        stem = f"where.{channel}.{name}"
+        out[f"{stem}.x"] = middles
+        out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
+    share = {}
+    for h in homes(first, channel):
+        share[h.coordinate] = max(h.share, share.get(h.coordinate, 0.0))
+    out[f"share.{channel}"] = np.clip([share.get(name, 0.0) for name in COORDINATES], 0.0, 1.0)
+    return out
+
+
+def rms(e: Array, index: Index, bins: int) -> Array:
+    """Of each bin, NaN where it holds too few rows; `index` −1 is left out; (bins,)."""
+    inside = index >= 0
+    count = np.bincount(index[inside], minlength=bins)
+    total = np.bincount(index[inside], e[inside] ** 2, minlength=bins)
+    return np.where(count >= FEWEST, np.sqrt(total / np.maximum(count, 1)), np.nan)
+
+
+def of_turn(name: str) -> Callable[[Rest], tuple[Index, Array] | None]:
+    """Bins of an angle."""
+
+    def binned(r: Rest) -> tuple[Index, Array] | None:
+        x = r.at[name]
+        if not np.isfinite(x).all():
+            return None
+        index = (np.mod(x, TURN) / TURN * BINS).astype(np.int64) % BINS
+        return index, (np.arange(BINS) + 0.5) * 360 / BINS
+
+    return binned
+
+
+def of_range(
+    name: str, unit: float = 1.0, *, of: Callable[[Array], Array] = np.asarray
+) -> Callable[[Rest], tuple[Index, Array] | None]:
+    """Equally full bins of `of(x)`, and the median of each times `unit`."""
+
+    def binned(r: Rest) -> tuple[Index, Array] | None:
+        x = of(r.at[name])
+        if not np.isfinite(x).all() or np.ptp(x) == 0:
+            return None
+        edges = np.unique(np.quantile(x, np.linspace(0, 1, LEVELS + 1)[1:-1]))
+        index = np.digitize(x, edges).astype(np.int64)
+        middles = [float(np.median(x[index == i])) if (index == i).any() else np.nan for i in range(edges.size + 1)]
+        return index, np.array(middles) * unit
+
+    return binned
+
+
+def of_direction(r: Rest) -> tuple[Index, Array]:
+    """Reverse and forward; rows in which it sticks or turns back are left out."""
+    way = r.at["direction"]
+    return np.where(way > 0.5, 1, np.where(way < -0.5, 0, -1)).astype(np.int64), np.array([-1.0, 1.0])
+
+
+BINNED: Final[Mapping[str, Callable[[Rest], tuple[Index, Array] | None]]] = {
+    "motor_angle": of_turn("motor_angle"),
+    "load_angle": of_turn("load_angle"),
+    "direction": of_direction,
+    "load": of_range("load"),
+    "speed": of_range("speed", 60 / TURN, of=np.abs),
+    "time": of_range("time"),
+}
+
+
+def close_up(p: Prepared, key: Key, before: Array, after: Array) -> dict[str, Array]:
+    """Two turns from the middle of the longest stroke of a run; {} when it does not turn as far."""
+    run, rows = p.eq.runs[key[0]], p.eq.rows[key]
+    stroke = max(strokes(rows.theta_m), key=lambda s: s.stop - s.start, default=slice(0, 0))
+    turns = rows.theta_m[stroke] / TURN
+    if turns.size < 2 or np.ptp(turns) < SHOWN_TURNS:
+        return {}
+    start = np.floor((turns.min() + turns.max() - SHOWN_TURNS) / 2)  # at a whole turn: order 2 is then seen to repeat
+    shown = (turns >= start) & (turns <= start + SHOWN_TURNS)
+    unit = UNITS[key[1]]
+    measured = p.eq.bare(key, rows.y)
+    values = {"measured": measured, "before": measured - before, "after": measured - after}
+    stem = f"close.{run.name}.{key[1]}"
+    out = {f"{stem}.{name}": (v[stroke][shown]) * unit for name, v in values.items()}
+    return out | {f"{stem}.turns": turns[shown] - start}
+
+
+def interval(e: list[Array]) -> Array:
+    """95 % interval (2,) of the RMS of all rows: the percentile bootstrap over quarters of runs, seed fixed."""
+    parts = [q for x in e for q in np.array_split(x, QUARTERS)]
+    squares, rows = np.array([q @ q for q in parts]), np.array([q.size for q in parts])
+    drawn = np.random.default_rng(1).integers(0, len(parts), (DRAWS, len(parts)))
+    return np.asarray(np.quantile(np.sqrt(squares[drawn].sum(1) / rows[drawn].sum(1)), [0.025, 0.975]))
