@@ -85,7 +85,7 @@ def in_step(run: Source, motion: Motion, speed_rpm: float) -> str:
         if advance > 0.5 and abs(advance - round(advance)) < IN_STEP * advance:
             return (
                 f"At {speed_rpm:.4g} rpm the {side} encoder advances {advance:.3f} counts a row, nearly a whole "
-                "number: its rounding follows the angle and does not average out; a per cent more or less speed cures it."
+                "number: its rounding follows the angle and does not average out; 1 % more or less speed cures it."
             )
     return ""
 

@@ -16,10 +16,9 @@ from rig.core.sample import Torque
 DEG = math.pi / 180
 RPM = math.pi / 30
 FEWEST = 3  # speeds: two to see a change, one more to see that it has ended
-DETUNE = (
-    0.993  # of the speeds named: 60 rpm and 10 000 counts a turn are 10 counts a millisecond, and then the rounding
-)
-# of every row is the same and follows the angle instead of averaging out
+# At 60 rpm 10 000 counts a turn are 10 counts a millisecond: every row is then rounded alike, and the rounding follows
+# the angle instead of averaging out.
+DETUNE = 0.993  # of the speeds named
 APART = 1.2  # ratio of neighbouring speeds at least: closer ones are not told apart when the run is cut
 
 

@@ -85,8 +85,8 @@ def test_a_wrapped_angle_is_unwrapped_and_said() -> None:
 
 def test_a_procedure_without_an_analysis_of_its_own_says_so() -> None:
     whole = at_speed()
-    result = analyse(MadeRun(whole.columns, {**whole.manifest, "procedure": "coast_down"}))
-    assert any("no analysis for coast_down" in s for s in result.cannot)
+    result = analyse(MadeRun(whole.columns, {**whole.manifest, "procedure": "wobble"}))
+    assert any("no analysis for wobble" in s for s in result.cannot)
     assert "fourier_amplitude_2" in {e.name for e in result.estimates}
 
 
