@@ -8,7 +8,19 @@ from itertools import chain
 
 import numpy as np
 
-from rig.analysis.identify.dynamics import J_L, J_M, LAG, load_fit, motor_fit, spring_columns, spring_fit
+from rig.analysis.flexibility import declared
+from rig.analysis.identify.dynamics import (
+    J_L,
+    J_M,
+    LAG,
+    Mesh,
+    Q,
+    Sensor,
+    load_fit,
+    motor_fit,
+    spring_columns,
+    spring_fit,
+)
 from rig.analysis.identify.friction import LoadFriction, MotorFriction, load_friction, motor_friction
 from rig.analysis.identify.gram import Known
 from rig.analysis.identify.locked import locked_rows
@@ -19,6 +31,7 @@ from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.windows import Projected, project
 from rig.analysis.result import Array
 from rig.model.fourier import FourierSeries
+from rig.model.gearfile import SIGMA
 
 PASSES = 4  # of the spring's fit: θ̃_p enters its own damping term
 MATTERS = 5e-5  # s of delay between the encoders: less is taken off by the fit itself to a part in 10⁴
@@ -43,6 +56,7 @@ class Fits:
     motor_friction: MotorFriction | None
     load_friction: LoadFriction | None
     locked: tuple[str, ...]  # names of the lock runs used
+    mesh: Mesh
     taken_off: float = 0.0  # s by which the load encoder's readings were moved before the final fit
 
 
@@ -85,32 +99,46 @@ def _once(
     drag_l = None if friction_l is None else (friction_l.solved.coefficients[friction_l.B_l], friction_l.solved.u(0))
     load = load_fit(windows, drag_l)
     progress("spring")
-    between, J_l = (load.coefficients[LAG], load.coefficients[J_L]) if load is not None else (0.0, 0.0)
+    friction_m = motor_friction(means)
+    mesh = _mesh(runs[0], friction_m)
+    sensor, J_l = Sensor(), 0.0
+    if load is not None:
+        sensor, J_l = Sensor(load.coefficients[LAG], load.coefficients[Q]), load.coefficients[J_L]
     locked = [r for r in runs if r.locked]
-    spring = _spring(windows, slow, locked, terms, between, J_l, series)
-    lock_only = _spring([], slow, locked, terms, between, J_l, series) if locked and slow else None
-    running_only = _spring(windows, slow, [], terms, between, J_l, series) if windows else None
+    spring = _spring(windows, slow, locked, terms, sensor, mesh, J_l, series)
+    lock_only = _spring([], slow, locked, terms, sensor, mesh, J_l, series) if locked and slow else None
+    running_only = _spring(windows, slow, [], terms, sensor, mesh, J_l, series) if windows else None
     if spring is not None:
         series = _series(spring, terms)
-    lag = between + (spring.coefficients[spring_columns(terms)[2]] if spring is not None else 0.0)
+        sensor = replace(sensor, lag=sensor.lag + spring.coefficients[spring_columns(terms)[2]])
     progress("motor")
-    friction_m = motor_friction(means)
     J_m, motor = 0.0, None
     if friction_m is not None:
         drag_m = (friction_m.solved.coefficients[friction_m.B], friction_m.solved.u(friction_m.B))
-        motor = motor_fit(windows, ratio, lag, drag_m)
+        motor = motor_fit(windows, ratio, sensor, mesh, np.array([*series.a, *series.b]), drag_m)
         J_m = motor.coefficients[J_M] if motor is not None else 0.0
     means = [mean_of(p, series, J_m, J_l) for p in level]
     used = tuple(r.name for r in locked if r.tau_l is not None)
     return Fits(
         terms, ratio, series, slow, tuple(means), tuple(windows), spring, lock_only, running_only, load, motor,
-        motor_friction(means), load_friction(means, ratio), used,
+        motor_friction(means), load_friction(means, ratio), used, mesh,
     )  # fmt: skip
+
+
+def _mesh(run: Recording, friction: MotorFriction | None) -> Mesh:
+    """B_ml as declared, to a third; else anything from none to all of the measured drag."""
+    gear = run.source.manifest.get("gear") or {}
+    sigma = SIGMA.get(str(gear.get("output", "flexspline")), 1)
+    most = 0.0 if friction is None else max(float(friction.solved.coefficients[friction.B]), 0.0)
+    said = declared(run.source.declared, "B_ml")
+    if said is not None and said <= most:
+        return Mesh(said, said / 3.0, sigma)
+    return Mesh(0.5 * most, 0.5 * most, sigma)
 
 
 def _spring(
     windows: Sequence[Projected], slow: Sequence[SlowSeries], locked: Sequence[Recording],
-    terms: int, between: float, J_l: float, series: FourierSeries,
+    terms: int, sensor: Sensor, mesh: Mesh, J_l: float, series: FourierSeries,
 ) -> Solved | None:  # fmt: skip
     at_K, _, at_delay, size = spring_columns(terms)
     c = np.zeros(size)
@@ -120,7 +148,7 @@ def _spring(
         K = 1.0 / c[at_K] if c[at_K] > 0 else 0.0
         fixed: list[Known] = [slow_rows(s, terms, size, K, J_l) for s in slow]
         fixed += [k for r in locked if (k := locked_rows(r, terms, size, at_K, c)) is not None]
-        found = spring_fit(windows, fixed, terms, between + c[at_delay], c[: 2 * terms])
+        found = spring_fit(windows, fixed, terms, replace(sensor, lag=sensor.lag + c[at_delay]), mesh, c[: 2 * terms])
         if found is None:
             return None
         c = found.coefficients

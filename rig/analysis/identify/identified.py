@@ -91,11 +91,19 @@ def _spring(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
         grad = np.zeros(c.size)
         grad[[at_damping, at_delay]] = K
         grad[at_K] = -c[at_damping] * K * K
-        u = float(np.sqrt(grad @ spring.covariance @ grad + (K * fits.load.u(LAG)) ** 2))
+        u = float(np.sqrt(grad @ spring.covariance @ grad + (K * fits.load.u(LAG)) ** 2 + _of_mesh(fits) ** 2))
         found["B_sp"] = _measured(c[at_damping] * K, u, spring, running)
         found["skew"] = _measured(c[at_delay] + fits.taken_off, spring.u(at_delay), spring, running)
     else:
         cannot.append("B_sp: only runs at several speeds show the damping of the spring.")
+
+
+def _of_mesh(fits: Fits) -> float:
+    """1 σ of B_sp [N·m·s/rad] from what is not known of B_ml: it drags beside the spring, N times the motor's share."""
+    J_m = fits.motor.coefficients[J_M] if fits.motor is not None else 0.0
+    J_l = fits.load.coefficients[J_L] if fits.load is not None else 0.0
+    share = J_l / (J_l + fits.ratio**2 * J_m) if J_m > 0.0 else 0.0
+    return float(fits.ratio * share * fits.mesh.half_range / np.sqrt(3.0))
 
 
 def _stiffness(fits: Fits, K: float, cannot: list[str], runs: tuple[str, ...]) -> Parameter:
@@ -223,6 +231,8 @@ def _always(found: Mapping[str, Parameter]) -> list[str]:
     said = [
         "B_m and B_ml: both drag on the motor alike; what is measured is their sum B_m + B_ml·(1 + σ/N)². "
         "A friction run with the wave generator out gives B_m alone.",
+        "B_sp and B_ml: B_ml drags beside the spring, with a fiftieth of its lever; it was taken as declared to a "
+        "third, else as anything up to the whole drag, and the interval of B_sp says so.",
         "B_ml and a delay between the encoders: both add to the mean of θ̃ in proportion to the speed; neither is "
         "taken from it.",
         "B_l and what B_ml drags behind the torque sensor: the sensor sees only what passes through it.",

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from rig.analysis.angle import TURN
+from rig.analysis.flexibility import declared
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source, motion_of
 
@@ -47,6 +50,18 @@ class Recording:
         assert self.motion.theta_l is not None
         return self.motion.theta_l
 
+    @cached_property
+    def followed(self) -> npt.NDArray[np.bool_]:
+        """(n,) rows in which a loop followed a reference; nowhere where the run does not say."""
+        reference = self.motion.pick(self.source.column("theta_ref"))
+        return np.zeros(self.t.size, dtype=bool) if reference is None else np.isfinite(reference)
+
+    @property
+    def count_m(self) -> float:
+        """rad of one count of the motor's encoder; 0 where the run does not say."""
+        counts = declared(self.source.manifest.get("encoders") or {}, "motor_counts_per_rev")
+        return TURN / counts if counts else 0.0
+
     def with_load_late_by(self, delay: float) -> Recording:
         """The run with the load angle `delay` s earlier than it was read; a cubic spline between rows."""
         moved = CubicSpline(self.t, self.theta_l)(np.clip(self.t + delay, self.t[0], self.t[-1]))
@@ -66,6 +81,11 @@ class Plateau:
     def way(self) -> float:
         """±1"""
         return float(np.sign(self.omega))
+
+    @property
+    def followed(self) -> bool:
+        """Whether a loop followed a reference here; False where the run does not say."""
+        return bool(self.run.followed[self.lo : self.hi].any())
 
     @property
     def duration(self) -> float:
@@ -111,17 +131,17 @@ def plateaus(run: Recording) -> list[Plateau]:
     if edges.size < 8 or run.locked:
         return []
     omega = np.diff(run.theta_m[edges]) / np.diff(run.t[edges])
-    found = [_plateau(run, edges, a, b) for a, b in _pieces(omega)]
+    found = [_plateau(run, edges, a, b) for a, b in _pieces(omega, run.followed[edges])]
     return [p for p in found if p is not None]
 
 
-def _pieces(omega: Array) -> list[tuple[int, int]]:
-    """Index ranges of `omega` that stay near their own running median and turn one way."""
+def _pieces(omega: Array, followed: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Index ranges of `omega` near their own running median, of one sign, all with or all without a loop."""
     pieces, begin = [], 0
     for i in range(1, omega.size + 1):
         usual = float(np.median(omega[max(begin, i - 40) : i]))  # the last 4 s: a slow drift is no new plateau
         near = i < omega.size and abs(omega[i] - usual) <= max(STEADY * abs(usual), STEADY_LEAST)
-        if near and omega[i] * usual > 0:
+        if near and omega[i] * usual > 0 and followed[i] == followed[begin]:
             continue
         pieces.append((begin, i))
         begin = i

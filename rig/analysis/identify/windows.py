@@ -28,11 +28,15 @@ HERE = 4  # windows of a plateau at least
 
 @dataclass(frozen=True)
 class Projected:
-    """One plateau's windows. All (W, n_orders), phasors about each window's middle, SI; columns (W, n, 2·terms)."""
+    """One plateau's windows. All (W, n_orders), phasors as of θ_m = 0, SI; columns (W, n, 2·terms).
+
+    Turned to one angle of the motor, what repeats with the angle is the same in every window; the rest is noise.
+    """
 
     run: str
     omega: float  # rad/s of the motor, mean
     tau_ext: float
+    followed: bool  # a loop held the speed
     orders: Array  # (n,)
     inflation: float  # of the variance of a mean of W windows that overlap
     error: Complex  # θ̃
@@ -45,8 +49,10 @@ class Projected:
     motor_acceleration: Complex
     shaft: Complex  # τ_l
     shaft_rate: Complex
+    shaft_acceleration: Complex
     levered: Complex  # τ_l·(1/N − θ̃_p′) with the slope given
     motor_torque: Complex  # τ_m
+    motor_torque_rate: Complex
 
     @property
     def windows(self) -> int:
@@ -96,9 +102,11 @@ def project(plateau: Plateau, terms: int, slope: Array) -> Projected | None:
     if starts.size < HERE or orders.size == 0 or dt <= 0.0:
         return None
     tests = _tests(size, dt, orders * abs(plateau.omega))
-    made = [_one(tests, [s[a : a + size] for s in signals], run.ratio, terms) for a in starts]
+    made = [_one(tests, [s[a : a + size] for s in signals], run.ratio, terms, orders) for a in starts]
     stacked = [np.stack(x) for x in zip(*made, strict=True)]
-    return Projected(run.name, plateau.omega, run.tau_ext, orders, overlap_inflation(int(starts.size)), *stacked)
+    return Projected(
+        run.name, plateau.omega, run.tau_ext, plateau.followed, orders, overlap_inflation(int(starts.size)), *stacked
+    )
 
 
 def _tests(size: int, dt: float, omega: Array) -> tuple[Complex, Complex, Complex]:
@@ -112,19 +120,22 @@ def _tests(size: int, dt: float, omega: Array) -> tuple[Complex, Complex, Comple
 
 
 def _one(
-    tests: tuple[Complex, Complex, Complex], signals: list[Array], ratio: float, terms: int
+    tests: tuple[Complex, Complex, Complex], signals: list[Array], ratio: float, terms: int, orders: Array
 ) -> tuple[Complex, ...]:
     """One window in the order of Projected's fields, from `error` on."""
     value, rate, acceleration = tests
     theta, theta_l, tau_l, tau_m, levered = signals
     waves = harmonics(theta, terms).T
+    w = _window(theta.size)[0]
+    turned = np.exp(-1j * orders * float(w @ theta / w.sum()))  # the angle in the middle, its ripple averaged out
     theta, theta_l, tau_l, tau_m, levered = (_less_line(s) for s in (theta, theta_l, tau_l, tau_m, levered))
     error = theta / ratio - theta_l
-    return (
+    phasors = (
         value @ error, value @ waves, rate @ error, rate @ waves,
         rate @ theta_l, acceleration @ theta_l, rate @ theta, acceleration @ theta,
-        value @ tau_l, rate @ tau_l, value @ levered, value @ tau_m,
+        value @ tau_l, rate @ tau_l, acceleration @ tau_l, value @ levered, value @ tau_m, rate @ tau_m,
     )  # fmt: skip
+    return tuple(p * (turned if p.ndim == 1 else turned[:, None]) for p in phasors)
 
 
 def _less_line(y: Array) -> Array:
