@@ -5,7 +5,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner lint install lock clean
+.PHONY: demo test inner blind lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
@@ -15,6 +15,12 @@ test: .venv/ready-dev lint
 
 inner: .venv/ready-dev  ## the fast part of the tests, under 60 s
 	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to tests/blind/TABLE.md
+	rm -rf build/blind
+	$(BIN)/python -m tests.blind.generate --suite 30 --seed $(or $(SEED),1) --jobs 2 --out build/blind
+	$(BIN)/python -m tests.blind.score build/blind --table tests/blind/TABLE.md
+	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
 
 lint: .venv/ready-dev
 	$(BIN)/ruff check .

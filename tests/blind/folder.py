@@ -24,6 +24,7 @@ MEANING = {
     "tau_m": "motor torque as the drive reports it",
     "temperature": "temperature of the torque sensor's housing",
 }
+RUN_FILES = ("samples.parquet", "manifest.json")  # what a tracer leaves beside them is no part of the campaign
 FIRST_RUN = datetime(2026, 11, 3, 8, 0, 0, tzinfo=UTC)
 
 
@@ -65,9 +66,9 @@ def write_campaign(runs: list[Taken], folder: Path, plan: Plan, rig: Rig) -> str
 
 
 def digest(folder: Path) -> str:
-    """sha256 over names and bytes of all files below `folder`."""
+    """sha256 over names and bytes of all files of the run folders below `folder`."""
     total = hashlib.sha256()
-    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+    for path in sorted(p for p in folder.glob("*/*") if p.name in RUN_FILES):
         total.update(str(path.relative_to(folder)).encode())
         total.update(path.read_bytes())
     return total.hexdigest()

@@ -44,7 +44,11 @@ def trace(campaign: Path, answer: Path, limit_s: float) -> None:
     began = time.perf_counter()
     try:
         done = subprocess.run(
-            [HDRIG, "trace", campaign, "--json", answer], capture_output=True, text=True, timeout=limit_s, check=False
+            [HDRIG, "trace", campaign, "--json", answer, "--out", answer.with_suffix("")],
+            capture_output=True,
+            text=True,
+            timeout=limit_s,
+            check=False,
         )
         said, code = done.stderr[-2000:], done.returncode
     except subprocess.TimeoutExpired:
@@ -89,7 +93,7 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="tests.blind.score", description=__doc__)
     parser.add_argument("suite", type=Path)
     parser.add_argument("--table", type=Path, help="also write the table to this file")
-    parser.add_argument("--limit", type=float, default=300.0, help="seconds a trace may take")
+    parser.add_argument("--limit", type=float, default=900.0, help="seconds a trace may take")
     options = parser.parse_args(arguments)
     try:
         page = markdown(marks(options.suite, options.limit), heading())

@@ -48,10 +48,16 @@ Columns = dict[str, np.ndarray]
 def friction(w: np.ndarray, load: np.ndarray, side: np.ndarray, place: np.ndarray) -> Columns:
     a = np.abs(w)
     return {
-        "stribeck#1": side * np.exp(-a), "stribeck#2": side * np.exp(-a / 3), "drag": w * a,
-        "churn": side * a ** (2 / 3), "load_friction": side * np.abs(load), "direction": side, "lag": w, "warming#1": w * place,
+        "stribeck#1": side * np.exp(-a),
+        "stribeck#2": side * np.exp(-a / 3),
+        "drag": w * a,
+        "churn": side * a ** (2 / 3),
+        "load_friction": side * np.abs(load),
+        "direction": side,
+        "lag": w,
+        "warming#1": w * place,
         "warming#2": side * place,
-    }  # fmt: skip
+    }
 
 
 def modulated(k: int, c: np.ndarray, s: np.ndarray, load: np.ndarray, side: np.ndarray) -> Columns:
