@@ -106,6 +106,7 @@ class Reach:
     torque: float  # N·m, largest |T|
     duration: float  # s, first to last sample of the campaign
     rate: float  # Hz of the samples
+    band: float  # Hz up to which the equations are compared
     load_turns: float  # most output turns in one run
     counts_m: float  # encoder counts per turn; 0 when not said
     counts_l: float

@@ -59,7 +59,7 @@ class Rows:
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel."""
     need = {"A": {"theta_m", "theta_l"}, "M": {"theta_m", "tau_m"}, "L": {"theta_l", "tau_l"}}[channel]
-    return need <= run.has and not (run.locked and channel != "A") and run.procedure != "standstill"
+    return need <= run.has and not (run.locked and channel == "L") and run.procedure != "standstill"
 
 
 def rows(run: Recording, channel: str) -> Rows:
@@ -87,7 +87,7 @@ def valid(piece: Signals, run: Recording, channel: str) -> Array:
     sliding = piece.way != 0
     if channel == "L":
         usual = float(np.median(np.abs(piece.omega_m[sliding]))) / run.ratio if sliding.any() else 0.0
-        sliding &= (piece.omega_l * piece.way) > SLIDING * usual
+        sliding &= (smooth.same(piece.theta_l, 1) * piece.way) > SLIDING * usual
     return np.asarray(smooth(sliding.astype(float)) > 1 - 1e-9)
 
 

@@ -24,7 +24,7 @@ class Court:
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`."""
-        return {key: d.y[key] - d.z[key] @ s.x[d.at[key]] for key in d.y}
+        return {key: d.residual(key, s.x) for key in d.y}
 
     def excess(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> tuple[float, int]:
         """Sum of squares over squared floors, and rows."""
@@ -78,11 +78,10 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     """One effect: the others are fitted again without it."""
     mine = [i for i, t in enumerate(d.terms) if t.name == name]
     bare = at.residuals(without(s, mine), d)
-    places = np.concatenate([np.arange(d.size)[d.place(i)] for i in mine])
+    places = {int(d.place(i).start) for i in mine}
     size: dict[Key, float] = {}
     for key in d.y:
-        chosen = np.isin(d.at[key], places)
-        if chosen.any():
+        if any(int(part.at[0]) in places for part in d.parts[key]):
             f = bare[key] - whole[key]
             size[key] = float(np.sqrt(np.mean(f**2))) / at.floors[key]
     if not size:

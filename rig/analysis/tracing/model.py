@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -19,16 +19,28 @@ PIECES = 4  # of a run and channel: the clusters of the sandwich, each many corr
 
 
 @dataclass(frozen=True)
+class Part:
+    """Some of the model's columns in one block, bare, (n, k), and their places among all coefficients (k,).
+
+    `spoilt` is what sensor noise does to them (n, k), in the blocks that stand for all; else None.
+    """
+
+    z: Array
+    at: npt.NDArray[np.int64]
+    spoilt: Array | None
+
+
+@dataclass(frozen=True)
 class Design:
-    """Bare columns of every block: baseline first, then the terms'. `at` are their places among all coefficients."""
+    """Columns of every block: the baseline's part first, then one part a term that acts there. Parts are shared between
+    designs, never changed. `noise` is what sensor noise does to the responses."""
 
     eq: Equations
     terms: tuple[Term, ...]
     widths: tuple[int, ...]
     y: dict[Key, Array]
-    z: dict[Key, Array]
-    at: dict[Key, npt.NDArray[np.int64]]
-    spoilt: dict[Key, tuple[Array, Array]]  # what sensor noise does to y and z, in the runs that stand for all
+    noise: dict[Key, Array]
+    parts: dict[Key, tuple[Part, ...]]
     gram: Array  # normal matrix (p, p) and right side (p,), what sensor noise adds taken off
     right: Array
 
@@ -41,6 +53,26 @@ class Design:
         """Where the coefficients of a term are."""
         start = len(BASELINE) + sum(self.widths[:term])
         return slice(start, start + self.widths[term])
+
+    def residual(self, key: Key, x: Array) -> Array:
+        """What coefficients `x` (p,) leave in a block, (n,)."""
+        e = self.y[key]
+        for part in self.parts[key]:
+            e = e - part.z @ x[part.at]
+        return e
+
+    def noise_left(self, key: Key, x: Array) -> Array:
+        """What sensor noise does to that residual, (n,)."""
+        e = self.noise[key]
+        for part in self.parts[key]:
+            if part.spoilt is not None:
+                e = e - part.spoilt @ x[part.at]
+        return e
+
+    def whole(self, key: Key) -> tuple[Array, npt.NDArray[np.int64]]:
+        """All columns of a block side by side, and their places."""
+        parts = self.parts[key]
+        return np.hstack([part.z for part in parts]), np.concatenate([part.at for part in parts])
 
 
 @dataclass(frozen=True)
@@ -58,32 +90,31 @@ class Solution:
         return float(self.x[INDEX[name]])
 
     @property
+    def gain(self) -> float:
+        """How much of the weighted sum of squares of the responses the fit explains."""
+        return float(self.right @ self.x)
+
+    @property
     def values(self) -> dict[str, float]:
         """All baseline coefficients by name."""
         return dict(zip(BASELINE, map(float, self.x), strict=False))
 
     def residual(self, key: Key) -> Array:
         """What is left in a block, bare, (n,)."""
-        d = self.design
-        return np.asarray(d.y[key] - d.z[key] @ self.x[d.at[key]])
+        return self.design.residual(key, self.x)
 
 
 def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
     """Columns of the baseline and of `terms` for those runs."""
     keys = eq.of(runs)
     spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
-    out = Design(
-        eq,
-        (),
-        (),
-        {key: eq.bare(key, eq.rows[key].y) for key in keys},
-        {key: eq.bare(key, eq.rows[key].z) for key in keys},
-        {key: np.array(eq.rows[key].at) for key in keys},
-        spoilt,
-        np.zeros((len(BASELINE), len(BASELINE))),
-        np.zeros(len(BASELINE)),
-    )
-    gram, right = normal(out, 0)
+    parts = {
+        key: (Part(eq.bare(key, eq.rows[key].z), np.array(eq.rows[key].at), spoilt[key][1] if key in spoilt else None),)
+        for key in keys
+    }
+    y = {key: eq.bare(key, eq.rows[key].y) for key in keys}
+    out = Design(eq, (), (), y, {key: n for key, (n, _) in spoilt.items()}, parts, np.zeros((0, 0)), np.zeros(0))
+    gram, right = normal(out, {key: part[0] for key, part in parts.items()})
     out = replace(out, gram=gram, right=right)
     for term in terms:
         out = extended(out, term, runs)
@@ -99,37 +130,38 @@ def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
         return {(run, c): (d.eq.bare((run, c), columns), spoilt.get(c)) for c, columns in made.items()}
 
     with ThreadPoolExecutor(WORKERS) as pool:
-        made = {key: c for part in pool.map(of, runs) for key, c in part.items()}
+        made = {key: c for part in pool.map(of, runs) for key, c in part.items() if key in d.y}
     width = next(iter(made.values()))[0].shape[1] if made else 0
-    new = np.arange(d.size, d.size + width)
-    z = {key: np.hstack([z, made[key][0]]) if key in made else z for key, z in d.z.items()}
-    at = {key: np.concatenate([at, new]) if key in made else at for key, at in d.at.items()}
-    spoilt = {
-        key: (y, np.hstack([z, more]) if key in made and (more := made[key][1]) is not None else z)
-        for key, (y, z) in d.spoilt.items()
-    }
-    out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), z=z, at=at, spoilt=spoilt)
-    part, right = normal(out, d.size)
+    at = np.arange(d.size, d.size + width)
+    new = {key: Part(z, at, spoilt) for key, (z, spoilt) in made.items()}
+    parts = {key: (*old, new[key]) if key in new else old for key, old in d.parts.items()}
+    out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), parts=parts)
+    part, right = normal(out, new)
+    part, right = part[:, at], right[at]
     gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, part[d.size :]]])
     return replace(out, gram=gram, right=np.concatenate([d.right, right]))
 
 
-def normal(d: Design, first: int) -> tuple[Array, Array]:
-    """Columns of the normal matrix from `first` on (p, p − first), and of the right side, sensor noise taken off.
+def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
+    """Products of all columns with the new ones (p, p), and of the new ones with y (p,), sensor noise taken off.
 
     Noise in columns makes inertias come out low when it is left in. What it adds is found by adding each run's noise
     once more: products of the differences that makes      [fuller1987]
     """
     gram, right = np.zeros((d.size, d.size)), np.zeros(d.size)
-    for sign, blocks in ((1.0, {k: (d.y[k], z) for k, z in d.z.items()}), (-1.0, d.spoilt)):
-        for key, (y, z) in blocks.items():
-            at = d.at[key]
-            new = at >= first
-            if new.any():
-                w = sign * d.eq.noise.weight(key[1]) * (d.eq.stands_for[key] if sign < 0 else 1.0)
-                gram[np.ix_(at, at[new])] += w * (z.T @ z[:, new])
-                right[at[new]] += w * (z[:, new].T @ y)
-    return gram[:, first:], right[first:]
+    for key, mine in new.items():
+        w = d.eq.noise.weight(key[1])
+        right[mine.at] += w * (mine.z.T @ d.y[key])
+        for part in d.parts[key]:
+            gram[np.ix_(part.at, mine.at)] += w * (part.z.T @ mine.z)
+        if mine.spoilt is None:
+            continue
+        w *= d.eq.stands_for[key]
+        right[mine.at] -= w * (mine.spoilt.T @ d.noise[key])
+        for part in d.parts[key]:
+            if part.spoilt is not None:
+                gram[np.ix_(part.at, mine.at)] -= w * (part.spoilt.T @ mine.spoilt)
+    return gram, right
 
 
 def prior(size: int, stiffness: float = 7160.0) -> Array:
@@ -169,9 +201,9 @@ def covariance(s: Solution) -> Array:
     d = s.design
     meat, clusters = np.zeros_like(s.gram), 0
     for key in s.keys:
-        w, z, at, e = d.eq.noise.weight(key[1]), d.z[key], d.at[key], s.residual(key)
+        (z, at), e = d.whole(key), s.residual(key)
         for part in np.array_split(np.arange(e.size), PIECES):
-            u = w * (z[part].T @ e[part])
+            u = d.eq.noise.weight(key[1]) * (z[part].T @ e[part])
             meat[np.ix_(at, at)] += np.outer(u, u)
             clusters += 1
     bread = inverse(s.gram)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.source import Motion, motion_of
-from rig.analysis.tracing.smoothing import Smoother, flat, thin
+from rig.analysis.tracing.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
 from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
@@ -152,7 +152,7 @@ def _piece(
         tau_m=c["tau_m"],
         tau_l=c["tau_l"],
         tau_ext=np.full(n, tau_ext),
-        way=direction(derived["omega_m"], smooth.dt),
+        way=direction(smooth.same(c["theta_m"], 1), smooth.dt),
         temperature=c["temperature"],
         gear=UNKNOWN,
         **derived,
@@ -161,14 +161,15 @@ def _piece(
 
 def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
     """Speeds, accelerations and the smooth torque from readings at the working rate."""
+    dt = smooth.dt
     return {
-        "omega_m": smooth.same(c["theta_m"], 1),
-        "alpha_m": smooth.same(c["theta_m"], 2),
-        "omega_l": smooth.same(c["theta_l"], 1),
-        "alpha_l": smooth.same(c["theta_l"], 2),
-        "jerk_l": smooth.same(c["theta_l"], 3),
+        "omega_m": flat_rate(c["theta_m"], dt, 1),
+        "alpha_m": flat_rate(c["theta_m"], dt, 2),
+        "omega_l": flat_rate(c["theta_l"], dt, 1),
+        "alpha_l": flat_rate(c["theta_l"], dt, 2),
+        "jerk_l": flat_rate(c["theta_l"], dt, 3),
         "torque": flat(c["tau_l"]),
-        "torque_rate": smooth.same(c["tau_l"], 1),
+        "torque_rate": flat_rate(c["tau_l"], dt, 1),
     }
 
 

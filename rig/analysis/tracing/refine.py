@@ -17,11 +17,6 @@ CLOSE = 2e-3  # relative: further steps change no figure that is shown
 ROUNDS = 6
 
 
-def sse(s: Solution) -> float:
-    """Weighted sum of squares of what is left."""
-    return float(sum(s.design.eq.noise.weight(c) * float(e @ e) for i, c in s.keys if (e := s.residual((i, c))).size))
-
-
 def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:
     """The design with `term` in the shape that fits best, and its solution."""
     best = extended(d, term, runs)
@@ -31,7 +26,7 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     free = [i for i, loose in enumerate(term.effect.loose) if loose]
     if not free:
         return best, found
-    left, bounds = sse(found), term.effect.bounds(covered)
+    gain, bounds = found.gain, term.effect.bounds(covered)
     for _ in range(ROUNDS):
         step = shape_step(best, found, runs, free)
         moved = False
@@ -39,8 +34,8 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
             shape = _moved(best.terms[-1].shape, share * np.clip(step, -LARGEST, LARGEST), free, bounds)
             trial = extended(d, replace(term, shape=shape), runs)
             tried = fit(trial)
-            if (new := sse(tried)) < left:
-                best, found, left, moved = trial, tried, new, True
+            if tried.gain > gain:
+                best, found, gain, moved = trial, tried, tried.gain, True
                 break
         if not moved or np.max(np.abs(step)) < CLOSE:
             break

@@ -58,13 +58,12 @@ def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, A
     for key in keys:
         if key not in bank.columns:
             continue
-        new = d.at[key] >= first
-        if new.any():
-            w, at = d.eq.noise.weight(key[1]), d.at[key][new]
-            out[key[1]][at] += w * (d.z[key][:, new].T @ bank.columns[key].astype(np.float64))
-            if key in bank.spoilt:
+        for part in (p for p in d.parts[key] if p.at[0] >= first):
+            w = d.eq.noise.weight(key[1])
+            out[key[1]][part.at] += w * (part.z.T @ bank.columns[key].astype(np.float64))
+            if key in bank.spoilt and part.spoilt is not None:
                 w *= d.eq.stands_for[key]
-                out[key[1]][at] -= w * (d.spoilt[key][1][:, new].T @ bank.spoilt[key].astype(np.float64))
+                out[key[1]][part.at] -= w * (part.spoilt.T @ bank.spoilt[key].astype(np.float64))
     return {c: m[first:] for c, m in out.items()}
 
 
@@ -77,8 +76,7 @@ def gradient(bank: Bank, s: Solution) -> dict[str, Array]:
         w = d.eq.noise.weight(key[1])
         out[key[1]] += (w * s.residual(key)).astype(np.float32) @ bank.columns[key]
         if key in bank.spoilt:
-            y, z = d.spoilt[key]
-            e = w * d.eq.stands_for[key] * (y - z @ s.x[d.at[key]])
+            e = w * d.eq.stands_for[key] * d.noise_left(key, s.x)
             out[key[1]] -= e.astype(np.float32) @ bank.spoilt[key]
     return out
 

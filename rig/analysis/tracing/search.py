@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rig.analysis.tracing.bank import Bank
-from rig.analysis.tracing.channels import BASELINE, known_of
+from rig.analysis.tracing.channels import BASELINE, CHANNELS, known_of
 from rig.analysis.tracing.equations import Key, Term
 from rig.analysis.tracing.model import Design, Solution, extended, fit, without
-from rig.analysis.tracing.refine import refine, sse
+from rig.analysis.tracing.refine import refine
 from rig.analysis.tracing.scan import Drop, Own, cross, drops, own
-from rig.analysis.tracing.thresholds import EVIDENCE, MOST, SMALLEST
-from rig.model.effect import Array, Known, Reach
+from rig.analysis.tracing.thresholds import EVIDENCE, MOST, SMALLEST, STILL, STILL_RUN
+from rig.model.effect import Array, Fit, Known, Reach
 
 ROUNDS = 4
 SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
@@ -66,7 +66,8 @@ class Search:
             evidence = found.drop / 2 - k / 2 * np.log(n) - np.log(tried[term.name])
             out.append((evidence, found, term))
         out.sort(key=lambda item: -item[0])
-        return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in out[:40] if e > 0]
+        likely = [(e, f, term) for e, f, term in out if e > 0 and possible(s, term, f.coefficients)]
+        return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in likely[:60]]
 
     def size(self, d: Design, found: Drop) -> float:
         """RMS of the term over the floor, in the block where it is largest."""
@@ -79,13 +80,15 @@ class Search:
         return most
 
 
-def search(d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach) -> Found:
+def search(d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach, floors: Mapping[Key, float]) -> Found:
     """Add the best term again and again, then drop and swap what the later ones made needless."""
     s = fit(d)
     fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered)
     u = cross(bank, d, keys, 0)
     ranking: tuple[Scored, ...] = ()
     for _ in range(MOST):
+        if still(s, floors):
+            break
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
         chosen = next((r for r in ranked if r.evidence > EVIDENCE and r.size > SMALLEST and _new(r.term, s)), None)
@@ -98,6 +101,25 @@ def search(d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], cove
         u = {c: np.vstack([u[c], new[c]]) for c in u}
         d, s, u = _pruned(s, u)
     return Found(s, ranking)
+
+
+def possible(s: Solution, term: Term, coefficients: Array) -> bool:
+    """Whether signs and sizes are such an effect's."""
+    size = coefficients.size + len(term.shape)
+    first = s.design.eq.runs[0]
+    known = first.pieces[0].gear
+    return term.effect.plausible(Fit(coefficients, term.shape, np.zeros((size, size)), known, first.ratio))
+
+
+def still(s: Solution, floors: Mapping[Key, float]) -> bool:
+    """Whether nothing is left in any channel, nor in any single run."""
+    square = {key: float(np.mean(s.residual(key) ** 2)) / floors[key] ** 2 for key in s.keys}
+    rows = {key: s.design.y[key].size for key in s.keys}
+    for channel in CHANNELS:
+        mine = [key for key in s.keys if key[1] == channel]
+        if mine and np.average([square[k] for k in mine], weights=[rows[k] for k in mine]) > STILL**2:
+            return False
+    return max(square.values()) < STILL_RUN**2
 
 
 def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
@@ -144,9 +166,8 @@ def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[st
     """Without terms that explain nothing any more beside the newer ones."""
     d = s.design
     while len(d.terms) > 1:
-        full = sse(s)
         n = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
-        loss = [(sse(without(s, [i])) - full) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))]
+        loss = [(s.gain - without(s, [i]).gain) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))]
         worst = int(np.argmin(loss))
         if loss[worst] > EVIDENCE:
             break
@@ -163,16 +184,16 @@ def reduced(d: Design, gone: Sequence[int]) -> Design:
     stay = np.setdiff1d(np.arange(d.size), lost)
     new = np.full(d.size, -1)
     new[stay] = np.arange(stay.size)
-    keep = {key: np.isin(at, stay) for key, at in d.at.items()}
+    parts = {
+        key: tuple(replace(part, at=new[part.at]) for part in parts if new[part.at[0]] >= 0)
+        for key, parts in d.parts.items()
+    }
     left = [i for i in range(len(d.terms)) if i not in set(gone)]
-    return Design(
-        d.eq,
-        tuple(d.terms[i] for i in left),
-        tuple(d.widths[i] for i in left),
-        d.y,
-        {key: z[:, keep[key]] for key, z in d.z.items()},
-        {key: new[at[keep[key]]] for key, at in d.at.items()},
-        {key: (y, z[:, keep[key]]) for key, (y, z) in d.spoilt.items()},
-        d.gram[np.ix_(stay, stay)],
-        d.right[stay],
+    return replace(
+        d,
+        terms=tuple(d.terms[i] for i in left),
+        widths=tuple(d.widths[i] for i in left),
+        parts=parts,
+        gram=d.gram[np.ix_(stay, stay)],
+        right=d.right[stay],
     )

@@ -105,3 +105,20 @@ def flat(x: Array) -> Array:
     if x.size <= 2 * half:
         return x
     return np.convolve(np.pad(x, half, mode="edge"), taps, mode="valid")
+
+
+STENCILS = {  # central differences of the sixth order: half a per cent low at a fifth of the sample rate
+    0: (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+    1: (-1 / 60, 3 / 20, -3 / 4, 0.0, 3 / 4, -3 / 20, 1 / 60),
+    2: (1 / 90, -3 / 20, 3 / 2, -49 / 18, 3 / 2, -3 / 20, 1 / 90),
+    3: (1 / 8, -1.0, 13 / 8, 0.0, -13 / 8, 1.0, -1 / 8),
+}
+
+
+def flat_rate(x: Array, dt: float, derivative: int) -> Array:
+    """The derivative of `flat(x)` (n,); the ends are held at the nearest row that has neighbours."""
+    taps = np.convolve(np.array(STENCILS[derivative])[::-1], _flat(2)) / dt**derivative
+    half = (taps.size - 1) // 2
+    if x.size <= 2 * half:
+        return np.zeros_like(x)
+    return np.pad(np.convolve(x, taps, mode="valid"), half, mode="edge")

@@ -6,7 +6,7 @@ from typing import Final
 
 RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 orders at 400 rpm end at 100 Hz
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
-SLOWEST_TURNING: Final = 0.1  # rad/s of the motor; below it friction is not sliding friction: a tenth of a slow run
+SLOWEST_TURNING: Final = 0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
 SETTLING: Final = 0.15  # s left out of the torque equations on both sides of a reversal: presliding is over
 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
@@ -30,3 +30,5 @@ PLAIN_ENOUGH: Final = 0.9  # of the best coordinate's share: a simpler one that 
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand
 CLOSE: Final = 0.985  # of an effect's evidence another one must reach to be called a rival
+STILL: Final = 1.02  # RMS over floor of a channel below which nothing is looked for: its floor is not known better
+STILL_RUN: Final = 1.25  # the same of a single run

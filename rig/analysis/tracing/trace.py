@@ -13,7 +13,7 @@ from rig.analysis.tracing.equations import Equations, Noise, equations, spoiling
 from rig.analysis.tracing.holdout import Split, split
 from rig.analysis.tracing.judge import Court, convicted, court, unseen
 from rig.analysis.tracing.model import Solution, design, fit
-from rig.analysis.tracing.noise import Measured, guess, measure
+from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.search import search
@@ -39,7 +39,8 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     keys = p.eq.of(p.split.fitted)
     covered = reach([p.eq.runs[i] for i in p.split.fitted])
     bank = fill(p.eq, list(CATALOGUE.values()), p.split.fitted, covered)
-    found = search(p.baseline.design, bank, p.split.fitted, keys, covered)
+    floors = {key: floor_of(p.measured, p.eq, key) for key in keys}
+    found = search(p.baseline.design, bank, p.split.fitted, keys, covered, floors)
     solution, held, worths = convicted(found.solution, p.court)
     return report(p, found, solution, held, worths)
 

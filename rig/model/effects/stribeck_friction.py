@@ -17,7 +17,7 @@ class StribeckFriction(Effect):
     in_short: ClassVar[str] = "friction falls with speed near rest"
     source: ClassVar[str] = "armstrong1994"
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
-    loose: ClassVar[tuple[bool, ...]] = (True, False)
+    loose: ClassVar[tuple[bool, ...]] = (True, True)
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
     EXPONENTS: Final = (1.0, 2.0)  # what is reported: 0.5 to 2; between these two the curves differ by a tenth
 
@@ -43,3 +43,7 @@ class StribeckFriction(Effect):
     def plausible(self, fit: Fit) -> bool:
         """Friction at rest is the larger one."""
         return bool(fit.coefficients[0] > 0)
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Of ω_s, and of δ as it is reported."""
+        return (0.3 * self.SPEEDS[0], 2.0 * self.SPEEDS[-1]), (0.5, 3.0)

@@ -27,13 +27,13 @@ class SupportCompliance(Effect):
     ZETA: Final = 0.05
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Frequencies up to a third of the sample rate."""
-        count = int(np.log(max(reach.rate / 3.0, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
+        """Frequencies up to what the equations are compared at."""
+        count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         return tuple((float(f), self.ZETA) for f in self.LOWEST * self.STEP ** np.arange(count))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
-        """Any frequency that is sampled; damping of steel to rubber."""
-        return ((0.7 * self.LOWEST, reach.rate / 2.5), (0.005, 0.5))
+        """Any frequency that is compared; damping of steel to rubber."""
+        return ((0.7 * self.LOWEST, 1.2 * reach.band), (0.005, 0.5))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in both readings."""
