@@ -19,6 +19,7 @@ TURN = 2 * math.pi
 RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
 BLOCKS = 8  # stretches of the turn whose mean shaft torques tell how sure their mean is
 DEAD = 5.0  # times the motion looked for, by the load encoder: then the motor encoder should have shown it
+HELD = 0.1  # of what the load should have moved: less is a load that does not follow at all
 STEADY = 0.1  # of the nominal speed: a motor that nearly stops leaves any torque in the shaft
 SIGMAS = 5.0  # a torque difference counts as seen beyond this many standard errors
 
@@ -108,6 +109,8 @@ class SignAndScale(Procedure):
         begin = sample.t
         while sample.t - begin < 0.3:  # friction brings it to rest
             sample = yield Torque(0.0)
+        # before a whole turn could wind up a gear whose output somebody has locked
+        refuse_held(self.nudge_deg * DEG, sample.theta_l - load, setting.ratio)
         return tau
 
     def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
@@ -129,14 +132,19 @@ class SignAndScale(Procedure):
         return Leg(sample.theta_m - first.theta_m, sample.theta_l - first.theta_l, means, slowest)
 
 
+def refuse_held(motor: float, load: float, ratio: float) -> None:
+    """Raises NotReady when the load [rad] hardly moved while the motor did [rad]."""
+    if not abs(load) > HELD * abs(motor) / ratio:
+        raise NotReady(
+            f"the load encoder moved {load / DEG:.3f}° while the motor turned {motor / DEG:.1f}°, "
+            f"expected {motor / ratio / DEG:.2f}°: is the output locked or the encoder unplugged?"
+        )
+
+
 def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Proof:
     """Ratio, directions and torque-sensor sign against the bench file. Raises NotReady with the measured numbers."""
     motor, load = forward.motor - reverse.motor, forward.load - reverse.load
-    if not abs(load) > 0.1 * abs(motor) / setting.ratio:
-        raise NotReady(
-            f"the load encoder moved {load / DEG:.3f}° while the motor turned {motor / DEG:.1f}°, "
-            f"expected {motor / setting.ratio / DEG:.2f}°: is the output locked or the encoder unplugged?"
-        )
+    refuse_held(motor, load, setting.ratio)
     ratio = motor / load
     if ratio < 0:
         raise NotReady(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 from rig.changes import judge_lock, judge_tare, judge_weight
@@ -163,3 +165,14 @@ def test_a_lock_check_that_shows_anything_but_a_locked_output_is_refused(
 ) -> None:
     with pytest.raises(NotReady, match=words):
         judge_lock(LockProof(motor, 0.0, 5.0, follows, "as seen"), 0.05)
+
+
+@pytest.mark.slow
+def test_an_output_locked_by_mistake_is_found_before_a_whole_turn_winds_the_gear_up(tmp_path: Path) -> None:
+    with session(tmp_path) as rig:
+        rig.instruments.drive.world.lock_output()  # type: ignore[attr-defined]
+        with pytest.raises(NotReady, match="is the output locked"):
+            rig.prove()
+        assert rig.folder is not None
+    shaft = pq.read_table(rig.folder / "samples.parquet")["tau_l"].to_numpy()
+    assert np.max(np.abs(shaft)) < 25.0  # N·m; one turn at 7160 N·m/rad would be 900
