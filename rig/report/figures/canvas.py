@@ -83,16 +83,22 @@ def sheet(frame: Frame, heights: Sequence[float], *, keys: int = 0, right: float
     figure.patch.set_visible(False)
     panels = []
     for height in heights:
-        box = (LEFT / frame.width, 1 - (top + height) / total, 1 - (LEFT + right) / frame.width, height / total)
-        panel = figure.add_axes(box)
-        _quiet(panel)
-        if frame.mark:
-            _watermark(panel, frame.mark, frame.width - LEFT - right, height)
-        panels.append(panel)
+        panels.append(panel_at(figure, frame, (LEFT, top, frame.width - LEFT - right, height)))
         top += height + BETWEEN + HEAD
     for panel in panels[:-1]:
         panel.tick_params(axis="x", labelbottom=False)
     return figure, panels
+
+
+def panel_at(figure: Figure, frame: Frame, box: tuple[float, float, float, float]) -> Axes:
+    """A panel of the sheet's look at (left, top, width, height) in px, the word of the frame across it."""
+    left, top, width, height = box
+    total = figure.get_figheight() / PX
+    panel = figure.add_axes((left / frame.width, 1 - (top + height) / total, width / frame.width, height / total))
+    _quiet(panel)
+    if frame.mark:
+        _watermark(panel, frame.mark, width, height)
+    return panel
 
 
 def _quiet(panel: Axes) -> None:
