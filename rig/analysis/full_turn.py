@@ -6,6 +6,7 @@ import numpy as np
 
 from rig.analysis.accuracy import Accuracy, accuracy
 from rig.analysis.findings import Findings
+from rig.analysis.in_step import in_step
 from rig.analysis.intervals import Z95, amplitude_interval
 from rig.analysis.orders import Line, fit_lines
 from rig.analysis.result import Array, Estimate
@@ -33,6 +34,9 @@ def add_full_turn(found: Findings, run: Source, motion: Motion) -> None:
             f"stroke has {longest}."
         )
         return
+    speed_rpm = abs(motion.speed_rpm(int(stroke.edges[0]), int(stroke.edges[-1])))
+    if locked := in_step(run, motion, speed_rpm):
+        found.cannot.append(locked)
     theta, error = _whole_turns(motion, stroke, turns)
     result = accuracy(theta, error, motion.ratio, turns)
     _accuracy(found, result, stroke, turns)

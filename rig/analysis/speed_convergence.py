@@ -12,7 +12,7 @@ from rig.analysis.angle import RPM, TURN
 from rig.analysis.convergence_law import Law, SpeedStep, fit_law, speed_at
 from rig.analysis.decomposition import declared_gear, phasors
 from rig.analysis.findings import Findings
-from rig.analysis.flexibility import declared
+from rig.analysis.in_step import in_step
 from rig.analysis.intervals import Z95
 from rig.analysis.kinematic_error import groups_by_speed, measure
 from rig.analysis.profile import Profile
@@ -28,7 +28,6 @@ ORDER2 = 0.01  # of C_2: how little it may change to the next slower speed
 REPEATS = 2.0  # times its own uncertainty: a change below that is none
 FEWEST = 3  # speeds
 LAW = 0.03  # 1 σ of what damping and the loop's give shift the fitted frequency by, relative
-IN_STEP = 0.002  # of the counts a row: closer to a whole number, and rounding keeps step with the rows for a turn
 HIGHEST = 15  # order of the paper's series that the prediction is made for      [ghorbel2001, Eq. 8]
 
 
@@ -73,21 +72,6 @@ def _step(found: Findings, run: Source, motion: Motion, group: list[Stroke]) -> 
     if locked := in_step(run, motion, ke.speed_rpm):
         found.cannot.append(locked)
     return SpeedStep(ke.speed_rpm / RPM, phasors(ke.profile, ke.profile.terms), u, turns)
-
-
-def in_step(run: Source, motion: Motion, speed_rpm: float) -> str:
-    """Says so where an encoder advances a whole number of counts from row to row: its rounding does not average out."""
-    encoders = run.manifest.get("encoders") or {}
-    row = 0.0 if motion.t is None else float(motion.t[-1] - motion.t[0]) / (motion.t.size - 1)
-    for side, key, share in (("motor", "motor_counts_per_rev", 1.0), ("load", "load_counts_per_rev", motion.ratio)):
-        counts = declared(encoders, key)
-        advance = 0.0 if counts is None else counts / share * speed_rpm / 60.0 * row
-        if advance > 0.5 and abs(advance - round(advance)) < IN_STEP * advance:
-            return (
-                f"At {speed_rpm:.4g} rpm the {side} encoder advances {advance:.3f} counts a row, nearly a whole "
-                "number: its rounding follows the angle and does not average out; 1 % more or less speed cures it."
-            )
-    return ""
 
 
 def _u(p: Profile) -> Array:
