@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from rig.analysis.result import Array
 from rig.analysis.stiffness.laws import Law, Line, Scale
-from rig.analysis.stiffness.points import Points
+from rig.analysis.stiffness.points import Points, rates_differ
 from rig.analysis.stiffness.shape import Shape
 
 PULL = 1e-4  # what the run says nothing of stays where it was: weight of that, a point of full torque being 1
@@ -58,8 +58,7 @@ class Problem:
 
     def __init__(self, law: Law, points: Points, scale: Scale, shape: Shape) -> None:
         self.law, self.points, self.scale, self.shape = law, points, scale, shape
-        differ = bool(points.rate.max() > 2.0 * points.rate.min() > 0.0)
-        self.fastest = float(points.rate.max()) if differ else 0.0  # 0: one rate, B cannot be told
+        self.fastest = float(np.percentile(points.rate, 90)) if rates_differ(points) else 0.0  # 0: B cannot be told
         self.both = bool(np.ptp(points.direction) > 0)
         self.middle = float(points.windup.mean() - points.tau.mean() / scale.K)
 

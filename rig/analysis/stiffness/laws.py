@@ -89,6 +89,25 @@ class Cubic(Law):
         return {"k1": float(p[0]) * scale.K, "k3": float(p[1]) * scale.K / scale.reach**2}
 
 
+class Play(Law):
+    """τ = K·(u − b) beyond b, nothing within: backlash in series with a straight spring"""
+
+    name, words = "play", "a straight spring with play"
+
+    def starts(self) -> list[list[float]]:
+        """The secant with a little play, and some more: within it the sum of squares is flat."""
+        return [[1.0, 0.03], [1.1, 0.12]]
+
+    def torque(self, u: Array, p: Array, scale: Scale) -> Array:
+        """K·(u ∓ b) beyond ±b."""
+        beyond = np.maximum(np.abs(u) - max(float(p[1]), 0.0) * scale.reach, 0.0)
+        return np.asarray(p[0] * scale.K * np.sign(u) * beyond)
+
+    def numbers(self, p: Array, scale: Scale) -> dict[str, float]:
+        """K N·m/rad; b rad"""
+        return {"K": float(p[0]) * scale.K, "b": max(float(p[1]), 0.0) * scale.reach}
+
+
 def lines(u: Array, K: Array, T: Array) -> Array:
     """Torque of the three lines K1 to `T[0]` N·m, K2 to `T[1]`, K3 beyond, at `u` rad: continuous and odd."""
     size = np.abs(u)

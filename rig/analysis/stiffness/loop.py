@@ -16,6 +16,7 @@ from rig.analysis.stiffness.points import Points
 NEAR = 0.2  # of the largest torque: rows nearer to zero torque say how wide the loop is there
 PIECES = 8  # of a ramp near zero, in time: their scatter says how sure its mean is
 LEAST = 4  # rows in each
+DEAD = 0.05  # of the secant stiffness: less slope at zero is play
 SAME = 0.3  # rates that differ by a smaller share are one rate
 SPAN = 2.0  # factor the rates have to span for their effect to be told
 
@@ -56,12 +57,13 @@ class RateLaw:
         """Which of the two it is, with the numbers."""
         at = f"{self.viscous.value * self.slowest:.3g} to {self.viscous.value * self.fastest:.3g} N·m"
         h, v = self.hysteretic, self.viscous
+        lossy = h.told and h.value > 0  # a width below zero is scatter, and no hysteresis
         rates = f"over a factor of {self.fastest / self.slowest:.2g} in rate"
         fixed = f"{h.value:.3g} ± {h.half:.2g} N·m of the half width do not change {rates}"
         moving = f"what grows with the rate is {v.value:.3g} ± {v.half:.2g} N·m·s/rad ({at})"
-        if h.told and v.told:
+        if lossy and v.told:
             return f"The loop is hysteretic and viscous: {fixed}; {moving}."
-        if h.told:
+        if lossy:
             return f"The loop is hysteretic: {fixed}; {moving}, not told from none."
         if v.told:
             return f"The loop is viscous: {moving}; {fixed}, not told from none."
@@ -100,6 +102,8 @@ def gap(found: list[Width], curve: Curve) -> Value | None:
     if not (up.size and down.size):
         return None
     K = float(curve.tangent(np.array([curve.middle]))[0])
+    if K < DEAD * curve.scale.K:  # within play there is no slope: the gap is then what the loop adds to the play
+        K = curve.scale.K
     dof = up.size + down.size - 2
     # one ramp each way: what scatters along the ramps has to do
     half = t95(PIECES - 1) * float(np.sqrt(sum(x.u**2 for x in found)))

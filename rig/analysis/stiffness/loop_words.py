@@ -68,4 +68,8 @@ def add_creep(found: Findings, s: Stiffness) -> None:
     )
     value, half = 100 * c.per_decade.value, 100 * c.per_decade.half
     found.figure("creep_per_decade", "Creep per decade of time, share of the wind-up", value, "%", half, how)
+    if c.per_decade.told and value > 0:
+        found.cannot.append(
+            "Hysteresis and creep: what creeps while it is wound up widens the loop too, nearly as much at any rate."
+        )
     found.curve(creep__time=c.time, creep__windup=c.windup * ARCMIN * 60.0)

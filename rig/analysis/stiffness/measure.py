@@ -73,7 +73,7 @@ def cut_run(motion: Motion, tau: Array, error: Array) -> Cut | None:
     """Ramps and points of a run less `error` rad; None when it has too few."""
     windup = windup_of(motion) - error
     ramps, holds = cut(windup, tau, motion.t)
-    points = points_of(ramps, windup, tau, error)
+    points = points_of(ramps, windup, tau, error, motion.t)
     if points.tau.size < FEWEST or not points.reach > 0:
         return None
     scale = scale_of(points)
@@ -97,9 +97,9 @@ def measure(
     found = widths(run.ramps, curve, run.windup, run.tau)
     main = [w for w in found if not abs(w.rate / found[0].rate - 1.0) > SAME]
     joules, loops = _energy(run, spring)
-    ends = (abs(float(run.points.tau.min())), abs(float(run.points.tau.max())))
+    ends = np.abs(curve.torque(np.array([run.points.windup.min(), run.points.windup.max()])))
     held = creep(run.holds, curve, run.windup, run.tau, run.t)
-    return Stiffness(run, spring, share, tilt, SECANT * min(ends), found, gap(main, curve), joules, loops, held)
+    return Stiffness(run, spring, share, tilt, SECANT * float(ends.min()), found, gap(main, curve), joules, loops, held)
 
 
 def _less_reference(motion: Motion, tau: Array, reference: FourierSeries | None) -> tuple[Cut | None, Share | None]:

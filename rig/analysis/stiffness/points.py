@@ -11,6 +11,7 @@ from rig.analysis.result import Array
 from rig.analysis.stiffness.branches import Ramp
 
 CELLS = 150  # over the whole wind-up: a tenth of the zone of the softest line
+NEARBY = np.ones(3)  # cells over which the speed is taken: one cell holds two or three counts
 LATE = 0.25  # of the whole wind-up: a ramp that began inside the loop is used once it has gone this far
 
 
@@ -22,7 +23,9 @@ class Points:
     tau: Array  # N·m
     gone: Array  # rad, from the turn the ramp started at
     direction: Array  # +1 or −1
-    rate: Array  # rad/s of the ramp
+    rate: (
+        Array  # rad/s there, in the mean over time: little where the motor stuck, much where it slipped; 0 without time
+    )
     error: Array  # rad, the kinematic error that was subtracted; zeros without a reference
     ramp: npt.NDArray[np.int64]  # which ramp
 
@@ -40,9 +43,10 @@ class Points:
         return float(np.ptp(self.windup)) / 2
 
 
-def points_of(ramps: list[Ramp], windup: Array, tau: Array, error: Array) -> Points:
-    """All ramps of a run as points; `windup` and `error` rad, `tau` N·m, all (n,)."""
+def points_of(ramps: list[Ramp], windup: Array, tau: Array, error: Array, t: Array | None) -> Points:
+    """All ramps of a run as points; `windup` and `error` rad, `tau` N·m, `t` s, all (n,)."""
     low, whole = float(windup.min()), float(np.ptp(windup))
+    row = np.inf if t is None else float(np.median(np.diff(t)))  # s
     parts = []
     for k, ramp in enumerate(ramps):
         piece = slice(ramp.lo, ramp.hi)
@@ -53,7 +57,14 @@ def points_of(ramps: list[Ramp], windup: Array, tau: Array, error: Array) -> Poi
         gone = np.abs(w - ramp.begin)
         use = np.full(gone.size, True) if ramp.on_loop else gone > LATE * whole
         one = np.ones(gone.size)
-        rate = 0.0 if np.isnan(ramp.rate) else ramp.rate
-        parts.append(np.stack((w, y, gone, one * ramp.direction, one * rate, e, one * k))[:, use])
+        passed = np.convolve(here, NEARBY, "same") * whole / CELLS
+        rate = (passed / (np.maximum(np.convolve(rows, NEARBY, "same"), 1.0) * row))[here]
+        parts.append(np.stack((w, y, gone, one * ramp.direction, rate, e, one * k))[:, use])
     w, y, gone, direction, rates, e, which = np.concatenate(parts, axis=1) if parts else np.empty((7, 0))
     return Points(w, y, gone, direction, rates, e, which.astype(np.int64))
+
+
+def rates_differ(points: Points) -> bool:
+    """Whether the speeds span a factor of two, so that what grows with them shows."""
+    slow, fast = np.percentile(points.rate, (10, 90))
+    return bool(fast > 2.0 * slow > 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from rig.analysis.result import Array
-from rig.analysis.stiffness.points import Points
+from rig.analysis.stiffness.points import Points, rates_differ
 
 WAYS = np.array([0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2])  # of the reach: from stop to stop, per element
 OPEN = 0.96  # what counts as opened
@@ -46,7 +46,7 @@ def shape_of(points: Points, K: float) -> Shape:
     reach = points.reach
     u = (points.windup - points.windup.mean()) / reach
     base = np.stack((np.ones(u.size), u, u**2, u**3, u**5), axis=1)
-    if points.rate.max() > 2.0 * points.rate.min():  # else what the rate adds is as much on every branch
+    if rates_differ(points):  # else what the rate adds is as much on every branch
         base = np.column_stack((base, points.direction * points.rate / points.rate.max()))
     stops = 2.0 * np.minimum(np.divide.outer(points.gone / reach, WAYS), 1.0) - 1.0
     stops = stops * points.direction[:, None]

@@ -8,7 +8,7 @@ import numpy as np
 
 from rig.analysis.stiffness.choice import LeftOut, Trial, attempt, leave_out, simplest
 from rig.analysis.stiffness.curve import fit
-from rig.analysis.stiffness.laws import Cubic, FreeLines, Law, Line, Lines, Scale
+from rig.analysis.stiffness.laws import Cubic, FreeLines, Law, Line, Lines, Play, Scale
 from rig.analysis.stiffness.points import Points
 from rig.analysis.stiffness.shape import Shape
 
@@ -38,11 +38,11 @@ def spring_of(points: Points, scale: Scale, shape: Shape, knots: tuple[float, fl
     """`knots`: T1, T2 N·m where the bench declares them; else the maker's, scaled, unless the run shows its own."""
     given = knots if knots is not None and 0 < knots[0] < knots[1] < 0.95 * scale.torque else None
     T1, T2 = (given[0] / scale.torque, given[1] / scale.torque) if given else MAKER
-    laws: tuple[Law, ...] = (Line(), Cubic(), Lines(T1, T2), FreeLines())
-    line, cubic, lines, free = trials = [attempt(law, points, fit(law, points, scale, shape)) for law in laws]
+    laws: tuple[Law, ...] = (Line(), Cubic(), Play(), Lines(T1, T2), FreeLines())
+    line, cubic, _, lines, free = trials = [attempt(law, points, fit(law, points, scale, shape)) for law in laws]
     chosen = simplest(trials)
     if chosen is free and not _knots_inside(free):
-        chosen = simplest(trials[:3])
+        chosen = simplest(trials[:4])
     chosen_out = leave_out(chosen.curve, points)
     if chosen is not line and not chosen_out.bends(LEVELS * scale.torque):
         chosen, chosen_out = line, leave_out(line.curve, points)

@@ -58,7 +58,10 @@ def without_reference(ratio: float, swing: float, why: str) -> Tilt:
 def with_reference(points: Points, share: Share, lines: Curve) -> Tilt:
     """The subtracted slopes times how well the share of the error is known."""
     relative = share.half / max(share.value, 0.1)
-    fitted = "it is taken to be the same under load within 25 %"
+    fitted = (
+        "it is taken to be the same under load within 25 %, and the motor angle's zero to be the same in both runs "
+        "(the encoder not switched off between): this run turns too little to tell"
+    )
     if share.fitted:
         fitted = f"this run shows {share.value:.3f} ± {share.half:.2g} of it, and that was subtracted"
     u = np.abs(points.windup - lines.middle)

@@ -39,6 +39,7 @@ class LockedGear:
     zero: float = 0.04  # N·m, sensor offset
     home: float = 0.3  # rad, motor angle where the wind-up is 0
     rate: float = 50.0  # Hz
+    slips: int = 0  # steps the motor goes from end to end in; 0: it never sticks
 
     def time_and_windup(self) -> tuple[Array, Array]:
         """0 → +reach → −reach → … → 0, held at the ends."""
@@ -53,7 +54,19 @@ class LockedGear:
         t.append(t[-1] + QUARTER)
         w.append(0.0)
         grid = np.arange(0.0, t[-1], 1.0 / self.rate)
-        return grid, np.interp(grid, t, w)
+        smooth = np.interp(grid, t, w)
+        return grid, self.stuck(smooth) if self.slips else smooth
+
+    def stuck(self, smooth: Array) -> Array:
+        """The same way in steps: at rest until it lags a step behind, then within 20 ms to where it should be."""
+        step, slip = 2 * self.reach / self.slips, 0.02 * self.rate
+        out, at, goal = np.empty_like(smooth), 0.0, 0.0
+        for i, w in enumerate(smooth):
+            if at == goal and (abs(w - at) >= step or abs(w) == self.reach):
+                goal = w
+            at = goal if abs(goal - at) <= step / slip else at + np.sign(goal - at) * step / slip
+            out[i] = at
+        return out
 
     def torque(self, t: Array, w: Array) -> Array:
         tau = self.spring(w) + self.drag * np.gradient(w, t)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rig.analysis import analyse
 from rig.analysis.angle import ARCMIN
+from rig.analysis.result import Verdict
 from tests.analysis.stiffness.plant import K, LockedGear
 from tests.analysis.stiffness.test_spring import SLIP, bent, figures
+from tests.analysis.synthetic import MadeRun
 
 FORCE = sum(most for _, most in SLIP)
 
@@ -78,8 +78,16 @@ def test_a_sensor_offset_moves_no_figure() -> None:
         assert abs(a[name].value / b[name].value - 1) < 0.002, name
 
 
-def test_a_sensor_that_counts_the_other_way_gives_no_positive_stiffness() -> None:
+def test_a_sensor_of_the_wrong_sign_is_rejected() -> None:
     run = LockedGear().run()
-    turned = analyse(type(run)({**run.columns, "tau_l": -run.columns["tau_l"]}, run.manifest))
-    value = figures(turned).get("torsional_stiffness")
-    assert value is None or not np.isfinite(value.value) or value.value < 0
+    turned = analyse(MadeRun({**run.columns, "tau_l": -run.columns["tau_l"]}, run.manifest))
+    assert turned.verdict is Verdict.FAIL
+    assert "wrong sign" in turned.sentence
+    assert "torsional_stiffness" not in figures(turned)
+
+
+def test_where_the_motor_sticks_and_slips_a_viscous_loop_bends_no_spring() -> None:
+    gear = LockedGear(drag=400.0, rate=500.0, slips=24)  # 3.5 N·m while it slips, 0.04 N·m in the mean
+    found = figures(analyse(gear.run()))
+    for name in ("torsional_stiffness", "stiffness_K1", "stiffness_K2", "stiffness_K3"):
+        assert abs(found[name].value / K - 1) < 0.02, name

@@ -86,6 +86,15 @@ def test_a_loop_does_not_change_what_the_spring_is_found_to_be(gear: LockedGear)
         assert abs(found[name].value / true - 1) < 0.02, name
 
 
+def test_a_dead_zone_is_play_and_not_a_soft_spring() -> None:
+    def spring(u: Array) -> Array:
+        return np.asarray(K * np.sign(u) * np.maximum(np.abs(u) - 4e-5, 0.0))
+
+    result = analyse(LockedGear(spring=spring).run())
+    assert "a straight spring with play describes it better" in result.sentence
+    assert abs(figures(result)["play"].value / (8e-5 * 180 * 60 / np.pi) - 1) < 0.05
+
+
 def test_declared_knots_are_used_and_said_to_be() -> None:
     result = analyse(LockedGear().run(manifest={"declared": {"T1": 4.0, "T2": 9.0}}))
     assert "Knots as declared" in figures(result)["stiffness_K2"].how
