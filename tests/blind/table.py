@@ -33,6 +33,7 @@ def rows(marks: list[Mark]) -> list[Row]:
         (f"first name right, textbook form, ≥ {WORTH_A_NAME} × floor", str(firsts(marks, "single"))),
         (f"first name right, another form, ≥ {WORTH_A_NAME} × floor", str(firsts(marks, "single_other"))),
         (f"first name right, one main among many small, ≥ {WORTH_A_NAME} × floor", str(firsts(marks, "crowded"))),
+        ("first name right, no repeats / one direction / no torque sensor", str(firsts_of_poorer_plans(marks))),
         ("wrong names among names issued, all cases", str(Rate(len(wrong), len(names)))),
         ("false alarms on clean campaigns", str(rate([bool(m.names) or m.status != CLEAN for m in clean]))),
         ("outside the library: refused", str(rate([m.refused for m in outside]))),
@@ -54,7 +55,12 @@ NAMED = ("single", "single_other", "crowded", "pair")
 
 
 def firsts(marks: list[Mark], kind: str) -> Rate:
-    return rate([m.first_right for m in worth(marks, kind)])
+    """First names of the complete plan."""
+    return rate([m.first_right for m in worth(marks, kind) if m.plan == "complete"])
+
+
+def firsts_of_poorer_plans(marks: list[Mark]) -> Rate:
+    return rate([m.first_right for m in worth(marks, *NAMED) if m.plan != "complete"])
 
 
 def spread(values: list[float | None], unit: str = "×") -> str:
