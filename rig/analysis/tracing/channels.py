@@ -42,6 +42,7 @@ BASELINE: Final = (
     "tau_l0",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
+ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
 SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
@@ -80,15 +81,17 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:
-    """Rows in which the channel's equation holds: all in A, sliding ones in M and L."""
+    """Rows in which the channel's equation holds: all but the ends in A, sliding ones in M and L."""
     smooth = run.smoother
+    inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
+    inside[:ENDS] = inside[-ENDS:] = False
     if channel == "A":
-        return np.ones(smooth.rows(piece.t.size), dtype=bool)
+        return inside
     sliding = piece.way != 0
     if channel == "L":
         usual = float(np.median(np.abs(piece.omega_m[sliding]))) / run.ratio if sliding.any() else 0.0
         sliding &= (smooth.same(piece.theta_l, 1) * piece.way) > SLIDING * usual
-    return np.asarray(smooth(sliding.astype(float)) > 1 - 1e-9)
+    return np.asarray(inside & (smooth(sliding.astype(float)) > 1 - 1e-9))
 
 
 def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:

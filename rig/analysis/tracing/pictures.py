@@ -12,7 +12,8 @@ from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import UNITS
 from rig.analysis.tracing.floor import strokes
-from rig.analysis.tracing.unknown import Rest, homes, rest
+from rig.analysis.tracing.unknown import INDICES, Rest, homes, rest, score
+from rig.analysis.tracing.unknown import _folds as folds
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
@@ -22,12 +23,14 @@ Index = npt.NDArray[np.int64]
 
 TURN: Final = 2 * np.pi
 BINS: Final = 24  # of a turn, 15°: finer than the paper's strongest orders, with rows enough in each
-LEVELS: Final = 12  # of a range, equally full
+LEVELS: Final = 12  # of a range
 FEWEST: Final = 30  # rows of a bin: an RMS of fewer scatters by more than an eighth
 SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
 QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long
+EXCESS: Final = 0.21  # of the squared floor (a ratio of 1.1): below it there is nothing to share out
 COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "speed", "time")
+PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("load", "direction"), ("speed", "direction"))
 
 
 def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
@@ -35,8 +38,11 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
 
     where.<C>.<coordinate>.x, .before, .after (b,)
         RMS over floor in bins of a coordinate; x in ° for angles, ±1, N·m, rpm, s
-    share.<C> (6,)
-        share of the excess before that each of `COORDINATES` predicts alone in rows it was not fitted to, 0 to 1
+    share.<C> (10,)
+        share of the excess before that each of `COORDINATES`, then of `PAIRS`, predicts in rows it was not fitted to, 0
+        to 1; absent where there is no excess
+    share_frequency_hz.<C> (2,)
+        a fixed frequency that runs of differing speed have in common, and its share; absent where there is none
     close.<run>.<C>.turns, .measured, .before, .after (n,)
         two motor turns of a run that turns, arcsec or N·m, each less its mean over the run
     run_at.<run> (2,)      motor speed in rpm and external torque in N·m
@@ -77,11 +83,30 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
         stem = f"where.{channel}.{name}"
         out[f"{stem}.x"] = middles
         out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
-    share = {}
-    for h in homes(first, channel):
-        share[h.coordinate] = max(h.share, share.get(h.coordinate, 0.0))
-    out[f"share.{channel}"] = np.clip([share.get(name, 0.0) for name in COORDINATES], 0.0, 1.0)
+    if np.mean(first.e**2) > 1 + EXCESS:
+        out |= shares(first, channel)
     return out
+
+
+def shares(r: Rest, channel: str) -> dict[str, Array]:
+    """`share.*` of one channel: bin means of one half of the rows against the other half."""
+    found: dict[str, float] = {}
+    for h in homes(r, channel):  # an angle stands there twice: in bins, and as one order
+        found[h.coordinate] = max(h.share, found.get(h.coordinate, 0.0))
+    excess = float(np.mean(r.e**2)) - 1.0
+    alone = [found.get(name, 0.0) for name in COORDINATES]
+    both = [score(r, folds(r), crossed(r, *pair)) / excess for pair in PAIRS]
+    out = {f"share.{channel}": np.clip(alone + both, 0.0, 1.0)}
+    line = next((h for h in homes(r, channel) if h.frequency_hz is not None), None)
+    if line is not None and line.frequency_hz is not None:
+        out[f"share_frequency_hz.{channel}"] = np.array([line.frequency_hz, min(line.share, 1.0)])
+    return out
+
+
+def crossed(r: Rest, one: str, other: str) -> Index:
+    """Cells of two coordinates, −1 where either is unknown."""
+    a, b = INDICES[one](r), INDICES[other](r)
+    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1).astype(np.int64)
 
 
 def rms(e: Array, index: Index, bins: int) -> Array:
@@ -105,19 +130,18 @@ def of_turn(name: str) -> Callable[[Rest], tuple[Index, Array] | None]:
     return binned
 
 
-def of_range(
-    name: str, unit: float = 1.0, *, of: Callable[[Array], Array] = np.asarray
-) -> Callable[[Rest], tuple[Index, Array] | None]:
-    """Equally full bins of `of(x)`, and the median of each times `unit`."""
+def of_range(name: str, unit: float, knee: float) -> Callable[[Rest], tuple[Index, Array] | None]:
+    """Bins of |speed|, torque or time: even up to the `knee` (in shown units), even in the logarithm beyond."""
 
     def binned(r: Rest) -> tuple[Index, Array] | None:
-        x = of(r.at[name])
+        x = r.at[name] * unit
         if not np.isfinite(x).all() or np.ptp(x) == 0:
             return None
-        edges = np.unique(np.quantile(x, np.linspace(0, 1, LEVELS + 1)[1:-1]))
-        index = np.digitize(x, edges).astype(np.int64)
-        middles = [float(np.median(x[index == i])) if (index == i).any() else np.nan for i in range(edges.size + 1)]
-        return index, np.array(middles) * unit
+        x = np.abs(x) if name == "speed" else x
+        warped = np.arcsinh(x / knee)
+        edges = np.linspace(warped.min(), warped.max(), LEVELS + 1)
+        index = np.clip(np.digitize(warped, edges) - 1, 0, LEVELS - 1).astype(np.int64)
+        return index, knee * np.sinh((edges[1:] + edges[:-1]) / 2)
 
     return binned
 
@@ -132,9 +156,9 @@ BINNED: Final[Mapping[str, Callable[[Rest], tuple[Index, Array] | None]]] = {
     "motor_angle": of_turn("motor_angle"),
     "load_angle": of_turn("load_angle"),
     "direction": of_direction,
-    "load": of_range("load"),
-    "speed": of_range("speed", 60 / TURN, of=np.abs),
-    "time": of_range("time"),
+    "load": of_range("load", 1.0, 1.0),
+    "speed": of_range("speed", 60 / TURN, 1.0),
+    "time": of_range("time", 1.0, 1e9),
 }
 
 

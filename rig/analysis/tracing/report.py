@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,7 @@ from rig.analysis.tracing.curves import curves
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import errors
 from rig.analysis.tracing.judge import Worth, unseen
-from rig.analysis.tracing.model import Design, Solution
+from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
 from rig.analysis.tracing.result import Candidate, Floor, Found, Trace
 from rig.analysis.tracing.search import Found as Searched
@@ -32,13 +33,13 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
     empty = p.baseline
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
-    ruling = decide(p, s, worths, before, after, floors, found)
+    shares = {w.name: w.share for w in worths} | own_shares(p, s, after)
+    ruling = decide(p, s, tuple(shares), before, after, floors, found)
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
-    named = {w.name: w for w in worths}
-    words = parameters.effects(s, p.split.fitted) if s.design.terms else {}
+    words = p.own | (parameters.effects(s, p.split.fitted) if s.design.terms else {})
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -65,7 +66,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         ),
         verdict=ruling.verdict,
         effects=tuple(
-            Found(name, words.get(name, ()), named[name].share) for name in ruling.verdict.effects if name in named
+            Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
         ),
         before=errors(p.eq, p.court, before),
         after=errors(p.eq, p.court, final),
@@ -74,6 +75,18 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         cannot=ruling.cannot,
         curves=curves(p, before, final),
     )
+
+
+def own_shares(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> dict[str, float]:
+    """Share of the held-out excess that goes when every run gets its own phase or steps."""
+    if not p.own:
+        return {}
+    without = design(replace(s.design.eq, noisy={}, local={}), s.design.terms, p.court.runs)
+    bare = p.court.residuals(s, without)
+    keys = [k for k in after if k in p.eq.local]
+    before, n = p.court.excess(bare, keys)
+    left, _ = p.court.excess(after, keys)
+    return dict.fromkeys(p.own, float((before - left) / max(before - n, 0.02 * n)))
 
 
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:

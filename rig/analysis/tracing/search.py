@@ -80,7 +80,9 @@ class Search:
         return most
 
 
-def search(d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach, floors: Mapping[Key, float]) -> Found:
+def search(
+    d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach, floors: Mapping[Key, float]
+) -> Found:
     """Add the best term again and again, then drop and swap what the later ones made needless."""
     s = fit(d)
     fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered)

@@ -6,7 +6,9 @@ from typing import Final
 
 RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 orders at 400 rpm end at 100 Hz
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
-SLOWEST_TURNING: Final = 0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
+SLOWEST_TURNING: Final = (
+    0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
+)
 SETTLING: Final = 0.15  # s left out of the torque equations on both sides of a reversal: presliding is over
 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
@@ -32,3 +34,9 @@ MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said
 CLOSE: Final = 0.985  # of an effect's evidence another one must reach to be called a rival
 STILL: Final = 1.02  # RMS over floor of a channel below which nothing is looked for: its floor is not known better
 STILL_RUN: Final = 1.25  # the same of a single run
+LINE: Final = 15.0  # power over its surroundings: chance gets there in one of three million lines
+LINE_RUNS: Final = 0.5  # of the runs that must show the line
+LINE_SPEEDS: Final = 1.5  # highest over lowest speed among them: else it may be an order
+STEP: Final = 7.0  # times the usual difference of neighbouring windows: above all drift and wander
+STEP_AGAIN: Final = 4.0  # the same for steps of a size that is known by then
+STEP_ALIKE: Final = 0.05  # rad of the motor: two repeats that jump so near each other jump because of the angle

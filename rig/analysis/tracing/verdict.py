@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
-from rig.analysis.tracing.judge import Worth
+from rig.analysis.tracing.local import IN_SHORT
 from rig.analysis.tracing.model import Solution
 from rig.analysis.tracing.next_run import deciding
 from rig.analysis.tracing.result import NextRun, Status, Verdict
@@ -36,7 +36,7 @@ class Ruling:
 def decide(
     p: Prepared,
     s: Solution,
-    worths: Sequence[Worth],
+    weighed: Sequence[str],
     before: Mapping[Key, Array],
     after: Mapping[Key, Array],
     floors: Mapping[Key, float],
@@ -44,7 +44,7 @@ def decide(
 ) -> Ruling:
     """From held-out ratios and the effects that may be named."""
     order = {r.term.name: i for i, r in enumerate(found.ranking)}
-    names = tuple(sorted((w.name for w in worths), key=lambda n: order.get(n, 99)))
+    names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
     total, single = worst(p, after)
     first, _ = worst(p, before)
     loud = total > EXPLAINED or single > MISSING
@@ -55,6 +55,8 @@ def decide(
     if names and done > MOSTLY and total < 2 * EXPLAINED:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
+    if p.line is not None:
+        where = [Home("time_periodic", "L", 1.0, frequency_hz=p.line.frequency_hz), *where]
     best = where[0]
     sentence = (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
@@ -66,6 +68,10 @@ def decide(
     )
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
+
+
+def _in_short(name: str) -> str:
+    return CATALOGUE[name].in_short if name in CATALOGUE else IN_SHORT[name]
 
 
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
@@ -86,7 +92,7 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
     if not names:
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
-    words = " and ".join(f"{n.replace('_', ' ')} ({CATALOGUE[n].in_short})" for n in names)
+    words = " and ".join(f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names)
     rivals, next_run = deciding(p, names, found)
     sentence = (
         f"The model lacks {words}: with it the held-out error falls from {before:.1f} to {after:.2f} times the floor."

@@ -1,0 +1,220 @@
+"""Effects every run has in its own way: a vibration of unknown phase, steps where an encoder lost counts.
+
+They are found in the fitted runs; where they are, each run, held out or not, is given its own phase or its own steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STEP, STEP_AGAIN, STEP_ALIKE
+from rig.model.effect import Array, Parameter, parameter
+
+IN_SHORT = {
+    "external_vibration": "a torque on the load at a fixed frequency whatever the speed",
+    "missed_counts": "permanent steps in one encoder",
+}
+LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
+ZOOM = 4  # finer than a run's own resolution
+WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
+EDGE = 3  # rows over which the low-pass spreads a step
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """A line at one frequency in runs of differing speed: amplitude by channel (median over runs)."""
+
+    frequency_hz: float
+    amplitude: dict[str, float]
+    runs: int
+
+    def of_the_load(self, stiffness: float) -> bool:
+        """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too."""
+        torque = self.amplitude.get("L", 0.0)
+        return torque > 0 and self.amplitude.get("A", 0.0) < 0.5 * torque / stiffness
+
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Frequency and amplitude."""
+        spread = 1.0 / np.sqrt(max(self.runs, 1))
+        size = self.amplitude.get("L", 0.0)
+        return (
+            parameter("frequency", self.frequency_hz, 0.01, "Hz"),
+            parameter("torque_amplitude", size, 0.1 * size * spread, "N·m"),
+        )
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Rows of A where a run jumps, and by how much [rad]."""
+
+    rows: dict[int, tuple[int, ...]]
+    sizes: dict[int, tuple[float, ...]]
+
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Number of steps and their usual size."""
+        sizes = np.abs(np.concatenate([np.array(s) for s in self.sizes.values()]))
+        half = 1.96 * float(np.std(sizes)) / np.sqrt(sizes.size)
+        return (
+            parameter("steps", float(sizes.size), 0.0, "1"),
+            parameter("step", float(np.median(sizes)), half, "rad"),
+        )
+
+
+def _clock(eq: Equations, key: Key) -> Array:
+    """Time of each row, s."""
+    run = eq.runs[key[0]]
+    return np.concatenate([p.t[run.smoother.centres(p.t.size)] for p in run.pieces])[eq.rows[key].keep]
+
+
+def find_vibration(eq: Equations, e: Mapping[Key, Array]) -> Vibration | None:
+    """The strongest line at a fixed frequency in L (in A without a torque sensor), None when there is none."""
+    channel = "L" if any(c == "L" for _, c in e) else "A"
+    keys = [k for k in e if k[1] == channel and e[k].size > 256]
+    if len(keys) < 3:
+        return None
+    top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
+    grid = np.arange(LOWEST, 0.98 * top, 0.02)
+    heights = np.array([_heights(_clock(eq, k), e[k], grid) for k in keys])
+    speed = np.array([eq.runs[k[0]].turning for k in keys])
+    hits = heights > LINE
+    score = np.where(hits.mean(0) > LINE_RUNS, np.median(heights, axis=0), 0.0)
+    for at in np.argsort(-score)[:50]:
+        if score[at] <= 0:
+            return None
+        hit = speed[hits[:, at]]
+        if hit.max() > LINE_SPEEDS * hit.min():
+            frequency = _sharpened(eq, e, keys, float(grid[at]))
+            return Vibration(frequency, _amplitudes(eq, e, frequency), int(hits[:, at].sum()))
+    return None
+
+
+def _heights(t: Array, e: Array, grid: Array) -> Array:
+    """Power at `grid` Hz over what is usual around it."""
+    dt = float(np.median(np.diff(t)))
+    even = np.zeros(round((t[-1] - t[0]) / dt) + 1)
+    even[np.minimum(np.round((t - t[0]) / dt).astype(int), even.size - 1)] = e
+    n = ZOOM * even.size
+    power = np.abs(np.fft.rfft(even * np.hanning(even.size), n)) ** 2
+    hz = np.fft.rfftfreq(n, dt)
+    width = max(1, int(1.5 / hz[1]))  # Hz on each side make the background
+    coarse = power[: power.size // width * width].reshape(-1, width)
+    usual = np.interp(np.arange(power.size), (np.arange(len(coarse)) + 0.5) * width, np.median(coarse, axis=1))
+    reach = max(1, round(0.02 / hz[1]))
+    best = power.copy()
+    for shift in range(1, reach + 1):
+        best[shift:] = np.maximum(best[shift:], power[:-shift])
+        best[:-shift] = np.maximum(best[:-shift], power[shift:])
+    return np.asarray(np.interp(grid, hz, best / np.maximum(usual, 1e-300)))
+
+
+def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:
+    """The frequency that takes most from all runs together, each with its own phase."""
+    fine = about + np.linspace(-0.06, 0.06, 61)
+    total = np.zeros(fine.size)
+    for key in keys:
+        t = _clock(eq, key)
+        wave = np.exp(-2j * np.pi * np.multiply.outer(fine, t - t.mean()))
+        total += np.abs(wave @ e[key]) ** 2 / e[key].size
+    return float(fine[int(np.argmax(total))])
+
+
+def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict[str, float]:
+    out = {}
+    for channel in "AML":
+        sizes = []
+        for key in (k for k in e if k[1] == channel):
+            t = _clock(eq, key)
+            sizes.append(2 * abs(np.exp(-2j * np.pi * frequency * t) @ e[key]) / e[key].size)
+        if sizes:
+            sigma = 36.0 if not eq.runs else eq.runs[0].smoother.sigma_hz
+            out[channel] = float(np.median(sizes)) * float(
+                np.exp(0.5 * (frequency / sigma) ** 2)
+            )  # the low-pass undone
+    return out
+
+
+def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
+    """Cosine and sine in every block, (n, 2)."""
+    out = {}
+    for key in eq.rows:
+        x = 2 * np.pi * frequency * _clock(eq, key)
+        out[key] = np.stack([np.cos(x), np.sin(x)], 1)
+    return out
+
+
+def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
+    """Sharp permanent jumps of A in each run of `e`."""
+    keys = [k for k in e if k[1] == "A"]
+    sure = [abs(size) for key in keys for _, size in _jumps(e[key], STEP, (0.0, np.inf))]
+    # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
+    usual = float(np.median(sure)) if sure else 0.0
+    rows: dict[int, tuple[int, ...]] = {}
+    sizes: dict[int, tuple[float, ...]] = {}
+    for key in keys if sure else []:
+        found = _jumps(e[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        if found:
+            rows[key[0]] = tuple(at for at, _ in found)
+            sizes[key[0]] = tuple(size for _, size in found)
+    return Steps(rows, sizes)
+
+
+def _jumps(e: Array, least: float, between: tuple[float, float]) -> list[tuple[int, float]]:
+    """Row and size of every jump: the means of the windows on both sides differ, and nearly all of it at once.
+
+    `least` in usual differences of such windows, size `between` two bounds [rad].
+    """
+    if e.size < 6 * WINDOW:
+        return []
+    total = np.concatenate([[0.0], np.cumsum(e)])
+    at = np.arange(WINDOW + EDGE, e.size - WINDOW - EDGE)
+    after = (total[at + EDGE + WINDOW] - total[at + EDGE]) / WINDOW
+    before = (total[at - EDGE] - total[at - EDGE - WINDOW]) / WINDOW
+    jump = after - before
+    usual = float(np.median(np.abs(jump))) / 0.6745
+    out: list[tuple[int, float]] = []
+    strength = np.abs(jump) / max(usual, 1e-300)
+    while strength.size and strength.max() > least:
+        top = int(np.argmax(strength))
+        row = int(at[top])
+        near = e[row + EDGE : row + 4 * EDGE].mean() - e[row - 4 * EDGE : row - EDGE].mean()
+        sharp = abs(near - jump[top]) < 0.5 * abs(jump[top])
+        if sharp and between[0] <= abs(jump[top]) <= between[1]:
+            out.append((row, float(jump[top])))
+        strength[max(0, top - WINDOW) : top + WINDOW] = 0.0
+    return out
+
+
+def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -> bool:
+    """Whether the jumps are lost counts: there are some, and repeats do not jump at the same angle as a tooth would."""
+    count = sum(len(r) for r in steps.rows.values())
+    if count == 0:
+        return False
+    same = 0
+    for a, b in pairs:
+        x, y = (eq.rows[i, "A"].theta_m[list(steps.rows.get(i, ()))] for i in (a, b))
+        same += int(sum(np.min(np.abs(y - v)) < STEP_ALIKE for v in x)) if y.size else 0
+    return same * 4 < count
+
+
+def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
+    """One column a jump in A, 0 before and 1 after it, (n, jumps)."""
+    out = {}
+    for run, rows in steps.rows.items():
+        n = eq.rows[run, "A"].y.size
+        out[run, "A"] = (np.arange(n)[:, None] >= np.array(rows)).astype(float)
+    return out
+
+
+def orthonormal(eq: Equations, made: Sequence[Mapping[Key, Array]]) -> dict[Key, Array]:
+    """Local columns of all kinds together, without the run's offset, orthonormal (n, q)."""
+    out = {}
+    for key in {k for m in made for k in m}:
+        x = np.hstack([m[key] for m in made if key in m])
+        x = x - eq.noise.pull(key[1], x.shape[0]) * x.mean(0)
+        q, r = np.linalg.qr(x)
+        out[key] = q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()]
+    return out
