@@ -12,9 +12,8 @@ from rig.analysis.result import Array
 
 Complex = npt.NDArray[np.complex128]
 GRID = 1440  # trial shifts a turn, 0.25° apart: order 15 has 24° a period
-COMMON = (
-    1.0 / DEG
-)  # rad  a shift below a degree is none: it moves order 2 by 1/30, and chance gives it once in 180 runs
+COMMON = 6.0 / DEG  # rad  other zeros differ by anything: in 29 cases of 30 by more than this
+NONE = 1.0 / DEG  # rad  and below this the shift is none: order 2 moves by 1/30
 SIGMA = 3.0  # as is one below so many of its own σ
 MODEL = 0.15  # of what the model says an order gains: how far it is believed
 
@@ -32,6 +31,11 @@ class Alignment:
     def common(self) -> bool:
         """Whether the encoder kept its zero between the runs."""
         return self.shift == 0.0 and self.u == 0.0
+
+    @property
+    def odd(self) -> bool:
+        """Whether one zero is likely and yet the runs do not lie on each other."""
+        return self.common and abs(self.fitted) > max(NONE, SIGMA * self.u_fitted)
 
     @property
     def sentence(self) -> str:
@@ -72,6 +76,6 @@ def align(total: Complex, expected: Complex, u: Array, trusted: int) -> Alignmen
     curvature = float(np.sum((n * np.abs(model)) ** 2 / sigma2))
     chi2 = float(np.sum(np.abs(z - model) ** 2 / sigma2)) / max(2 * n.size - 1, 1)
     sigma = float(np.sqrt(max(chi2, 1.0) / curvature))
-    if abs(shift) < max(COMMON, min(SIGMA * sigma, 5.0 * COMMON)):
+    if abs(shift) < COMMON:
         return Alignment(0.0, 0.0, shift, sigma)
     return Alignment(shift, sigma, shift, sigma)

@@ -55,10 +55,10 @@ def slow_profile(reference: Source, motion: Motion) -> KinematicError | None:
 
 
 def decompose(run: Source, fast: KinematicError, slow: Profile) -> Decomposition | None:
-    """Subtract `slow` from `fast`, angle on angle. None when neither the zero nor a shift of it fits.
+    """Subtract `slow` from `fast`, angle on angle. None when nothing stands out of the noise to align them by.
 
-    The zero of the motor angle is taken for common where the fitted shift is nought within its uncertainty; else the
-    fitted shift is used and its uncertainty carried along.
+    The zero of the motor angle is taken for common where the fitted shift is small (see `align`); else the fitted shift
+    is used and its uncertainty carried along.
     """
     k = min(fast.profile.terms, slow.terms)
     total, pure = phasors(fast.profile, k), phasors(slow, k)

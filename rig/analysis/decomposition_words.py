@@ -40,7 +40,7 @@ def add_decomposition(found: Findings, run: Source, motion: Motion, reference: S
     basis = (
         f"θ̃ at {fast.speed_rpm:.4g} rpm less the pure kinematic error of {reference.name} ({slow.speed_rpm:.3g} rpm)"
     )
-    found.checks.append(Check("alignment", True, split.alignment.sentence))
+    found.checks.append(Check("alignment", not split.alignment.odd, split.alignment.sentence))
     found.figure(
         "alignment_shift",
         "Angle between the zeros of the two runs",

@@ -76,6 +76,13 @@ def test_without_declared_inertias_the_split_is_made_and_the_prediction_is_missi
     assert rows(result)[1]["flexible"] == pytest.approx(true_flexible(12.57)[1], abs=0.3)
 
 
+def test_a_small_shift_is_no_other_zero_and_is_told() -> None:
+    result = analyse(at_speed(32.5, np.radians(3.0)), SLOW)
+    check = next(c for c in result.checks if c.name == "alignment")
+    assert not check.passed
+    assert "encoders read at different times" in check.sentence
+
+
 def test_without_a_slow_run_it_is_said_what_is_needed() -> None:
     assert any("--reference" in sentence for sentence in analyse(at_speed(32.5)).cannot)
 
