@@ -41,6 +41,11 @@ class Alignment:
     def sentence(self) -> str:
         """Which way was taken, with the numbers."""
         fitted = f"{self.fitted * DEG:.2f}° ± {1.96 * self.u_fitted * DEG:.2f}°"
+        if self.odd:
+            return (
+                f"Both runs seem to count the motor angle from one zero, and yet a shift of {fitted} fits better: "
+                "encoders read at different times, or dynamics that the linear model lacks; none used."
+            )
         if self.common:
             return (
                 f"Both runs count the motor angle from one zero (the best shift between them is {fitted}): none used."
