@@ -11,7 +11,7 @@ demo: .venv/ready
 	$(BIN)/hdrig demo
 
 test: .venv/ready-dev lint
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 inner: .venv/ready-dev  ## the fast part of the tests, under 60 s
 	$(BIN)/python -m pytest -n 2 -m "not slow"

@@ -56,6 +56,7 @@ class Bus:
         self.host_node = 0  # CANopen node number of this host, 0: it sends no heartbeat
         self.heartbeat = 0.02  # s between heartbeats of this host
         self.synced = NEVER  # s, when the last SYNC was sent
+        self.syncs = 0  # sent so far
         self._where = (interface, channel, dict(options))
         self._can: Any = None
         self._beat = NEVER
@@ -158,6 +159,7 @@ class Bus:
         now = self.clock.now()
         if self.send(SYNC, b""):
             self.synced = now
+            self.syncs += 1
         if self.host_node and now - self._beat >= self.heartbeat:
             self._beat = now
             self.send(HEARTBEAT + self.host_node, bytes((OPERATIONAL,)))

@@ -75,6 +75,7 @@ class Node:
         self.heard = float("-inf")  # s on the loop's clock, last heartbeat
         self._sdo: Any = None
         self._number = 0  # of the frame seen last
+        self._syncs = 0  # sent until then
         self._twice = 0  # SYNCs in a row that were answered more than once
 
     def open(self) -> None:
@@ -204,8 +205,9 @@ class Node:
 
     def answered(self, frame: Frame) -> None:
         """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error."""
-        self._twice = self._twice + 1 if frame.number - self._number > 1 else 0
-        self._number = frame.number
+        answers, syncs = frame.number - self._number, self.bus.syncs - self._syncs
+        self._twice = self._twice + 1 if answers > syncs else 0
+        self._number, self._syncs = frame.number, self.bus.syncs
 
     def trouble(self, now: float) -> str:
         """What is wrong with the node as such, in words; "" when nothing is."""
