@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from rig.model.fourier import FourierSeries
 
 Array = npt.NDArray[np.float64]
 Shape = tuple[float, ...]
-"""The parameters an effect depends on nonlinearly (a Stribeck speed, an order, a frequency), in `shape_names`' order."""
+"""The parameters an effect depends on nonlinearly (a Stribeck speed, an order), in `shape_names`' order."""
 
 
 class Port(StrEnum):
@@ -80,7 +80,9 @@ class Signals:
 
     def part(self, rows: slice) -> Signals:
         """Some rows of it."""
-        arrays = {f.name: v[rows] for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)}
+        arrays: dict[str, Any] = {
+            f.name: v[rows] for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)
+        }
         return replace(self, **arrays)
 
 
@@ -124,7 +126,7 @@ class Fit:
 
     def half_width(self, gradient: Array) -> float:
         """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,)."""
-        return float(1.96 * np.sqrt(max(0.0, gradient @ self.covariance @ gradient)))
+        return float(1.96 * np.sqrt(max(0.0, float(gradient @ self.covariance @ gradient))))
 
 
 @dataclass(frozen=True)

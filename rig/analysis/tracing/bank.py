@@ -7,12 +7,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key, Term
 from rig.analysis.tracing.recording import Recording
-from rig.model.effect import Array, Effect, Reach
+from rig.model.effect import Effect, Reach
+
+Single = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -23,9 +26,9 @@ class Bank:
     """
 
     terms: tuple[Term, ...]
-    columns: dict[Key, Array]
+    columns: dict[Key, Single]
     places: dict[str, tuple[slice | None, ...]]
-    spoilt: dict[Key, Array]  # what sensor noise does to the columns, in a few runs that stand for all (n, c)
+    spoilt: dict[Key, Single]  # what sensor noise does to the columns, in a few runs that stand for all (n, c)
 
     def widths(self) -> dict[str, int]:
         """Columns per term, by index of term, as a plain dict of channel to total width."""
@@ -56,7 +59,7 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     """Columns of all shapes of `effects` for those runs."""
     terms = tuple(Term(effect, shape) for effect in effects for shape in effect.shapes(covered))
 
-    def of(run: int) -> tuple[int, list[dict[str, Array]], list[dict[str, Array]]]:
+    def of(run: int) -> tuple[int, list[dict[str, Single]], list[dict[str, Single]]]:
         made = [eq.term(run, term) for term in terms]
         bare = [{c: eq.bare((run, c), m).astype(np.float32) for c, m in cols.items()} for cols in made]
         if run not in eq.noisy:
@@ -75,11 +78,11 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     )
 
 
-def _joined(run: int, made: Sequence[dict[str, Array]]) -> dict[Key, Array]:
+def _joined(run: int, made: Sequence[dict[str, Single]]) -> dict[Key, Single]:
     return {(run, c): np.hstack([m[c] for m in made if c in m]) for c in CHANNELS if any(c in m for m in made)}
 
 
-def _places(channel: str, found: Sequence[list[dict[str, Array]]], terms: int) -> tuple[slice | None, ...]:
+def _places(channel: str, found: Sequence[list[dict[str, Single]]], terms: int) -> tuple[slice | None, ...]:
     for made in found:
         if any(channel in m for m in made):
             edges, out = 0, []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -67,7 +68,7 @@ def strokes(theta: Array) -> list[slice]:
     step = np.sign(np.diff(slow))
     step[step == 0] = 1
     cuts = [0, *(int(c) + 1 + wide // 2 for c in np.flatnonzero(np.diff(step))), theta.size]
-    return [slice(lo, hi) for lo, hi in zip(cuts, cuts[1:], strict=False) if hi - lo > 25]
+    return [slice(lo, hi) for lo, hi in itertools.pairwise(cuts) if hi - lo > 25]
 
 
 def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
@@ -86,7 +87,7 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     d = np.concatenate(parts)
     rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))
     # interpolation between two rows of correlation rho leaves 2/3 + rho/3 of their variance
-    return d / np.sqrt(1 + 2 / 3 + rho / 3)
+    return np.asarray(d / np.sqrt(1 + 2 / 3 + rho / 3))
 
 
 def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channel: str) -> Scatter | None:

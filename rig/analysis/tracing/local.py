@@ -67,7 +67,7 @@ class Steps:
 def _clock(eq: Equations, key: Key) -> Array:
     """Time of each row, s."""
     run = eq.runs[key[0]]
-    return np.concatenate([p.t[run.smoother.centres(p.t.size)] for p in run.pieces])[eq.rows[key].keep]
+    return np.asarray(np.concatenate([p.t[run.smoother.centres(p.t.size)] for p in run.pieces])[eq.rows[key].keep])
 
 
 def find_vibration(eq: Equations, e: Mapping[Key, Array]) -> Vibration | None:
@@ -113,13 +113,17 @@ def _heights(t: Array, e: Array, grid: Array) -> Array:
 
 def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:
     """The frequency that takes most from all runs together, each with its own phase."""
-    fine = about + np.linspace(-0.06, 0.06, 61)
-    total = np.zeros(fine.size)
-    for key in keys:
-        t = _clock(eq, key)
-        wave = np.exp(-2j * np.pi * np.multiply.outer(fine, t - t.mean()))
-        total += np.abs(wave @ e[key]) ** 2 / e[key].size
-    return float(fine[int(np.argmax(total))])
+    best = about
+    # 0.002 Hz first, then a tenth of a turn in the longest run
+    for half in (0.06, 0.003):
+        fine = best + np.linspace(-half, half, 61)
+        total = np.zeros(fine.size)
+        for key in keys:
+            t = _clock(eq, key)
+            wave = np.exp(-2j * np.pi * np.multiply.outer(fine, t - t.mean()))
+            total += np.abs(wave @ e[key]) ** 2 / e[key].size
+        best = float(fine[int(np.argmax(total))])
+    return best
 
 
 def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict[str, float]:

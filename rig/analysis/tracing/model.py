@@ -108,7 +108,7 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
     """Columns of the baseline and of `terms` for those runs."""
     keys = eq.of(runs)
     spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
-    parts = {
+    parts: dict[Key, tuple[Part, ...]] = {
         key: (Part(eq.bare(key, eq.rows[key].z), np.array(eq.rows[key].at), spoilt[key][1] if key in spoilt else None),)
         for key in keys
     }

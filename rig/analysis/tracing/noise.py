@@ -11,7 +11,6 @@ import numpy as np
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key, Noise
 from rig.analysis.tracing.floor import (
-    FLOOR_LEAST,
     Scatter,
     autocorrelation,
     compare,
@@ -20,7 +19,7 @@ from rig.analysis.tracing.floor import (
     scatter,
     strokes,
 )
-from rig.analysis.tracing.thresholds import ZERO
+from rig.analysis.tracing.thresholds import FLOOR_LEAST, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -75,7 +74,7 @@ def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: f
     least = {"A": np.inf, "M": ZERO / ratio, "L": ZERO}[channel]
     if not np.isfinite(least) or len(found) < 3 or found[0].pair[0] == found[0].pair[1]:
         return least
-    excess = np.mean([s.offset**2 / 2 - variance / s.rows for s in found])
+    excess = float(np.mean([s.offset**2 / 2 - variance / s.rows for s in found]))
     return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
 
 

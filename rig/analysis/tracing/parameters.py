@@ -56,7 +56,7 @@ def _unit(c: Array, name: str) -> Array:
 
 
 def _of(name: str, value: float, along: Array, c: Array, unit: str) -> Parameter:
-    return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, along @ c @ along))), unit)
+    return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
 
 
 def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:

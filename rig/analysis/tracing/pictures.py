@@ -29,8 +29,8 @@ SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
 QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long
 EXCESS: Final = 0.21  # of the squared floor (a ratio of 1.1): below it there is nothing to share out
-COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "speed", "time")
-PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("load", "direction"), ("speed", "direction"))
+COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory", "speed", "time")
+PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
 
 
 def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
@@ -40,7 +40,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         RMS over floor in bins of a coordinate; x in ° for angles, ±1, N·m, rpm, s
     share.<C> (10,)
         share of the excess before that each of `COORDINATES`, then of `PAIRS`, predicts in rows it was not fitted to, 0
-        to 1; absent where there is no excess
+        to 1; absent where there is no excess, NaN for the load in L, whose reading is itself the load
     share_frequency_hz.<C> (2,)
         a fixed frequency that runs of differing speed have in common, and its share; absent where there is none
     close.<run>.<C>.turns, .measured, .before, .after (n,)
@@ -75,8 +75,8 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
     out: dict[str, Array] = {}
     if first is None or last is None:
         return out
-    for name in COORDINATES:
-        x = BINNED[name](first)
+    for name, binned in BINNED.items():
+        x = binned(first)
         if x is None:
             continue
         index, middles = x
@@ -96,7 +96,8 @@ def shares(r: Rest, channel: str) -> dict[str, Array]:
     excess = float(np.mean(r.e**2)) - 1.0
     alone = [found.get(name, 0.0) for name in COORDINATES]
     both = [score(r, folds(r), crossed(r, *pair)) / excess for pair in PAIRS]
-    out = {f"share.{channel}": np.clip(alone + both, 0.0, 1.0)}
+    own = [channel == "L" and bool({"load", "memory"} & {*names}) for names in (*((c,) for c in COORDINATES), *PAIRS)]
+    out = {f"share.{channel}": np.where(own, np.nan, np.clip(alone + both, 0.0, 1.0))}
     line = next((h for h in homes(r, channel) if h.frequency_hz is not None), None)
     if line is not None and line.frequency_hz is not None:
         out[f"share_frequency_hz.{channel}"] = np.array([line.frequency_hz, min(line.share, 1.0)])

@@ -187,7 +187,7 @@ def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: 
 def rough(x: Array) -> float:
     """RMS of the white noise in a reading (n,)."""
     # the fourth difference of white noise has 70 times its variance; the median does not see reversals
-    return float(np.nanmedian(np.abs(np.diff(x, 4)))) / 0.6745 / 70**0.5
+    return float(np.nanmedian(np.abs(np.diff(x, 4))) / 0.6745 / np.sqrt(70.0))
 
 
 def direction(omega: Array, dt: float) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.tracing.bank import Bank
+from rig.analysis.tracing.bank import Bank, Single
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.model import Design, Solution
@@ -41,15 +41,15 @@ def own(bank: Bank, d: Design, keys: Sequence[Key]) -> Own:
     return Own(gram, tuple(n if n.size else np.zeros_like(g) for n, g in zip(noise, gram, strict=True)))
 
 
-def _own(bank: Bank, blocks: Mapping[Key, tuple[Array, float]]) -> tuple[Array, ...]:
-    out: list[Array | None] = [None] * len(bank.terms)
+def _own(bank: Bank, blocks: Mapping[Key, tuple[Single, float]]) -> tuple[Array, ...]:
+    out: list[Array] = [np.zeros((0, 0))] * len(bank.terms)
     for (_, channel), (columns, w) in blocks.items():
         c = columns.astype(np.float64)
         for i, place in enumerate(bank.places[channel]):
             if place is not None:
                 part = w * (c[:, place].T @ c[:, place])
-                out[i] = part if out[i] is None else out[i] + part
-    return tuple(np.zeros((0, 0)) if g is None else g for g in out)
+                out[i] = out[i] + part if out[i].size else part
+    return tuple(out)
 
 
 def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, Array]:

@@ -1,4 +1,4 @@
-"""Which effects, together, explain what the baseline leaves: forward, with swaps and drops, on the fitted runs alone."""
+"""Which effects together explain what the baseline leaves: forward, with drops, on the fitted runs alone."""
 
 from __future__ import annotations
 

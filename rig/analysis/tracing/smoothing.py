@@ -99,7 +99,7 @@ def thin(x: Array, factor: int) -> tuple[Array, int]:
 
 
 def flat(x: Array) -> Array:
-    """`x` (n,) without its upper half of frequencies, the lower third untouched: for what enters columns nonlinearly."""
+    """`x` (n,) without its upper half of frequencies, the lower third untouched: for columns that are not linear."""
     taps = _flat(2)
     half = (taps.size - 1) // 2
     if x.size <= 2 * half:

@@ -1,4 +1,4 @@
-"""Where the rest lives when no effect of the library explains it: a coordinate, an order or a frequency, never a name."""
+"""Where the rest lives when no effect of the library explains it: a coordinate, an order, a frequency; no name."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:
     rows = [run.smoother.centres(p.t.size) for p in run.pieces]
 
     def of(name: str) -> Array:
-        return np.concatenate([getattr(p, name)[r] for p, r in zip(run.pieces, rows, strict=True)])[kept]
+        return np.asarray(np.concatenate([getattr(p, name)[r] for p, r in zip(run.pieces, rows, strict=True)])[kept])
 
     names = {
         "motor_angle": "theta_m",
