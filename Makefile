@@ -19,7 +19,7 @@ inner: .venv/ready-dev  ## the fast part of the tests, under 60 s
 blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to tests/blind/TABLE.md
 	rm -rf build/blind
 	$(BIN)/python -m tests.blind.generate --suite 30 --seed $(or $(SEED),1) --jobs 2 --out build/blind
-	$(BIN)/python -m tests.blind.score build/blind --table tests/blind/TABLE.md
+	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table tests/blind/TABLE.md
 	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
 
 lint: .venv/ready-dev

@@ -13,6 +13,7 @@ import json
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -66,18 +67,27 @@ def read_answer(answer: Path) -> tuple[dict[str, Any], float]:
     return json.loads(answer.read_text(encoding="utf-8")), about["seconds"]
 
 
-def marks(suite: Path, limit_s: float) -> list[Mark]:
-    """Every case of the suite, traced if it has not been."""
-    check_hashes(suite)
+def trace_all(suite: Path, limit_s: float, jobs: int) -> None:
+    """Trace every case that has no answer yet, `jobs` at a time."""
+    answers = {
+        path.stem: suite / "traces" / f"{path.stem}.json" for path in sorted((suite / "truth").glob("case-*.json"))
+    }
+    missing = {case: a for case, a in answers.items() if not a.exists() and not a.with_suffix(".about").exists()}
+
+    def one(case: str) -> None:
+        trace(suite / case, missing[case], limit_s)
+        print(f"{case} traced", file=sys.stderr, flush=True)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        list(pool.map(one, missing))
+
+
+def marks(suite: Path) -> list[Mark]:
+    """Every case of the suite by its truth."""
     out = []
     for truth_file in sorted((suite / "truth").glob("case-*.json")):
-        case = truth_file.stem
-        answer = suite / "traces" / f"{case}.json"
-        if not answer.exists() and not answer.with_suffix(".about").exists():
-            trace(suite / case, answer, limit_s)
-            print(f"{case} traced", file=sys.stderr, flush=True)
-        said, seconds = read_answer(answer)
-        out.append(mark(case, json.loads(truth_file.read_text(encoding="utf-8")), said, seconds))
+        said, seconds = read_answer(suite / "traces" / truth_file.name)
+        out.append(mark(truth_file.stem, json.loads(truth_file.read_text(encoding="utf-8")), said, seconds))
     return out
 
 
@@ -94,9 +104,12 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("suite", type=Path)
     parser.add_argument("--table", type=Path, help="also write the table to this file")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a trace may take")
+    parser.add_argument("--jobs", type=int, default=1, help="traces at a time")
     options = parser.parse_args(arguments)
     try:
-        page = markdown(marks(options.suite, options.limit), heading())
+        check_hashes(options.suite)
+        trace_all(options.suite, options.limit, options.jobs)
+        page = markdown(marks(options.suite), heading())
     except (Tampered, FileNotFoundError) as refusal:
         print(refusal, file=sys.stderr)
         return 2

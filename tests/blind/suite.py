@@ -27,7 +27,7 @@ def counts(total: int) -> dict[str, int]:
 
 
 def requests(total: int, seed: int) -> list[Request]:
-    """`total` requests; effects come in turn, so that none is left out; one single in ten has a poorer plan."""
+    """`total` requests; effects come in turn, so that none is left out; one single in five has a poorer plan."""
     rng = np.random.default_rng([seed, 9])
     seeds = iter(int(s) for s in rng.choice(2**31, size=total, replace=False))
     inside, outside = endless(rng, EFFECTS), endless(rng, tuple(form.effect for form in OUTSIDE))
@@ -41,8 +41,8 @@ def requests(total: int, seed: int) -> list[Request]:
                 effect = next(outside)
             if kind == "ambiguous":
                 plan = "paper"
-            if kind == "single" and place % 10 == 9:
-                plan = OTHER_PLANS[place // 10 % len(OTHER_PLANS)]
+            if kind == "single" and place % 5 == 4:
+                plan = OTHER_PLANS[place // 5 % len(OTHER_PLANS)]
             out.append(Request(kind, next(seeds), plan, effect))
     return [out[i] for i in rng.permutation(total)]
 
