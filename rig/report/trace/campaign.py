@@ -1,0 +1,94 @@
+"""Where the runs of a trace come from: their manifests, in the order they were taken, and the software."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rig.analysis.tracing.result import Trace
+from rig.report.numbers import duration, number_of
+from rig.report.provenance import software
+from rig.report.rows import cut, measured, show, table, utc
+from rig.report.words import PROCEDURES, humanise
+
+
+class RunRow(NamedTuple):
+    """One run of the campaign."""
+
+    name: str
+    part: str
+    procedure: str
+    conditions: str
+    started: str
+    backend: str
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Manifests by run folder, the software that traced, and when (UTC, ISO 8601; "" where it is not said)."""
+
+    manifests: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    traced_with: Mapping[str, Any] = field(default_factory=dict)
+    traced_utc: str = ""
+
+    @property
+    def backend(self) -> str | None:
+        """What all manifests agree on; None where they do not."""
+        said = {str(m.get("backend")) for m in self.manifests.values()}
+        return said.pop() if len(said) == 1 else None
+
+    @property
+    def software(self) -> list[tuple[str, str]]:
+        """What recorded and what traced, as rows."""
+        recorded = sorted({s for m in self.manifests.values() if (s := software(m))})
+        rows = [("Recorded with", ", ".join(recorded) or "unknown")]
+        rows.append(("Traced with", software({"software": dict(self.traced_with)}) or "unknown"))
+        return [*rows, *([("Traced", utc(self.traced_utc))] if self.traced_utc else [])]
+
+    def facts(self, trace: Trace) -> list[str]:
+        """The line below the title."""
+        gears = {show(table(m.get("gear")).get("serial")) for m in self.manifests.values()} - {"unknown"}
+        ratios = {show(table(m.get("gear")).get("ratio")) for m in self.manifests.values()} - {"unknown"}
+        starts = sorted(str(m["started_utc"]) for m in self.manifests.values() if m.get("started_utc"))
+        found = [f"Gear {', '.join(sorted(gears))}"] if gears else []
+        found += [f"ratio {', '.join(sorted(ratios))}"] if ratios else []
+        found += [utc(starts[0])] if starts else []
+        return [*found, f"{len(trace.fitted)} runs fitted", f"{len(trace.held_out)} held out"]
+
+    def rows(self, trace: Trace) -> list[RunRow]:
+        """Every run, fitted, held out or neither."""
+        part = dict.fromkeys(trace.held_out, "held out") | dict.fromkeys(trace.fitted, "fitted")
+        started = {name: str(m.get("started_utc") or "") for name, m in self.manifests.items()}
+        order = sorted(self.manifests, key=lambda n: (started[n], n))
+        order += [name for name in part if name not in self.manifests]
+        return [_row(name, part.get(name, "not used"), self.manifests.get(name, {})) for name in order]
+
+
+def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) -> Provenance:
+    """Of the campaign in `folder`; manifests that cannot be read are left out, the trace has said why."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for path in sorted(folder.glob("*/manifest.json")):
+        try:
+            manifest = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError, RecursionError):
+            continue
+        found[path.parent.name] = table(cut(manifest))
+    return Provenance(found, traced_with, traced_utc)
+
+
+def _row(name: str, part: str, manifest: Mapping[str, Any]) -> RunRow:
+    procedure = str(manifest.get("procedure", "unknown"))
+    said = [measured(str(k), v) for k, v in table(manifest.get("conditions")).items() if v is not False and k != "note"]
+    seconds = number_of(manifest.get("duration"))
+    length = f", {duration(seconds)}" if seconds == seconds else ""
+    return RunRow(
+        name,
+        part,
+        PROCEDURES.get(procedure, humanise(procedure)) + length,
+        ", ".join(f"{row.name} {row.value}" for row in said),
+        utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown",
+        show(manifest.get("backend")),
+    )

@@ -1,0 +1,150 @@
+"""Where the residual lives: RMS over the floor, before and after, against each coordinate; small multiples."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import AsinhLocator, FixedLocator, FuncFormatter, MaxNLocator
+
+from rig.report.figures.arrays import line
+from rig.report.figures.canvas import PX, Array, Curves, Drawing, Frame, foot, key, log_axis, panel_at
+from rig.report.numbers import plain
+from rig.report.palette import LIGHT
+from rig.report.trace.channels import CHANNELS, Channel
+from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
+
+HEAD, BETWEEN, FOOT, LEFT, GAP = 50.0, 34.0, 44.0, 46.0, 12.0
+
+
+class Coordinate(NamedTuple):
+    """One column of the figure."""
+
+    key: str
+    name: str
+    ticks: tuple[float, ...] | None = None
+    knee: float | None = None  # even up to it, logarithmic beyond
+
+
+COORDINATES = (
+    Coordinate("motor_angle", "Motor angle, °", (0, 180, 360)),
+    Coordinate("load_angle", "Load angle, °", (0, 180, 360)),
+    Coordinate("direction", "Direction", (-1, 1)),
+    Coordinate("load", "Torque, N·m", None, 1.0),
+    Coordinate("speed", "Speed, rpm", None, 1.0),
+    Coordinate("time", "Time, min"),
+)
+
+
+def draw(curves: Curves, frame: Frame) -> Figure | None:
+    """Uses where.<C>.<coordinate>.x, .before, .after. None when no channel has any."""
+    shown = [c for c in CHANNELS if any(_found(curves, c, q.key) is not None for q in COORDINATES)]
+    if not shown:
+        return None
+    across = int(frame.pick(6, 3))
+    lines = [(c, COORDINATES[i : i + across]) for c in shown for i in range(0, 6, across)]
+    height = frame.pick(104, 84)
+    total = HEAD + len(lines) * (height + BETWEEN + FOOT) - BETWEEN
+    figure = Figure(figsize=(frame.width * PX, total * PX), dpi=72)
+    figure.patch.set_visible(False)
+    width = (frame.width - LEFT - 12 - GAP * (across - 1)) / across
+    first = None
+    for row, (channel, coordinates) in enumerate(lines):
+        top = HEAD + row * (height + BETWEEN + FOOT)
+        low, high = _limits(curves, channel)
+        for column, q in enumerate(coordinates):
+            panel = panel_at(figure, Frame(frame.width), (LEFT + column * (width + GAP), top, width, height))
+            log_axis(panel, low, high)
+            _panel(panel, curves, channel, q)
+            panel.tick_params(axis="y", labelleft=column == 0)
+            first = first or panel
+            if column == 0:
+                _name(panel, f"{channel.name} {channel.short}, RMS over floor")
+    if first is not None:
+        _key(first)
+    return figure
+
+
+def _key(panel: Axes) -> None:
+    handles = [handle(BEFORE, "before"), handle(AFTER, "after"), handle(FLOOR, "floor")]
+    key(panel, handles, columns=3)
+    panel.get_legend().set_bbox_to_anchor((-0.02, 1.22), transform=panel.transAxes)
+
+
+def _name(panel: Axes, text: str) -> None:
+    style = {"xytext": (2 - LEFT, 8), "textcoords": "offset points", "fontweight": "bold"}
+    panel.annotate(text, (0, 1), xycoords="axes fraction", **style)
+
+
+def _found(curves: Curves, channel: Channel, name: str) -> tuple[Array, Array, Array] | None:
+    stem = f"where.{channel.letter}.{name}"
+    x = line(curves, f"{stem}.x")
+    before = None if x is None else line(curves, f"{stem}.before", len(x))
+    after = None if x is None else line(curves, f"{stem}.after", len(x))
+    return None if x is None or before is None or after is None else (x, before, after)
+
+
+def _limits(curves: Curves, channel: Channel) -> tuple[float, float]:
+    found = [f for q in COORDINATES if (f := _found(curves, channel, q.key)) is not None]
+    values = np.concatenate([np.concatenate(f[1:]) for f in found])
+    values = values[np.isfinite(values) & (values > 0)]
+    low, high = (float(values.min()), float(values.max())) if values.size else (1.0, 1.0)
+    return min(0.5, low / 1.2), max(2.5, high * 1.4)
+
+
+def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None:
+    panel.axhline(1.0, **FLOOR)
+    found = _found(curves, channel, q.key)
+    if found is not None:
+        x, before, after = found
+        x = x / 60 if q.key == "time" else x
+        if q.knee is not None:
+            panel.set_xscale("asinh", linear_width=q.knee)
+        for values, style, marker in ((before, BEFORE, "o"), (after, AFTER, "s")):
+            there = np.isfinite(values)
+            panel.plot(x[there], values[there], marker=marker, ms=2.6, **{**style, "lw": 1.1})
+    _ticks(panel, q)
+    foot(panel, q.name)
+    panel.margins(x=0.08)
+
+
+def _ticks(panel: Axes, q: Coordinate) -> None:
+    if q.knee is not None:
+        panel.xaxis.set_major_locator(AsinhLocator(q.knee, numticks=5, base=10, subs=(1,)))
+    elif q.ticks is not None:
+        panel.xaxis.set_major_locator(FixedLocator(list(q.ticks)))
+        panel.set_xlim((-2, 2) if q.key == "direction" else (0, 360))
+    else:
+        panel.xaxis.set_major_locator(MaxNLocator(3, integer=True))
+    names = {-1.0: "−", 1.0: "+"} if q.key == "direction" else {}
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda v, _: names.get(v, plain(v, 3))))
+    panel.tick_params(axis="x", labelsize=10.5, color=LIGHT["axis"])
+
+
+def say(curves: Curves) -> str:
+    """The figure in words."""
+    said = []
+    for channel in CHANNELS:
+        for q in COORDINATES:
+            found = _found(curves, channel, q.key)
+            if found is not None:
+                low, high = np.nanmin(found[1]), np.nanmax(found[1])
+                said.append(
+                    f"{channel.name} against {q.name.split(',')[0].lower()}: {plain(low, 2)} to {plain(high, 2)} times the "
+                    f"floor before, {plain(np.nanmin(found[2]), 2)} to {plain(np.nanmax(found[2]), 2)} after"
+                )
+    return "; ".join(said) + "."
+
+
+DRAWING = Drawing(
+    "where",
+    "Where the residual lives",
+    "RMS of what the model leaves on held-out runs, over the floor, in bins of one coordinate at a time; logarithmic, so "
+    "equal steps are equal ratios. A flat line at 1 means that nothing is left to explain. Torque is that through the "
+    "gear; torque and speed axes are even up to 1 and logarithmic beyond. Bins with fewer than 30 samples are left out.",
+    draw,
+    say,
+    full=True,
+)

@@ -1,0 +1,138 @@
+"""A trace as one page: self-contained HTML, read without network or script, on paper as on a phone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+
+from rig.analysis.result import Array
+from rig.analysis.tracing.result import Status, Trace
+from rig.report import page as run_page
+from rig.report import words as run_words
+from rig.report.figures import Drawing
+from rig.report.trace import tables, words
+from rig.report.trace.campaign import Provenance
+from rig.report.trace.cards import cards
+from rig.report.trace.channels import CHANNELS
+from rig.report.trace.figures import BEFORE_AFTER, WHERE
+from rig.report.words import Origin
+from rig.runfile.manifest import write_atomic
+
+HERE = Path(__file__).parent
+QUIET = 1.15  # RMS over floor before: a channel with less is at its floor and gets no close-up of its own
+
+
+def write(folder: Path, trace: Trace, origin: Provenance) -> Path:
+    """Write `folder`/report.html and return its path. The file is replaced whole or not at all. Raises OSError."""
+    write_atomic(folder / run_page.NAME, render(trace, origin).encode(errors="replace"))
+    return folder / run_page.NAME
+
+
+def render(trace: Trace, source: Provenance) -> str:
+    """The page as text. The same arguments give the same text: no clock and no random number is asked."""
+    origin = _origin(trace, source)
+    curves = drawn(trace)
+    lines, silent = tables.suspects(trace)
+    heads, each = tables.each_run(trace)
+    view: dict[str, Any] = {
+        "trace": trace,
+        "origin": origin,
+        "heading": words.heading(trace),
+        "facts": source.facts(trace),
+        "ruling": words.RULINGS[trace.verdict.status],
+        "meaning": words.MEANING[trace.verdict.status],
+        "sizes": words.sizes(trace.effects),
+        "cards": cards(trace),
+        "alone": trace.verdict.status is Status.NOTHING,
+        "physical": [(*words.meaning(p), tables.said(p)) for p in tables.physical(trace.baseline)],
+        "orders": [(*words.meaning(p), tables.said(p)) for p in tables.orders(trace.baseline)],
+        "together": [words.listed([words.PARAMETERS.get(n, (n,))[0] for n in g]) for g in trace.cannot_be_told_apart],
+        "floors": tables.floors(trace),
+        "lives": [words.place(c) for c in trace.lives_in],
+        "suspects": lines,
+        "silent": words.listed(silent),
+        "added": words.added(trace),
+        "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
+        "moved": tables.moved(trace),
+        "heads": heads,
+        "each": each,
+        "where": _plots(WHERE, curves, origin.mark),
+        "before_after": _plots(BEFORE_AFTER, curves, origin.mark),
+        "next": _next(trace),
+        "runs": source.rows(trace),
+        "software": source.software,
+        "css": Markup(f"{run_page._css(trace.campaign, origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+    }
+    loader = jinja2.FileSystemLoader(HERE)
+    environment = jinja2.Environment(
+        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["code"] = run_page.code
+    return environment.get_template("page.html").render(view)
+
+
+def drawn(trace: Trace) -> dict[str, Array]:
+    """The curves of the trace with the errors of each run; close-ups of channels at their floor are left out."""
+    curves = dict(trace.curves)
+    for name, before in trace.before.per_run.items():
+        after = trace.after.per_run.get(name, before)
+        rows = [(c.error(before), c.error(after), c.floor(before)) for c in CHANNELS]
+        curves[f"each_run.{name}"] = np.array([np.nan if v is None else v for row in rows for v in row])
+    for c in CHANNELS[1:]:
+        if trace.ratios_before.get(c.sensor, 0.0) < QUIET:
+            curves = {k: v for k, v in curves.items() if not (k.startswith("close.") and f".{c.letter}." in k)}
+    return curves
+
+
+def _origin(trace: Trace, source: Provenance) -> Origin:
+    """Of the campaign: simulated when any run is, else what its manifests agree on."""
+    found = run_words.origin("sim" if trace.simulated else source.backend)
+    return replace_run(found, len(source.manifests) or len(trace.fitted) + len(trace.held_out))
+
+
+def replace_run(found: Origin, runs: int) -> Origin:
+    """The same origin, said of a campaign."""
+    word = found.run.removesuffix(" run") if found.run.endswith(" run") else "Runs of unknown origin,"
+    return found._replace(run=f"Trace of {runs} runs, {word.lower().rstrip(',')}")
+
+
+def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any]]:
+    made = (run_page._plot(drawing, dict(curves), mark) for drawing in drawings)
+    return [plot for plot in made if plot is not None]
+
+
+def _effect(name: str, parameters: Sequence[Any], share: float) -> dict[str, Any]:
+    return {
+        "name": words.named(name),
+        "in_short": words.in_short(name),
+        "share": f"{100 * min(max(share, 0.0), 1.0):.0f} %",
+        "parameters": [(p.name, tables.said(p)) for p in parameters],
+    }
+
+
+def _next(trace: Trace) -> dict[str, Any] | None:
+    run = trace.next_run
+    if run is None:
+        return None
+    conditions = [": ".join((run_words.named(k)[0], _value(k, v))) for k, v in run.conditions.items()]
+    return {
+        "procedure": run_words.PROCEDURES.get(run.procedure, run_words.humanise(run.procedure)),
+        "command": run.procedure.replace("_", "-"),
+        "conditions": conditions,
+        "because": run.because,
+    }
+
+
+def _value(key: str, value: float | bool | str) -> str:
+    from rig.report.rows import measured
+
+    return measured(key, value).value
+
+
+__all__ = ["render", "replace", "write"]

@@ -1,0 +1,121 @@
+"""What the page of a trace says in words: verdict, sizes, names of parameters and coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rig.analysis.tracing.result import Found, Status, Trace
+from rig.model.effect import Parameter
+from rig.model.effects import CATALOGUE
+from rig.report.numbers import estimate, plain
+from rig.report.words import Ruling, humanise
+
+RULINGS = {
+    Status.EXPLAINED: Ruling("✓", "Explained", "good"),
+    Status.NOTHING: Ruling("✓", "Nothing is missing", "good"),
+    Status.AMBIGUOUS: Ruling("?", "Ambiguous: these runs do not decide", "warn"),
+    Status.UNKNOWN: Ruling("!", "Something is missing, and no effect of the library explains it", "bad"),
+}
+
+MEANING = {
+    Status.EXPLAINED: "An effect is named when it removes at least 60 % of the excess over the floor in runs the fit did "
+    "not see, and no other effect of the library does as well.",
+    Status.NOTHING: "On runs the fit did not see the paper’s model is as good as a repeat of the run. That bounds what "
+    "these runs can show; it does not say that the gear has no other effect at other speeds, loads or temperatures.",
+    Status.AMBIGUOUS: "More than one effect explains these runs equally well. Naming one would be a guess: its "
+    "parameters below hold only if it is the right one.",
+    Status.UNKNOWN: "What is left is real: it repeats or drifts beyond what repeats of a run differ by. It is described "
+    "by where it lives and is given no name. What was added to the model is a curve without physics.",
+}
+
+PARAMETERS = {  # of the baseline: symbol, what it is
+    "K": ("K", "torsional stiffness"),
+    "B_sp": ("B_sp", "damping of the flexspline"),
+    "J_m": ("J_m", "inertia, motor side"),
+    "B_m": ("B_m", "viscous friction, motor side"),
+    "tau_c": ("τ_c", "constant friction, motor side"),
+    "J_l": ("J_l", "inertia, load side"),
+    "B_l": ("B_l", "viscous friction, load side"),
+    "tau_cl": ("τ_cl", "constant friction, load side"),
+}
+
+ORDER = "theta_p_order_"
+
+PLACES = {
+    "motor_angle": "the motor angle",
+    "load_angle": "the load angle",
+    "speed": "the speed",
+    "load": "the torque through the gear",
+    "direction": "the direction of motion",
+    "time": "the time since the campaign began",
+    "time_periodic": "time, at a fixed frequency whatever the speed",
+    "temperature": "the temperature",
+    "memory": "the torque and whether it rises or falls: memory",
+}
+
+
+def named(effect: str) -> str:
+    """Name of an effect for people; humanised where it is in no catalogue."""
+    return humanise(effect)
+
+
+def in_short(effect: str) -> str:
+    """One line on an effect; "" where it is in no catalogue."""
+    return CATALOGUE[effect].in_short if effect in CATALOGUE else ""
+
+
+def listed(names: Sequence[str]) -> str:
+    """ "a", "a and b", "a, b and c"."""
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def sizes(found: Sequence[Found]) -> list[str]:
+    """One sentence for each effect added: its first parameters with their intervals."""
+    out = []
+    for effect in found:
+        said = [f"{p.name} = {estimate(p.value, p.ci95, p.unit)}" for p in effect.parameters[:3]]
+        if said:
+            out.append(f"{named(effect.effect)}: {', '.join(said)}.")
+    return out
+
+
+def heading(trace: Trace) -> str:
+    """Title of the page."""
+    return f"What the model lacks: {trace.campaign}"
+
+
+def place(coordinate: str | None) -> str:
+    """A coordinate as a phrase."""
+    return PLACES.get(coordinate or "", (coordinate or "").replace("_", " "))
+
+
+def added(trace: Trace) -> str:
+    """What went into the model, in one or two sentences."""
+    v = trace.verdict
+    names = listed([named(e.effect).lower() for e in trace.effects])
+    match v.status:
+        case Status.NOTHING:
+            return "Nothing was added. The parameters are those of the baseline."
+        case Status.UNKNOWN:
+            beside = f" beside {names}" if names else ""
+            return f"A curve without a name{beside}, in {place(v.coordinate)}{_pitch(trace)}; no physics is claimed for it."
+        case Status.AMBIGUOUS:
+            rivals = listed([named(r).lower() for r in v.rivals])
+            return f"For the errors below {names or 'the first candidate'} was added; {rivals} would do as well."
+    return f"{humanise(names)}. Baseline and effect were then fitted again together."
+
+
+def _pitch(trace: Trace) -> str:
+    v = trace.verdict
+    order = f", order {plain(v.order, 4)} per turn" if v.order is not None else ""
+    return order + (f", {plain(v.frequency_hz, 4)} Hz" if v.frequency_hz is not None else "")
+
+
+def meaning(p: Parameter) -> tuple[str, str]:
+    """Symbol and meaning of a parameter of the baseline."""
+    if p.name.startswith(ORDER):
+        n = p.name.removeprefix(ORDER)
+        return f"C_{n}", f"kinematic error, order {n}"
+    return PARAMETERS.get(p.name, (p.name, ""))
