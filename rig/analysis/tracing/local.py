@@ -213,6 +213,14 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
     return out
 
 
+def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:
+    """Share of the excess over the floor that columns of their own take, in the blocks of `e` that have some."""
+    own = orthonormal(eq, [columns])
+    keys = [key for key in own if key in e]
+    excess = sum(float(e[k] @ e[k]) - e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
+    return sum(float(np.sum((own[k].T @ e[k]) ** 2)) for k in keys) / max(excess, 1e-300)
+
+
 def orthonormal(eq: Equations, made: Sequence[Mapping[Key, Array]]) -> dict[Key, Array]:
     """Local columns of all kinds together, without the run's offset, orthonormal (n, q)."""
     out = {}

@@ -45,6 +45,8 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         a fixed frequency that runs of differing speed have in common, and its share; absent where there is none
     close.<run>.<C>.turns, .measured, .before, .after (n,)
         two motor turns of a run that turns, arcsec or N·m, each less its mean over the run
+    turn.load_deg, .before_arcsec, .after_arcsec (N,)
+        mean residual of θ̃ over whole motor turns of the output's turn: the motor's own orders average out
     run_at.<run> (2,)      motor speed in rpm and external torque in N·m
     interval.<C>.before, .after (2,)
         95 % of the RMS over all held-out runs, arcsec or N·m: quarters of runs drawn again with replacement
@@ -59,6 +61,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
             out[f"interval.{channel}.{name}"] = interval([e[key] for key in keys]) * UNITS[channel]
         for key in keys:
             out |= close_up(p, key, before[key], after[key])
+    out |= by_turn(p, before, after)
     for i in p.court.runs:
         run = p.eq.runs[i]
         speed = float(np.mean([q.omega_m.mean() for q in run.pieces])) * 60 / TURN
@@ -108,6 +111,21 @@ def crossed(r: Rest, one: str, other: str) -> Index:
     """Cells of two coordinates, −1 where either is unknown."""
     a, b = INDICES[one](r), INDICES[other](r)
     return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1).astype(np.int64)
+
+
+def by_turn(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
+    """`turn.*`; {} where there is no load angle."""
+    keys, bins = [k for k in before if k[1] == "A"], round(p.eq.runs[0].ratio)
+    shown = rest(p.eq, {k: before[k] for k in keys}, dict.fromkeys(keys, 1.0), "A")
+    if shown is None or not np.isfinite(shown.at["load_angle"]).all():
+        return {}
+    index = (np.mod(shown.at["load_angle"], TURN) / TURN * bins).astype(np.int64) % bins
+    count = np.bincount(index, minlength=bins)
+    out = {"turn.load_deg": (np.arange(bins) + 0.5) * 360 / bins}
+    for name, e in (("before", before), ("after", after)):
+        total = np.bincount(index, np.concatenate([e[k] for k in keys]), minlength=bins)
+        out[f"turn.{name}_arcsec"] = np.where(count >= FEWEST, total / np.maximum(count, 1), np.nan) * UNITS["A"]
+    return out
 
 
 def rms(e: Array, index: Index, bins: int) -> Array:

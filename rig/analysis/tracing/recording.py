@@ -70,12 +70,12 @@ def record(run: Run, start: float) -> Recording:
     work = dt * factor
     sigma = min(BANDWIDTH, TAMEST / work)
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
+    encoders = run.manifest.get("encoders") or {}
     tau_ext = float(run.conditions.get("tau_ext") or 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
         for lo, hi in _joined(t, dt, motion, steady)
     ]
-    encoders = run.manifest.get("encoders") or {}
     return Recording(
         name=run.name,
         procedure=run.procedure,
@@ -89,7 +89,7 @@ def record(run: Run, start: float) -> Recording:
         counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
         counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
         rate=1 / dt,
-        noise={n: rough(c) / np.sqrt(factor) for n, c in whole.items() if n in has},
+        noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
         notes=motion.notes if motion else (),
     )
 
@@ -182,6 +182,14 @@ def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: 
     c = {n: c.get(n, getattr(piece, n)) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, smooth)
     return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})
+
+
+def _noise(name: str, x: Array, encoders: Mapping[str, float]) -> float:
+    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it."""
+    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
+    if name == "theta_m" and counts > 0:
+        return min(rough(x), 2 * np.pi / counts / 12**0.5)
+    return rough(x)
 
 
 def rough(x: Array) -> float:

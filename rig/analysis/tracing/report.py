@@ -16,8 +16,10 @@ from rig.analysis.tracing.errors import errors
 from rig.analysis.tracing.judge import Worth, unseen
 from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
-from rig.analysis.tracing.result import Candidate, Floor, Found, Trace
+from rig.analysis.tracing.pictures import pictures
+from rig.analysis.tracing.result import Floor, Found, Trace
 from rig.analysis.tracing.search import Found as Searched
+from rig.analysis.tracing.suspects import candidates
 from rig.analysis.tracing.unknown import smooth_term
 from rig.analysis.tracing.verdict import decide
 from rig.model.effect import Array
@@ -58,12 +60,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
         lives_in=ruling.lives_in,
-        candidates=tuple(
-            Candidate(
-                r.term.name, r.evidence, f"alone it would take {r.evidence:.0f} nats; {r.size:.1f} × floor at most"
-            )
-            for r in found.ranking
-        ),
+        candidates=candidates(p, found.ranking, before),
         verdict=ruling.verdict,
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
@@ -73,7 +70,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         next_run=ruling.next_run,
         notes=p.campaign.notes,
         cannot=ruling.cannot,
-        curves=curves(p, before, final),
+        curves=curves(p, before, final) | pictures(p, before, final),
     )
 
 

@@ -40,3 +40,4 @@ LINE_SPEEDS: Final = 1.5  # highest over lowest speed among them: else it may be
 STEP: Final = 7.0  # times the usual difference of neighbouring windows: above all drift and wander
 STEP_AGAIN: Final = 4.0  # the same for steps of a size that is known by then
 STEP_ALIKE: Final = 0.05  # rad of the motor: two repeats that jump so near each other jump because of the angle
+OWN: Final = 0.5  # of the excess of the runs that jump, which their jumps must take to be called lost counts

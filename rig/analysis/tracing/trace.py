@@ -17,6 +17,7 @@ from rig.analysis.tracing.holdout import Split, split
 from rig.analysis.tracing.judge import Court, convicted, court
 from rig.analysis.tracing.local import (
     Vibration,
+    explained,
     find_steps,
     find_vibration,
     lost_counts,
@@ -29,6 +30,7 @@ from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.search import Found, search, still
+from rig.analysis.tracing.thresholds import OWN
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Parameter
 from rig.model.effects import CATALOGUE
@@ -102,6 +104,8 @@ def _local(eq: Equations, parts: Split) -> tuple[dict[Key, Array], dict[str, tup
     if lost_counts(eq, find_steps(eq, e), repeats(eq.runs, parts.fitted)):
         held = design(replace(eq, noisy={}), (), parts.held_out)
         everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y})
-        made.append(step_columns(eq, everywhere))
-        own["missed_counts"] = everywhere.parameters()
+        columns = step_columns(eq, everywhere)
+        if explained(eq, e, columns) > OWN:
+            made.append(columns)
+            own["missed_counts"] = everywhere.parameters()
     return orthonormal(eq, made), own, line

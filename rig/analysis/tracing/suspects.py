@@ -1,0 +1,75 @@
+"""Every suspect tried alone beside the baseline: what it leaves on held-out runs, and the reason in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.equations import Key
+from rig.analysis.tracing.judge import unseen
+from rig.analysis.tracing.model import extended, fit
+from rig.analysis.tracing.result import Candidate
+from rig.analysis.tracing.search import Scored
+from rig.analysis.tracing.thresholds import NAMED
+from rig.model.effect import Array
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+SENSORS: Final = {"A": "theta_l", "M": "tau_m", "L": "tau_l"}
+IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "L": "shaft torque"}
+TRIED: Final = 8  # suspects tried on held-out runs, best first: each costs about as much as the baseline's fit
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One suspect alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`."""
+
+    rms: dict[str, float]
+    share: float
+    channel: str
+
+
+def candidates(p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array]) -> tuple[Candidate, ...]:
+    """The first round's ranking, the leading ones tried on the held-out runs whose baseline residuals are `before`."""
+    out = []
+    for i, r in enumerate(ranking):
+        found = tried(p, r, before) if i < TRIED else None
+        rms = {} if found is None else {SENSORS[c]: value for c, value in found.rms.items()}
+        out.append(Candidate(r.term.name, r.evidence, reason(found), rms))
+    return tuple(out)
+
+
+def tried(p: Prepared, r: Scored, before: Mapping[Key, Array]) -> Tried:
+    """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs."""
+    s = fit(extended(p.baseline.design, r.term, p.split.fitted))
+    after = p.court.residuals(s, unseen(s, p.court))
+    rms: dict[str, float] = {}
+    shares: dict[str, float] = {}
+    changes: dict[str, float] = {}
+    for c in CHANNELS:
+        keys = [k for k in after if k[1] == c]
+        if not keys:
+            continue
+        rms[c] = float(np.sqrt(np.mean(np.concatenate([after[k] for k in keys]) ** 2)))
+        (first, n), (left, _) = p.court.excess(before, keys), p.court.excess(after, keys)
+        changes[c] = abs(first - left)
+        shares[c] = (first - left) / max(first - n, 0.02 * n)
+    channel = max(changes, key=lambda c: changes[c])
+    return Tried(rms, float(shares[channel]), channel)
+
+
+def reason(found: Tried | None) -> str:
+    """One sentence on what it does alone."""
+    if found is None:
+        return "not tried on held-out runs: others explain far more of the fitted ones"
+    where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
+    if found.share < 0:
+        return f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-found.share:.0%} of its excess"
+    if found.share < NAMED:
+        return f"alone it removes {found.share:.0%} {where}, where {NAMED:.0%} is asked for"
+    return f"alone it removes {min(found.share, 1.0):.0%} {where}"
