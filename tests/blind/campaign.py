@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from tests.blind import integrate
 from tests.blind.builder import ANGLE, Builder
 from tests.blind.kernel import (
+    COUPLING,
+    DISC,
     HEAT,
     LAG,
     SENSOR_SHAFT,
@@ -29,10 +33,7 @@ from tests.blind.sensors import MOTOR_COUNTS, Context, Noise, coloured, measure
 from tests.blind.taken import Taken
 
 TICK = integrate.TICK
-SLOW_INNER, FAST_INNER = (
-    5,
-    10,
-)  # steps of 200 µs and 100 µs per tick: 30 or more per period of the fastest mode (300 Hz: 17)
+SLOW_INNER, FAST_INNER = 5, 10  # steps per tick, 200 and 100 µs: 30 and more per period of the fastest mode (150 Hz)
 
 
 def triangle(n: int, amplitude: float, period: float) -> np.ndarray:
@@ -65,61 +66,60 @@ def at_rest(state: np.ndarray, plan: RunPlan, par: Par, p_home: float) -> None:
     state[W], state[WL] = speed, speed / par.N
     if not plan.locked:
         state[TL] = -p_home + plan.tau_ext / par.K
-    if par.extra in (1, 2, SENSOR_SHAFT):
-        state[X] = state[TL] if par.extra != 1 else 0.0
-        state[VX] = state[WL] if par.extra != 1 else state[W]
+    if par.extra == COUPLING:
+        state[VX] = state[W]
+    if par.extra in (DISC, SENSOR_SHAFT):
+        state[X], state[VX] = state[TL], state[WL]
     state[TORQUE], state[T_SLOW] = -plan.tau_ext, abs(plan.tau_ext)
 
 
-def simulate_run(
-    plan: RunPlan,
-    builder: Builder,
-    par: Par,
-    tab: Tab,
-    data: np.ndarray,
-    noise: Noise,
-    state: np.ndarray,
-    play: np.ndarray,
-    seeds: list[int],
-) -> Taken:
-    """One run; `state` and `play` are what the rig remembers and are changed."""
-    n = round((plan.lead_s + plan.duration_s) / TICK) + 1
-    rng = np.random.default_rng([*seeds, 1])
-    chance = np.random.default_rng([*seeds, 2])
-    at_rest(state, plan, par, float(data[tab.p]))
+@dataclass
+class Machine:
+    """The rig while a campaign is taken: its plant, and what it remembers from run to run (`state`, `play`)."""
+
+    builder: Builder
+    noise: Noise
+    tab: Tab
+    data: np.ndarray
+    state: np.ndarray
+    play: np.ndarray
+
+
+def assembled(builder: Builder, noise: Noise) -> Machine:
+    tab, data = builder.tab()
+    return Machine(builder, noise, tab, data, np.zeros(STATE_SIZE), np.zeros(max(tab.plays, 1)))
+
+
+def disturbances(machine: Machine, plan: RunPlan, n: int, rng: np.random.Generator) -> tuple[np.ndarray, ...]:
+    """Per tick: torque on the load, and friction noise of motor and load, N·m."""
     t = plan.start_s + np.arange(n) * TICK
-    on_load = np.full(n, plan.tau_ext) + sum((wave(t) for wave in builder.load_waves), np.zeros(n))
-    rub_m = noise.friction_m * coloured(rng, n, TICK, 5.0)
-    rub_l = noise.friction_l * coloured(rng, n, TICK, 5.0)
+    on_load = np.full(n, plan.tau_ext) + sum((wave(t) for wave in machine.builder.load_waves), np.zeros(n))
+    rub_m = machine.noise.friction_m * coloured(rng, n, TICK, 5.0)
+    rub_l = machine.noise.friction_l * coloured(rng, n, TICK, 5.0)
+    return on_load, rub_m, rub_l
+
+
+def simulate_run(plan: RunPlan, machine: Machine, seeds: list[int]) -> Taken:
+    """One run, from before its first row; the machine's memory is changed."""
+    n = round((plan.lead_s + plan.duration_s) / TICK) + 1
+    noise_rng, chance, sensor_rng = (np.random.default_rng([*seeds, k]) for k in (1, 2, 3))
+    builder, par = machine.builder, machine.builder.par(plan.locked)
+    at_rest(machine.state, plan, par, float(machine.data[machine.tab.p]))
     steps = builder.sensors.motor_steps
     offset = np.zeros(n) if steps is None else steps(plan.name, n, chance)
-    out = np.empty((n, 6))
     inner = FAST_INNER if plan.procedure == "constant_torque" else SLOW_INNER
     guess = builder.rig.running_torque(plan.speed_rpm * 2 * np.pi / 60)
+    out = np.empty((n, 4))
     integrate.run(
-        state,
-        par,
-        tab,
-        data,
-        drive(plan),
-        reference(plan, n),
-        on_load,
-        rub_m,
-        rub_l,
-        offset,
-        plan.start_s,
-        guess,
-        inner,
-        out,
-        play,
-    )
+        machine.state, par, machine.tab, machine.data, drive(plan), reference(plan, n),
+        *disturbances(machine, plan, n, noise_rng), offset, plan.start_s, guess, inner, out, machine.play,
+    )  # fmt: skip
     first = round(plan.lead_s / TICK)
     raw = {"t": np.arange(n - first) * TICK}
     raw["theta_m"] = (out[:, 0] + read_error(builder, out[:, 0]) + offset)[first:]
     raw |= {"theta_l": out[first:, 1], "tau_l": out[first:, 2], "tau_m": out[first:, 3]}
     where = Context(plan.name, plan.start_s + plan.lead_s, chance)
-    columns = measure(raw, plan.dt, builder.sensors, noise, where, np.random.default_rng([*seeds, 3]))
-    return Taken(plan, columns)
+    return Taken(plan, measure(raw, plan.dt, builder.sensors, machine.noise, where, sensor_rng))
 
 
 def read_error(builder: Builder, angle: np.ndarray) -> np.ndarray:
@@ -132,21 +132,20 @@ def read_error(builder: Builder, angle: np.ndarray) -> np.ndarray:
 
 def simulate(builder: Builder, plan: Plan, noise: Noise, seed: int) -> list[Taken]:
     """All runs of a campaign in the order they are taken; the same arguments give the same bytes."""
-    tab, data = builder.tab()
-    state, play = np.zeros(STATE_SIZE), np.zeros(max(tab.plays, 1))
+    machine = assembled(builder, noise)
     taken, clock = [], 0.0
     for number, run in enumerate(plan.runs):
-        par = builder.par(run.locked)
-        fade_memories(state, par, builder, run.start_s - clock)
-        taken.append(simulate_run(run, builder, par, tab, data, noise, state, play, [seed, number]))
+        fade_memories(machine, run.start_s - clock)
+        taken.append(simulate_run(run, machine, [seed, number]))
         clock = run.start_s + run.lead_s + run.duration_s
     return taken
 
 
-def fade_memories(state: np.ndarray, par: Par, builder: Builder, pause_s: float) -> None:
+def fade_memories(machine: Machine, pause_s: float) -> None:
     """What time does to heat and creep while the rig is unloaded between two runs; presliding is taken up by homing."""
-    state[HEAT] *= np.exp(-pause_s / par.heat_tau)
-    for i, tau in enumerate(builder.tables.get("creep_tau", ())):
+    state = machine.state
+    state[HEAT] *= np.exp(-pause_s / machine.builder.par(False).heat_tau)
+    for i, tau in enumerate(machine.builder.tables.get("creep_tau", ())):
         state[Z_CREEP + i] *= np.exp(-pause_s / tau)
     state[Z_FRIC : Z_FRIC + 4] = 0.0
     state[LAG] = 0.0

@@ -193,7 +193,7 @@ def command(s, c, drive, tab, data, k, ref, offset):
 
 @compiled
 def run(s, par, tab, data, drive, ref, on_load, noise_m, noise_l, offset, t_0, guess, inner, out, play):
-    """Simulate len(ref) ticks; `out` (n, 6) gets theta_m, theta_l, tau_l, tau_m, heat factor and extra angle per tick.
+    """Simulate len(ref) ticks; `out` (n, 4) gets theta_m, theta_l, tau_l and tau_m per tick.
 
     Every array of length n is given per tick; s and play are changed in place.
     """
@@ -206,8 +206,10 @@ def run(s, par, tab, data, drive, ref, on_load, noise_m, noise_l, offset, t_0, g
         tau = command(s, c, drive, tab, data, k, ref[k], offset[k])
         scale_c, scale_v = warmth(s, par, t)
         age = t / par.aging_tau
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = s[TH], s[TL], s[TORQUE], tau
-        out[k, 4], out[k, 5] = scale_c, s[X]
+        out[k, 0], out[k, 1], out[k, 3] = s[TH], s[TL], tau
+        half_a_step_ago = s[TORQUE]
         true = delivered(tau, play, par, tab, data)
-        for _ in range(inner):
+        for i in range(inner):
             step(s, par, tab, data, true, on_load[k], noise_m[k], noise_l[k], scale_c, scale_v, age, dt)
+            if i == 0:  # the step knows the torque at its middle: the tick lies between two of them
+                out[k, 2] = 0.5 * (half_a_step_ago + s[TORQUE])

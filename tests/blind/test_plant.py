@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.blind import integrate
+from tests.blind import campaign, integrate, plans
 from tests.blind import rig as rigs
 from tests.blind.builder import Builder
 from tests.blind.forms import form_of
 from tests.blind.kernel import COUPLING, SENSOR_SHAFT, STATE_SIZE, TH, TL, VX, W_DISS, W_IN, WL, W, X
+from tests.blind.sensors import Columns, Context, draw_noise
 from tests.blind.strength import shape_rng
 
 FREE = {"T_c": 0.0, "T_l": 0.0}
@@ -128,3 +129,24 @@ def test_the_books_balance_with_an_extra_body(form: str) -> None:
     stored = [kinetic(s, builder) + spring_energy(s, builder) for s in (before, after)]
     assert after[W_DISS] > 0.5 * stored[0]
     assert stored[1] == pytest.approx(stored[0] - after[W_DISS], abs=1e-3 * stored[0])
+
+
+@pytest.mark.slow
+def test_the_torque_is_recorded_at_the_instant_of_the_angles() -> None:
+    """With the torque half a step old, the damping found from the record would be off by K times the delay."""
+    on, captured = rig(), {}
+    quiet = replace(draw_noise(np.random.default_rng(1)), friction_m=0.0, friction_l=0.0)
+    machine = campaign.assembled(Builder(on), quiet)
+
+    def capture(columns: Columns, where: Context) -> None:
+        captured.update({name: column.copy() for name, column in columns.items()})
+
+    machine.builder.sensors.changes.append(capture)
+    campaign.simulate_run(replace(plans.steady(300, "1"), duration_s=4.0), machine, [1, 1])
+    angle, order = captured["theta_m"], np.arange(1, 16)
+    p = np.cos(np.outer(angle, order)) @ np.array(on.ke_cos) + np.sin(np.outer(angle, order)) @ np.array(on.ke_sin)
+    phi = captured["theta_l"] - angle / on.N + p
+    columns = np.column_stack([-phi, -np.gradient(phi, 1e-3)])
+    K, B_sp = np.linalg.lstsq(columns[5:-5], captured["tau_l"][5:-5], rcond=None)[0]
+    assert pytest.approx(on.K, rel=1e-3) == K
+    assert abs(B_sp - on.B_sp) / on.K < 1e-5
