@@ -43,7 +43,8 @@ def wound(
             slip, slipping = math.copysign(1.0, held), slipping + k * held
         else:
             offset, slope = offset - k * x, slope + k
-            low, high = max(low, x - s - held), min(high, x + s - held)
+            # s + held first: nothing is left of it at the end of an element, so that one at rest there is not outside
+            low, high = max(low, x - (s + held)), min(high, x + (s - held))
         place += 2
     return Elements(offset, slope, low, high, slip, slipping)
 
