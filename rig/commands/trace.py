@@ -30,18 +30,23 @@ def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
     from rig.analysis.tracing.record import write_trace
     from rig.analysis.tracing.trace import trace
+    from rig.report.trace.campaign import provenance
+    from rig.report.trace.page import write
+    from rig.runfile.manifest import utc_now
+    from rig.software import software
 
     found = trace(args.campaign, args.hold_out)
     target = args.out or args.campaign
     try:
         target.mkdir(parents=True, exist_ok=True)
-        written = write_trace(target / "trace.json", found)
+        written = [write_trace(target / "trace.json", found)]
         if args.json:
             write_trace(args.json, found)
+        written.append(write(target, found, provenance(args.campaign, software(), utc_now())))
     except OSError as error:
         raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
     tell(found)
-    print(f"written {written}")
+    print(f"written {written[0]}\nreport {written[1]}")
     return int(exit_of(found))
 
 

@@ -60,7 +60,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
         lives_in=ruling.lives_in,
-        candidates=candidates(p, found.ranking, before),
+        candidates=candidates(p, found.ranking, before, ruling.verdict.effects),
         verdict=ruling.verdict,
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares

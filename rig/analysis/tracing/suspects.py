@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 SENSORS: Final = {"A": "theta_l", "M": "tau_m", "L": "tau_l"}
 IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "L": "shaft torque"}
-TRIED: Final = 8  # suspects tried on held-out runs, best first: each costs about as much as the baseline's fit
 
 
 @dataclass(frozen=True)
@@ -34,13 +33,15 @@ class Tried:
     channel: str
 
 
-def candidates(p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array]) -> tuple[Candidate, ...]:
-    """The first round's ranking, the leading ones tried on the held-out runs whose baseline residuals are `before`."""
+def candidates(
+    p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array], named: Sequence[str]
+) -> tuple[Candidate, ...]:
+    """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`."""
     out = []
-    for i, r in enumerate(ranking):
-        found = tried(p, r, before) if i < TRIED else None
-        rms = {} if found is None else {SENSORS[c]: value for c, value in found.rms.items()}
-        out.append(Candidate(r.term.name, r.evidence, reason(found), rms))
+    for r in ranking:
+        found = tried(p, r, before)
+        rms = {SENSORS[c]: value for c, value in found.rms.items()}
+        out.append(Candidate(r.term.name, r.evidence, reason(found, r.term.name, named), rms))
     return tuple(out)
 
 
@@ -63,13 +64,14 @@ def tried(p: Prepared, r: Scored, before: Mapping[Key, Array]) -> Tried:
     return Tried(rms, float(shares[channel]), channel)
 
 
-def reason(found: Tried | None) -> str:
-    """One sentence on what it does alone."""
-    if found is None:
-        return "not tried on held-out runs: others explain far more of the fitted ones"
+def reason(found: Tried, name: str, named: Sequence[str]) -> str:
+    """One sentence on what it does alone, and beside the effects that were named."""
     where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
     if found.share < 0:
-        return f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-found.share:.0%} of its excess"
+        return (
+            f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-100 * found.share:.0f} % of its excess"
+        )
     if found.share < NAMED:
-        return f"alone it removes {found.share:.0%} {where}, where {NAMED:.0%} is asked for"
-    return f"alone it removes {min(found.share, 1.0):.0%} {where}"
+        return f"alone it removes {100 * found.share:.0f} % {where}, {100 * NAMED:.0f} % would be asked for"
+    needless = "" if name in named or not named else f"; beside {' and '.join(named)} it is not needed"
+    return f"alone it removes {100 * min(found.share, 1.0):.0f} % {where}{needless.replace('_', ' ')}"

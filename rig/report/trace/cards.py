@@ -8,8 +8,9 @@ import numpy as np
 
 from rig.analysis.tracing.result import Status, Trace
 from rig.report.figures.arrays import line
-from rig.report.numbers import estimate, join, plain
+from rig.report.numbers import join
 from rig.report.trace.channels import CHANNELS, Channel
+from rig.report.trace.sizes import three
 
 
 class Card(NamedTuple):
@@ -19,16 +20,17 @@ class Card(NamedTuple):
     before: str
     after: str  # "" where nothing was added
     unit: str
+    spread: str  # 95 % intervals of both
     ratio: str
     how: str
     main: bool  # where the most was left
 
 
 def cards(trace: Trace) -> list[Card]:
-    """A card for each channel that was measured, the one with most left first."""
+    """A card for each channel that was measured; `main` is the one with most left."""
     found = [c for c in CHANNELS if c.sensor in trace.ratios_before]
-    found.sort(key=lambda c: -trace.ratios_before[c.sensor])
-    return [_card(trace, c, i == 0) for i, c in enumerate(found)]
+    most = max(found, key=lambda c: trace.ratios_before[c.sensor], default=None)
+    return [_card(trace, c, c is most) for c in found]
 
 
 def _card(trace: Trace, channel: Channel, main: bool) -> Card:
@@ -36,25 +38,26 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
     before, after = channel.error(trace.before.pooled), channel.error(trace.after.pooled)
     floor = channel.floor(trace.before.pooled)
     ratios = trace.ratios_before[channel.sensor], trace.ratios_after.get(channel.sensor)
-    ratio = f"{plain(ratios[0], 3)} × the floor"
+    ratio = f"{three(ratios[0])} × the floor"
     if not alone and ratios[1] is not None:
-        ratio = f"{plain(ratios[0], 3)} → {plain(ratios[1], 3)} × the floor"
+        ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
     how = f"RMS of measured less model over {len(trace.held_out)} held-out runs"
-    how += f"; floor {join(plain(floor, 3), channel.unit)}, what repeats differ by" if floor is not None else ""
+    how += f"; floor {join(three(floor), channel.unit)}" if floor is not None else ""
+    spread = [_interval(trace, channel, which) for which in (("before",) if alone else ("before", "after"))]
     return Card(
-        channel.name,
-        _said(trace, channel, "before", before),
-        "" if alone else _said(trace, channel, "after", after),
+        channel.name if channel.letter == "A" else f"{channel.name} error",
+        three(before),
+        "" if alone else three(after),
         channel.unit,
+        " → ".join(spread) if all(spread) else "",
         ratio,
-        how + ".",
+        f"{how}.",
         main,
     )
 
 
-def _said(trace: Trace, channel: Channel, which: str, value: float | None) -> str:
-    if value is None:
-        return "–"
+def _interval(trace: Trace, channel: Channel, which: str) -> str:
     ends = line(trace.curves, f"interval.{channel.letter}.{which}", 2)
-    low, high = (value, value) if ends is None or not np.isfinite(ends).all() else map(float, ends)
-    return estimate(value, (low, high))
+    if ends is None or not np.isfinite(ends).all():
+        return ""
+    return " to ".join(three(float(v) * channel.scale) for v in ends)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from rig.report.trace.campaign import Provenance
 from rig.report.trace.cards import cards
 from rig.report.trace.channels import CHANNELS
 from rig.report.trace.figures import BEFORE_AFTER, WHERE
+from rig.report.trace.sizes import said
 from rig.report.words import Origin
 from rig.runfile.manifest import write_atomic
 
@@ -40,6 +40,7 @@ def render(trace: Trace, source: Provenance) -> str:
     curves = drawn(trace)
     lines, silent = tables.suspects(trace)
     heads, each = tables.each_run(trace)
+    physical, orders = tables.moved(trace)
     view: dict[str, Any] = {
         "trace": trace,
         "origin": origin,
@@ -50,16 +51,18 @@ def render(trace: Trace, source: Provenance) -> str:
         "sizes": words.sizes(trace.effects),
         "cards": cards(trace),
         "alone": trace.verdict.status is Status.NOTHING,
-        "physical": [(*words.meaning(p), tables.said(p)) for p in tables.physical(trace.baseline)],
-        "orders": [(*words.meaning(p), tables.said(p)) for p in tables.orders(trace.baseline)],
+        "physical": [(*words.meaning(p), said(p)) for p in tables.physical(trace.baseline)],
+        "orders": [(*words.meaning(p), said(p)) for p in tables.orders(trace.baseline)],
         "together": [words.listed([words.PARAMETERS.get(n, (n,))[0] for n in g]) for g in trace.cannot_be_told_apart],
         "floors": tables.floors(trace),
         "lives": [words.place(c) for c in trace.lives_in],
         "suspects": lines,
         "silent": words.listed(silent),
         "added": words.added(trace),
+        "own": words.of_each_run(trace),
         "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
-        "moved": tables.moved(trace),
+        "moved": physical,
+        "moved_orders": orders,
         "heads": heads,
         "each": each,
         "where": _plots(WHERE, curves, origin.mark),
@@ -93,13 +96,8 @@ def drawn(trace: Trace) -> dict[str, Array]:
 def _origin(trace: Trace, source: Provenance) -> Origin:
     """Of the campaign: simulated when any run is, else what its manifests agree on."""
     found = run_words.origin("sim" if trace.simulated else source.backend)
-    return replace_run(found, len(source.manifests) or len(trace.fitted) + len(trace.held_out))
-
-
-def replace_run(found: Origin, runs: int) -> Origin:
-    """The same origin, said of a campaign."""
-    word = found.run.removesuffix(" run") if found.run.endswith(" run") else "Runs of unknown origin,"
-    return found._replace(run=f"Trace of {runs} runs, {word.lower().rstrip(',')}")
+    runs = len(source.manifests) or len(trace.fitted) + len(trace.held_out)
+    return found._replace(run=f"Trace of {runs} runs, {found.word.lower()}")
 
 
 def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any]]:
@@ -112,7 +110,7 @@ def _effect(name: str, parameters: Sequence[Any], share: float) -> dict[str, Any
         "name": words.named(name),
         "in_short": words.in_short(name),
         "share": f"{100 * min(max(share, 0.0), 1.0):.0f} %",
-        "parameters": [(p.name, tables.said(p)) for p in parameters],
+        "parameters": [(p.name, said(p)) for p in parameters],
     }
 
 
@@ -133,6 +131,3 @@ def _value(key: str, value: float | bool | str) -> str:
     from rig.report.rows import measured
 
     return measured(key, value).value
-
-
-__all__ = ["render", "replace", "write"]

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rig.analysis.tracing.local import IN_SHORT
 from rig.analysis.tracing.result import Found, Status, Trace
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE
-from rig.report.numbers import estimate, plain
+from rig.report.numbers import plain
+from rig.report.trace.sizes import said
 from rig.report.words import Ruling, humanise
 
 RULINGS = {
@@ -18,14 +20,14 @@ RULINGS = {
 }
 
 MEANING = {
-    Status.EXPLAINED: "An effect is named when it removes at least 60 % of the excess over the floor in runs the fit did "
-    "not see, and no other effect of the library does as well.",
+    Status.EXPLAINED: "An effect is named when it removes at least 60 % of the excess over the floor in runs the fit "
+    "did not see, and no other effect of the library does as well.",
     Status.NOTHING: "On runs the fit did not see the paper’s model is as good as a repeat of the run. That bounds what "
     "these runs can show; it does not say that the gear has no other effect at other speeds, loads or temperatures.",
     Status.AMBIGUOUS: "More than one effect explains these runs equally well. Naming one would be a guess: its "
     "parameters below hold only if it is the right one.",
-    Status.UNKNOWN: "What is left is real: it repeats or drifts beyond what repeats of a run differ by. It is described "
-    "by where it lives and is given no name. What was added to the model is a curve without physics.",
+    Status.UNKNOWN: "What is left is real: it is more than repeats of a run differ by. It is described by where it "
+    "lives and is given no name. What was added to the model is a curve without physics.",
 }
 
 PARAMETERS = {  # of the baseline: symbol, what it is
@@ -33,11 +35,14 @@ PARAMETERS = {  # of the baseline: symbol, what it is
     "B_sp": ("B_sp", "damping of the flexspline"),
     "J_m": ("J_m", "inertia, motor side"),
     "B_m": ("B_m", "viscous friction, motor side"),
+    "B_ml": ("B_ml", "viscous friction of the mesh"),
     "tau_c": ("τ_c", "constant friction, motor side"),
     "J_l": ("J_l", "inertia, load side"),
     "B_l": ("B_l", "viscous friction, load side"),
     "tau_cl": ("τ_cl", "constant friction, load side"),
 }
+
+OWN = {"external_vibration": "phase and amplitude of the vibration", "missed_counts": "instants of the steps"}
 
 ORDER = "theta_p_order_"
 
@@ -55,13 +60,13 @@ PLACES = {
 
 
 def named(effect: str) -> str:
-    """Name of an effect for people; humanised where it is in no catalogue."""
+    """Name of an effect for people."""
     return humanise(effect)
 
 
 def in_short(effect: str) -> str:
-    """One line on an effect; "" where it is in no catalogue."""
-    return CATALOGUE[effect].in_short if effect in CATALOGUE else ""
+    """One line on an effect; "" where nothing is known of it."""
+    return CATALOGUE[effect].in_short if effect in CATALOGUE else IN_SHORT.get(effect, "")
 
 
 def listed(names: Sequence[str]) -> str:
@@ -75,9 +80,9 @@ def sizes(found: Sequence[Found]) -> list[str]:
     """One sentence for each effect added: its first parameters with their intervals."""
     out = []
     for effect in found:
-        said = [f"{p.name} = {estimate(p.value, p.ci95, p.unit)}" for p in effect.parameters[:3]]
-        if said:
-            out.append(f"{named(effect.effect)}: {', '.join(said)}.")
+        parts = [f"{p.name} = {said(p)}" for p in effect.parameters[:3]]
+        if parts:
+            out.append(f"{named(effect.effect)}: {', '.join(parts)}.")
     return out
 
 
@@ -100,11 +105,18 @@ def added(trace: Trace) -> str:
             return "Nothing was added. The parameters are those of the baseline."
         case Status.UNKNOWN:
             beside = f" beside {names}" if names else ""
-            return f"A curve without a name{beside}, in {place(v.coordinate)}{_pitch(trace)}; no physics is claimed for it."
+            where = f"{place(v.coordinate)}{_pitch(trace)}"
+            return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
         case Status.AMBIGUOUS:
             rivals = listed([named(r).lower() for r in v.rivals])
             return f"For the errors below {names or 'the first candidate'} was added; {rivals} would do as well."
     return f"{humanise(names)}. Baseline and effect were then fitted again together."
+
+
+def of_each_run(trace: Trace) -> str:
+    """What was taken from a held-out run itself, "" where nothing was: its error is then not wholly unseen."""
+    own = [OWN[e.effect] for e in trace.effects if e.effect in OWN]
+    return f"Each run, held out or not, has its own {listed(own)}, read from that run itself." if own else ""
 
 
 def _pitch(trace: Trace) -> str:
@@ -117,5 +129,5 @@ def meaning(p: Parameter) -> tuple[str, str]:
     """Symbol and meaning of a parameter of the baseline."""
     if p.name.startswith(ORDER):
         n = p.name.removeprefix(ORDER)
-        return f"C_{n}", f"kinematic error, order {n}"
+        return f"Order {n}", ""
     return PARAMETERS.get(p.name, (p.name, ""))

@@ -12,18 +12,21 @@ from rig.report.numbers import plain
 from rig.report.palette import LIGHT
 from rig.report.trace.figures.style import AFTER, BEFORE, handle
 
-PARTS = (("angle", "Mean residual against motor angle"), ("load_angle", "Mean residual against load angle"))
+PARTS = (  # angle and residual of each panel
+    ("angle.deg", "angle", "Mean residual against motor angle"),
+    ("turn.load_deg", "turn", "Mean residual of whole motor turns against load angle"),
+)
 
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
-    """Uses angle.deg, .before_arcsec, .after_arcsec and load_angle.* alike."""
-    parts = [p for p in PARTS if all(line(curves, f"{p[0]}.{n}") is not None for n in ("deg", "before_arcsec"))]
+    """Uses angle.deg and turn.load_deg, each with .before_arcsec and .after_arcsec."""
+    parts = [p for p in PARTS if line(curves, p[0]) is not None and line(curves, f"{p[1]}.before_arcsec") is not None]
     if not parts:
         return None
     figure, panels = sheet(frame, [frame.pick(140, 120)] * len(parts))
-    for panel, (stem, name) in zip(panels, parts, strict=True):
+    for panel, (across, stem, name) in zip(panels, parts, strict=True):
         panel.axhline(0, color=LIGHT["axis"], lw=1)
-        x = line(curves, f"{stem}.deg")
+        x = line(curves, across)
         pair = [line(curves, f"{stem}.{n}_arcsec") for n in ("before", "after")]
         for values, style in zip(pair, (BEFORE, AFTER), strict=True):
             if x is not None and values is not None and len(values) == len(x):
@@ -44,7 +47,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
 def say(curves: Curves) -> str:
     """The figure in words."""
     said = []
-    for stem, name in PARTS:
+    for _, stem, name in PARTS:
         pair = [line(curves, f"{stem}.{n}_arcsec") for n in ("before", "after")]
         sizes = [plain(float(np.nanmax(v) - np.nanmin(v)), 2) for v in pair if v is not None]
         if len(sizes) == 2:
@@ -55,8 +58,9 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "residual-angle",
     "Residual against angle",
-    "Mean over all held-out runs in bins of 1°. Slow runs under no load turn only a part of the output round: then not "
-    "every load angle was there in every run. What changes sign between runs averages out here and shows above.",
+    "Mean over all held-out runs. Against the load angle each point is one whole motor turn, so that what the motor "
+    "angle does averages out. Slow runs turn the output only part of the way: not every load angle was there in every"
+    " run. What changes sign between runs averages out here and shows above.",
     draw,
     say,
 )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from rig.report.figures.arrays import axis, line, span
-from rig.report.figures.canvas import Curves, Drawing, Frame, foot, key, sheet, title
+from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
 from rig.report.trace.channels import CHANNELS, Channel
@@ -20,10 +23,11 @@ THREE = ("slow", "fast", "loaded")
 
 def chosen(curves: Curves, channel: Channel) -> dict[str, str]:
     """Held-out runs by what they stand for: slowest and fastest of the least loaded, most loaded; each once."""
+    names = (stem.removeprefix("run_at.") for stem in curves if stem.startswith("run_at."))
     at = {
-        name: np.asarray(values, dtype=np.float64)
-        for key_, values in curves.items()
-        if key_.startswith("run_at.") and f"close.{(name := key_[7:])}.{channel.letter}.turns" in curves
+        name: np.asarray(curves[f"run_at.{name}"], dtype=np.float64)
+        for name in names
+        if axis(curves, f"close.{name}.{channel.letter}.turns") is not None
     }
     if not at:
         return {}
@@ -44,31 +48,42 @@ def draw(curves: Curves, frame: Frame, channel: Channel) -> Figure | None:
     runs = chosen(curves, channel)
     if not runs:
         return None
-    figure, panels = sheet(frame, [frame.pick(150, 130)] * len(runs), keys=1)
-    for panel, (kind, run) in zip(panels, runs.items(), strict=True):
-        stem = f"close.{run}.{channel.letter}"
-        turns = axis(curves, f"{stem}.turns")
-        values = [line(curves, f"{stem}.{n}") for n in ("measured", "before", "after")]
-        panel.axhline(0, color=LIGHT["axis"], lw=1)
-        for y, style in zip(values, (MEASURED, BEFORE, AFTER), strict=True):
-            if turns is not None and y is not None and len(y) == len(turns):
-                panel.plot(turns, y, **style)
-        ends = span(*values)
-        if ends is not None:
-            room = 0.1 * (ends[1] - ends[0] or 1.0)
-            panel.set_ylim(ends[0] - room, ends[1] + room)
-        panel.set_xlim(0, 2)
-        panel.xaxis.set_major_locator(MultipleLocator(frame.pick(0.25, 0.5)))
-        title(
-            panel,
-            f"{kind.capitalize()}: {run}, {_condition(curves, run, frame)}",
-            channel.unit,
-            keys=panel is panels[0],
-        )
+    figure, panels = sheet(frame, [frame.pick(130, 115), frame.pick(62, 58)] * len(runs), keys=1)
+    for i, (kind, run) in enumerate(runs.items()):
+        above, below = panels[2 * i : 2 * i + 2]
+        turns, measured, before, after = _columns(curves, channel, run)
+        _trace(above, turns, ((measured, MEASURED), (before, BEFORE), (after, AFTER)))
+        left = ((measured - before, {**BEFORE, "ls": "-"}), (measured - after, AFTER))
+        _trace(below, turns, left)
+        below.yaxis.set_major_locator(MaxNLocator(3))
+        for panel in (above, below):
+            panel.set_xlim(0, 2)
+            panel.xaxis.set_major_locator(MultipleLocator(frame.pick(0.25, 0.5)))
+        title(above, f"{kind.capitalize()}: {run}, {_condition(curves, run, frame)}", channel.unit, keys=int(i == 0))
+        title(below, "Measured less model", channel.unit)
     names = ("measured", "model before", "model after")
     key(panels[0], [handle(s, n) for s, n in zip((MEASURED, BEFORE, AFTER), names, strict=True)], columns=3)
     foot(panels[-1], "Motor turns")
     return figure
+
+
+def _trace(panel: Axes, turns: Array, lines: Sequence[tuple[Array, dict[str, Any]]]) -> None:
+    panel.axhline(0, color=LIGHT["axis"], lw=1)
+    for y, style in lines:
+        panel.plot(turns, y, **style)
+    ends = span(*(y for y, _ in lines))
+    if ends is not None:
+        room = 0.1 * (ends[1] - ends[0] or 1.0)
+        panel.set_ylim(ends[0] - room, ends[1] + room)
+
+
+def _columns(curves: Curves, channel: Channel, run: str) -> tuple[Array, Array, Array, Array]:
+    """Motor turns, measured, model before, model after, in the unit shown; NaN where a column is not there."""
+    stem = f"close.{run}.{channel.letter}"
+    turns = np.asarray(curves[f"{stem}.turns"], dtype=np.float64)
+    found = (line(curves, f"{stem}.{n}", turns.size) for n in ("measured", "before", "after"))
+    measured, before, after = (np.full(turns.size, np.nan) if y is None else y * channel.scale for y in found)
+    return turns, measured, before, after
 
 
 def _condition(curves: Curves, run: str, frame: Frame) -> str:
@@ -82,12 +97,9 @@ def say(curves: Curves, channel: Channel) -> str:
     """The figure in words."""
     said = []
     for kind, run in chosen(curves, channel).items():
-        stem = f"close.{run}.{channel.letter}"
-        measured = line(curves, f"{stem}.measured")
-        models = [line(curves, f"{stem}.{n}") for n in ("before", "after")]
-        if measured is not None and all(m is not None for m in models):
-            left = [plain(float(np.sqrt(np.nanmean((measured - m) ** 2))), 2) for m in models if m is not None]
-            said.append(f"{kind} run {run}: RMS {left[0]} {channel.unit} off before, {left[1]} after")
+        _, measured, *models = _columns(curves, channel, run)
+        left = [plain(float(np.sqrt(np.mean((measured - m) ** 2))), 2) for m in models]
+        said.append(f"{kind} run {run}: RMS {left[0]} {channel.unit} off before, {left[1]} after")
     return f"{channel.name} over two motor turns, measured and modelled. " + "; ".join(said) + "."
 
 

@@ -90,8 +90,8 @@ DRAWING = Drawing(
     "each-run",
     "Every held-out run, before and after",
     "RMS error of the model on runs that neither the fit, nor the choice of the effect, nor the floor has seen; "
-    "logarithmic. The bar marks the floor: what two runs of the same condition differ by, divided by √2. An error at its "
-    "floor has nothing left to explain. The same numbers stand in the table below.",
+    "logarithmic. The bar marks the floor: what two runs of the same condition differ by, divided by √2. An error at "
+    "its floor has nothing left to explain. The same numbers stand in the table below.",
     draw,
     say,
     full=True,

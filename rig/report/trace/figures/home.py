@@ -90,10 +90,10 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "home",
     "What predicts it",
-    "Share of the excess over the floor (the baseline’s, on held-out runs) that the mean over bins of a coordinate, or of "
-    "two together, predicts in rows it was not made from. A pair that predicts much where neither does alone says that "
-    "one changes the size of the other’s effect. Channels at their floor are left out; for the shaft torque its own "
-    "reading cannot stand as a coordinate.",
+    "Share of the excess over the floor (the baseline’s, on held-out runs) that the mean over bins of a coordinate, "
+    "or of two together, predicts in rows it was not made from. A pair that predicts much where neither does alone "
+    "says that one changes the size of the other’s effect. Channels at their floor are left out; for the shaft torque"
+    " its own reading cannot stand as a coordinate.",
     draw,
     say,
     full=True,

@@ -40,7 +40,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     shown = runs(curves)
     if not shown:
         return None
-    figure, panels = sheet(frame, [frame.pick(230, 200), frame.pick(130, 120)] * len(shown), keys=1)
+    figure, panels = sheet(frame, [frame.pick(170, 150), frame.pick(180, 160)] * len(shown), keys=1)
     for i, stem in enumerate(shown):
         found = _columns(curves, stem)
         if found is None:
@@ -82,8 +82,8 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "loop",
     "Wind-up against torque, output locked",
-    "Held-out runs with the output locked. A straight line is a constant stiffness; a bend, a step at zero or a loop in "
-    "what is left is one that the model lacks. Wind-up is θ̃ less its mean over the run.",
+    "Held-out runs with the output locked. A straight line is a constant stiffness; a bend, a step at zero or a loop "
+    "in what is left is one that the model lacks. Wind-up is θ̃ less its mean over the run.",
     draw,
     say,
 )

@@ -55,9 +55,9 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "residual-orders",
     "Orders of the residual",
-    "All held-out runs in one piece, amplitude of what the model leaves in θ̃. Whole orders repeat with every motor turn, "
-    "orders near 2.04, 4.08 ride on the flexspline, the first order of the output is 1/N at the left edge. Lines that "
-    "change size from run to run show here with their average.",
+    "All held-out runs in one piece, amplitude of what the model leaves in θ̃. Whole orders repeat with every motor "
+    "turn, orders near 2.04, 4.08 ride on the flexspline, the first order of the output is 1/N at the left edge. "
+    "Lines that change size from run to run show here with their average.",
     draw,
     say,
 )

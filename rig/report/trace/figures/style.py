@@ -10,9 +10,9 @@ from matplotlib.lines import Line2D
 
 from rig.report.palette import LIGHT
 
-BEFORE: dict[str, Any] = {"color": LIGHT["reverse"], "lw": 1.5, "ls": (0, (5, 2))}
-AFTER: dict[str, Any] = {"color": LIGHT["forward"], "lw": 2.0, "ls": "-"}
-MEASURED: dict[str, Any] = {"color": LIGHT["axis"], "lw": 3.2, "ls": "-", "alpha": 0.55}
+BEFORE: dict[str, Any] = {"color": LIGHT["reverse"], "lw": 1.3, "ls": (0, (5, 2))}
+AFTER: dict[str, Any] = {"color": LIGHT["forward"], "lw": 1.3, "ls": "-"}
+MEASURED: dict[str, Any] = {"color": LIGHT["axis"], "lw": 3.6, "ls": "-", "alpha": 0.6}
 FLOOR: dict[str, Any] = {"color": LIGHT["level"], "lw": 1.4, "ls": (0, (2, 2))}
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import AsinhLocator, FixedLocator, FuncFormatter, MaxNLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
 from rig.report.figures.arrays import line
 from rig.report.figures.canvas import PX, Array, Curves, Drawing, Frame, foot, key, log_axis, panel_at
@@ -16,6 +16,8 @@ from rig.report.palette import LIGHT
 from rig.report.trace.channels import CHANNELS, Channel
 from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
 
+RATIOS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
+DECADES = (-100.0, -10.0, 0.0, 10.0, 100.0, 1000.0)
 HEAD, BETWEEN, FOOT, LEFT, GAP = 50.0, 34.0, 44.0, 46.0, 12.0
 
 
@@ -29,8 +31,8 @@ class Coordinate(NamedTuple):
 
 
 COORDINATES = (
-    Coordinate("motor_angle", "Motor angle, °", (0, 180, 360)),
-    Coordinate("load_angle", "Load angle, °", (0, 180, 360)),
+    Coordinate("motor_angle", "Motor angle, °", (0, 90, 180, 270)),
+    Coordinate("load_angle", "Load angle, °", (0, 90, 180, 270)),
     Coordinate("direction", "Direction", (-1, 1)),
     Coordinate("load", "Torque, N·m", None, 1.0),
     Coordinate("speed", "Speed, rpm", None, 1.0),
@@ -57,6 +59,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
         for column, q in enumerate(coordinates):
             panel = panel_at(figure, Frame(frame.width), (LEFT + column * (width + GAP), top, width, height))
             log_axis(panel, low, high)
+            panel.yaxis.set_major_locator(FixedLocator([v for v in RATIOS if low <= v <= high]))
             _panel(panel, curves, channel, q)
             panel.tick_params(axis="y", labelleft=column == 0)
             first = first or panel
@@ -91,7 +94,7 @@ def _limits(curves: Curves, channel: Channel) -> tuple[float, float]:
     values = np.concatenate([np.concatenate(f[1:]) for f in found])
     values = values[np.isfinite(values) & (values > 0)]
     low, high = (float(values.min()), float(values.max())) if values.size else (1.0, 1.0)
-    return min(0.5, low / 1.2), max(2.5, high * 1.4)
+    return max(0.1, min(0.5, low / 1.2)), max(2.5, high * 1.4)
 
 
 def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None:
@@ -112,7 +115,9 @@ def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None
 
 def _ticks(panel: Axes, q: Coordinate) -> None:
     if q.knee is not None:
-        panel.xaxis.set_major_locator(AsinhLocator(q.knee, numticks=5, base=10, subs=(1,)))
+        low, high = panel.get_xlim()
+        panel.xaxis.set_major_locator(FixedLocator([v for v in DECADES if low <= v <= high]))
+        panel.xaxis.set_minor_locator(NullLocator())
     elif q.ticks is not None:
         panel.xaxis.set_major_locator(FixedLocator(list(q.ticks)))
         panel.set_xlim((-2, 2) if q.key == "direction" else (0, 360))
@@ -132,8 +137,9 @@ def say(curves: Curves) -> str:
             if found is not None:
                 low, high = np.nanmin(found[1]), np.nanmax(found[1])
                 said.append(
-                    f"{channel.name} against {q.name.split(',')[0].lower()}: {plain(low, 2)} to {plain(high, 2)} times the "
-                    f"floor before, {plain(np.nanmin(found[2]), 2)} to {plain(np.nanmax(found[2]), 2)} after"
+                    f"{channel.name} against {q.name.split(',')[0].lower()}: {plain(low, 2)} to {plain(high, 2)} "
+                    "times the floor before, "
+                    f"{plain(np.nanmin(found[2]), 2)} to {plain(np.nanmax(found[2]), 2)} after"
                 )
     return "; ".join(said) + "."
 
@@ -141,9 +147,9 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "where",
     "Where the residual lives",
-    "RMS of what the model leaves on held-out runs, over the floor, in bins of one coordinate at a time; logarithmic, so "
-    "equal steps are equal ratios. A flat line at 1 means that nothing is left to explain. Torque is that through the "
-    "gear; torque and speed axes are even up to 1 and logarithmic beyond. Bins with fewer than 30 samples are left out.",
+    "RMS of what the model leaves on held-out runs, over the floor, in bins of one coordinate at a time, on a "
+    "logarithmic scale. A flat line at 1 means that nothing is left to explain. Torque is that through the gear; "
+    "torque and speed axes are even up to 1 and logarithmic beyond. Bins with fewer than 30 samples are left out.",
     draw,
     say,
     full=True,

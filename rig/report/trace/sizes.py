@@ -1,0 +1,27 @@
+"""Numbers of a trace for people: three digits with their zeros, and units with a prefix where values are small."""
+
+from __future__ import annotations
+
+import math
+
+from rig.model.effect import Parameter
+from rig.report.numbers import ABSENT, estimate, fixed, plain
+
+MILLI = {"N·m": "mN·m", "N·m·s/rad": "mN·m·s/rad", "kg·m²": "g·m²", "s": "ms"}
+SMALL = 0.1  # below it the prefix saves the reader from counting zeros
+
+
+def three(value: float | None) -> str:
+    """Three significant digits, zeros kept, so that columns line up."""
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    if value == 0 or not 1e-3 <= abs(value) < 1e5:
+        return plain(value, 3)
+    return fixed(value, max(0, 2 - math.floor(math.log10(abs(value)) + 1e-12)))
+
+
+def said(p: Parameter) -> str:
+    """Value with 95 % interval and unit."""
+    if p.unit in MILLI and 0 < abs(p.value) < SMALL:
+        return estimate(p.value * 1e3, (p.ci95[0] * 1e3, p.ci95[1] * 1e3), MILLI[p.unit])
+    return estimate(p.value, p.ci95, p.unit)
