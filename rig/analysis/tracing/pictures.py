@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from rig.analysis.tracing.bins import BINNED, FEWEST, Index, rms
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import UNITS
 from rig.analysis.tracing.floor import strokes
-from rig.analysis.tracing.unknown import INDICES, Rest, homes, rest, score
+from rig.analysis.tracing.unknown import INDICES, Rest, homes, rest, score, spectrum
 from rig.analysis.tracing.unknown import _folds as folds
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-Index = npt.NDArray[np.int64]
-
 TURN: Final = 2 * np.pi
-BINS: Final = 24  # of a turn, 15°: finer than the paper's strongest orders, with rows enough in each
-LEVELS: Final = 12  # of a range
-FEWEST: Final = 30  # rows of a bin: an RMS of fewer scatters by more than an eighth
 SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
 QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long
+ORDERS: Final = np.arange(0.02, 40.0, 0.02)  # of the motor: beyond the series, steps of one output turn
 EXCESS: Final = 0.21  # of the squared floor (a ratio of 1.1): below it there is nothing to share out
 COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory", "speed", "time")
 PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
@@ -45,6 +41,8 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         a fixed frequency that runs of differing speed have in common, and its share; absent where there is none
     close.<run>.<C>.turns, .measured, .before, .after (n,)
         two motor turns of a run that turns, arcsec or N·m, each less its mean over the run
+    orders.motor_order, orders.<C>.before, .after (n,)
+        amplitude of the residual of M and L by order of the motor, N·m; those of A are in `spectrum`
     turn.load_deg, .before_arcsec, .after_arcsec (N,)
         mean residual of θ̃ over whole motor turns of the output's turn: the motor's own orders average out
     run_at.<run> (2,)      motor speed in rpm and external torque in N·m
@@ -61,7 +59,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
             out[f"interval.{channel}.{name}"] = interval([e[key] for key in keys]) * UNITS[channel]
         for key in keys:
             out |= close_up(p, key, before[key], after[key])
-    out |= by_turn(p, before, after)
+    out |= by_turn(p, before, after) | by_order(p, before, after)
     for i in p.court.runs:
         run = p.eq.runs[i]
         speed = float(np.mean([q.omega_m.mean() for q in run.pieces])) * 60 / TURN
@@ -113,6 +111,18 @@ def crossed(r: Rest, one: str, other: str) -> Index:
     return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1).astype(np.int64)
 
 
+def by_order(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
+    """`orders.*` of the torque channels."""
+    out: dict[str, Array] = {}
+    for channel in ("M", "L"):
+        for name, e in (("before", before), ("after", after)):
+            r = rest(p.eq, e, dict.fromkeys(p.court.floors, 1.0), channel)
+            if r is not None and np.isfinite(r.at["motor_angle"]).all():
+                out["orders.motor_order"] = ORDERS
+                out[f"orders.{channel}.{name}"] = 2 * np.sqrt(spectrum(r.at["motor_angle"], r.e, ORDERS)) / r.e.size
+    return out
+
+
 def by_turn(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
     """`turn.*`; {} where there is no load angle."""
     keys, bins = [k for k in before if k[1] == "A"], round(p.eq.runs[0].ratio)
@@ -126,59 +136,6 @@ def by_turn(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]
         total = np.bincount(index, np.concatenate([e[k] for k in keys]), minlength=bins)
         out[f"turn.{name}_arcsec"] = np.where(count >= FEWEST, total / np.maximum(count, 1), np.nan) * UNITS["A"]
     return out
-
-
-def rms(e: Array, index: Index, bins: int) -> Array:
-    """Of each bin, NaN where it holds too few rows; `index` −1 is left out; (bins,)."""
-    inside = index >= 0
-    count = np.bincount(index[inside], minlength=bins)
-    total = np.bincount(index[inside], e[inside] ** 2, minlength=bins)
-    return np.where(count >= FEWEST, np.sqrt(total / np.maximum(count, 1)), np.nan)
-
-
-def of_turn(name: str) -> Callable[[Rest], tuple[Index, Array] | None]:
-    """Bins of an angle."""
-
-    def binned(r: Rest) -> tuple[Index, Array] | None:
-        x = r.at[name]
-        if not np.isfinite(x).all():
-            return None
-        index = (np.mod(x, TURN) / TURN * BINS).astype(np.int64) % BINS
-        return index, (np.arange(BINS) + 0.5) * 360 / BINS
-
-    return binned
-
-
-def of_range(name: str, unit: float, knee: float) -> Callable[[Rest], tuple[Index, Array] | None]:
-    """Bins of |speed|, torque or time: even up to the `knee` (in shown units), even in the logarithm beyond."""
-
-    def binned(r: Rest) -> tuple[Index, Array] | None:
-        x = r.at[name] * unit
-        if not np.isfinite(x).all() or np.ptp(x) == 0:
-            return None
-        x = np.abs(x) if name == "speed" else x
-        warped = np.arcsinh(x / knee)
-        edges = np.linspace(warped.min(), warped.max(), LEVELS + 1)
-        index = np.clip(np.digitize(warped, edges) - 1, 0, LEVELS - 1).astype(np.int64)
-        return index, knee * np.sinh((edges[1:] + edges[:-1]) / 2)
-
-    return binned
-
-
-def of_direction(r: Rest) -> tuple[Index, Array]:
-    """Reverse and forward; rows in which it sticks or turns back are left out."""
-    way = r.at["direction"]
-    return np.where(way > 0.5, 1, np.where(way < -0.5, 0, -1)).astype(np.int64), np.array([-1.0, 1.0])
-
-
-BINNED: Final[Mapping[str, Callable[[Rest], tuple[Index, Array] | None]]] = {
-    "motor_angle": of_turn("motor_angle"),
-    "load_angle": of_turn("load_angle"),
-    "direction": of_direction,
-    "load": of_range("load", 1.0, 1.0),
-    "speed": of_range("speed", 60 / TURN, 1.0),
-    "time": of_range("time", 1.0, 1e9),
-}
 
 
 def close_up(p: Prepared, key: Key, before: Array, after: Array) -> dict[str, Array]:

@@ -27,10 +27,10 @@ class Card(NamedTuple):
 
 
 def cards(trace: Trace) -> list[Card]:
-    """A card for each channel that was measured; `main` is the one with most left."""
+    """A card for each channel that was measured; the one with most left first."""
     found = [c for c in CHANNELS if c.sensor in trace.ratios_before]
     most = max(found, key=lambda c: trace.ratios_before[c.sensor], default=None)
-    return [_card(trace, c, c is most) for c in found]
+    return [_card(trace, c, c is most) for c in sorted(found, key=lambda c: c is not most)]
 
 
 def _card(trace: Trace, channel: Channel, main: bool) -> Card:

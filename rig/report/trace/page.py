@@ -87,10 +87,12 @@ def drawn(trace: Trace) -> dict[str, Array]:
         after = trace.after.per_run.get(name, before)
         rows = [(c.error(before), c.error(after), c.floor(before)) for c in CHANNELS]
         curves[f"each_run.{name}"] = np.array([np.nan if v is None else v for row in rows for v in row])
-    for c in CHANNELS[1:]:
-        if trace.ratios_before.get(c.sensor, 0.0) < QUIET:
-            curves = {k: v for k, v in curves.items() if not (k.startswith("close.") and f".{c.letter}." in k)}
-    return curves
+    quiet = [c for c in CHANNELS if trace.ratios_before.get(c.sensor, 0.0) < QUIET]
+    hidden = [f"close.{run}.{c.letter}." for c in quiet if c.letter != "A" for run in trace.held_out]
+    hidden += [f"orders.{c.letter}." for c in quiet]
+    if any(c.letter == "A" for c in quiet) and len(quiet) < len(trace.ratios_before):
+        hidden += ["spectrum.", "angle.", "turn."]  # the kinematic error is at its floor, and something else is not
+    return {name: values for name, values in curves.items() if not name.startswith(tuple(hidden))}
 
 
 def _origin(trace: Trace, source: Provenance) -> Origin:
