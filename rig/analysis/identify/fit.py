@@ -19,21 +19,18 @@ from rig.analysis.identify.dynamics import (
     load_fit,
     motor_fit,
     spring_columns,
-    spring_fit,
 )
 from rig.analysis.identify.friction import LoadFriction, MotorFriction, load_friction, motor_friction
-from rig.analysis.identify.gram import Known
-from rig.analysis.identify.locked import locked_rows
 from rig.analysis.identify.means import Mean, mean_of
 from rig.analysis.identify.recording import Plateau, Recording, plateaus
-from rig.analysis.identify.slow import SlowSeries, slow_rows, slow_series
+from rig.analysis.identify.slow import SlowSeries, slow_series
 from rig.analysis.identify.solve import Solved
+from rig.analysis.identify.spring import SpringRuns
 from rig.analysis.identify.windows import Projected, project
 from rig.analysis.result import Array
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import SIGMA
 
-PASSES = 4  # of the spring's fit: θ̃_p enters its own damping term
 MATTERS = 5e-5  # s of delay between the encoders: less is taken off by the fit itself to a part in 10⁴
 SURE = 4.0  # standard errors
 
@@ -105,9 +102,11 @@ def _once(
     if load is not None:
         sensor, J_l = Sensor(load.coefficients[LAG], load.coefficients[Q]), load.coefficients[J_L]
     locked = [r for r in runs if r.locked]
-    spring = _spring(windows, slow, locked, terms, sensor, mesh, J_l, series)
-    lock_only = _spring([], slow, locked, terms, sensor, mesh, J_l, series) if locked and slow else None
-    running_only = _spring(windows, slow, [], terms, sensor, mesh, J_l, series) if windows else None
+    begin = np.array([*series.a, *series.b])
+    springs = SpringRuns(windows, slow, locked, terms, mesh, J_l, begin)
+    spring = springs.solve_doubting(sensor, load)
+    lock_only = replace(springs, windows=()).solve(sensor) if locked and slow else None
+    running_only = replace(springs, locked=()).solve_doubting(sensor, load) if windows else None
     if spring is not None:
         series = _series(spring, terms)
         sensor = replace(sensor, lag=sensor.lag + spring.coefficients[spring_columns(terms)[2]])
@@ -134,25 +133,6 @@ def _mesh(run: Recording, friction: MotorFriction | None) -> Mesh:
     if said is not None and said <= most:
         return Mesh(said, said / 3.0, sigma)
     return Mesh(0.5 * most, 0.5 * most, sigma)
-
-
-def _spring(
-    windows: Sequence[Projected], slow: Sequence[SlowSeries], locked: Sequence[Recording],
-    terms: int, sensor: Sensor, mesh: Mesh, J_l: float, series: FourierSeries,
-) -> Solved | None:  # fmt: skip
-    at_K, _, at_delay, size = spring_columns(terms)
-    c = np.zeros(size)
-    c[: 2 * terms] = [*series.a, *series.b]
-    found: Solved | None = None
-    for _ in range(PASSES):
-        K = 1.0 / c[at_K] if c[at_K] > 0 else 0.0
-        fixed: list[Known] = [slow_rows(s, terms, size, K, J_l) for s in slow]
-        fixed += [k for r in locked if (k := locked_rows(r, terms, size, at_K, c)) is not None]
-        found = spring_fit(windows, fixed, terms, replace(sensor, lag=sensor.lag + c[at_delay]), mesh, c[: 2 * terms])
-        if found is None:
-            return None
-        c = found.coefficients
-    return found
 
 
 def _mean_series(slow: Sequence[SlowSeries], terms: int) -> FourierSeries:

@@ -91,7 +91,7 @@ def _spring(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
         grad = np.zeros(c.size)
         grad[[at_damping, at_delay]] = K
         grad[at_K] = -c[at_damping] * K * K
-        u = float(np.sqrt(grad @ spring.covariance @ grad + (K * fits.load.u(LAG)) ** 2 + _of_mesh(fits) ** 2))
+        u = float(np.sqrt(grad @ spring.covariance @ grad + _of_mesh(fits) ** 2))
         found["B_sp"] = _measured(c[at_damping] * K, u, spring, running)
         found["skew"] = _measured(c[at_delay] + fits.taken_off, spring.u(at_delay), spring, running)
     else:
