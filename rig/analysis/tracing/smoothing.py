@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numba import njit
 
 from rig.model.effect import Array
 
@@ -35,6 +36,18 @@ def kernel(sigma: float, dt: float, derivative: int) -> Array:
         taps = taps - odd * ((taps @ t) / (odd @ t))
     power = (-t) ** derivative / float(np.prod(np.arange(1, derivative + 1)))
     return np.asarray(taps / (taps @ power))
+
+
+@njit(cache=True, nogil=True)
+def _thinned(x: Array, taps: Array, m: int, step: int) -> Array:
+    """Correlation of the columns of `x` (n, k) with `taps`, every `step`-th row, (m, k)."""
+    out = np.zeros((m, x.shape[1]))
+    for i in range(m):
+        for j in range(taps.size):
+            tap = taps[j]
+            for k in range(x.shape[1]):
+                out[i, k] += tap * x[i * step + j, k]
+    return out
 
 
 @dataclass(frozen=True)
@@ -63,11 +76,9 @@ class Smoother:
 
     def __call__(self, x: Array, derivative: int = 0) -> Array:
         """`x` (n,) or (n, k) → derivative 0..3 by time, (rows(n),) or (rows(n), k)."""
-        taps, m, step = self._kernel(derivative), self.rows(x.shape[0]), self.step
-        out = np.zeros((m, *x.shape[1:]))
-        for j, tap in enumerate(taps[::-1]):
-            out += tap * x[j : j + (m - 1) * step + 1 : step] if m else 0.0
-        return out
+        wide = np.ascontiguousarray(x if x.ndim == 2 else x[:, None], dtype=np.float64)
+        out = _thinned(wide, self._kernel(derivative)[::-1].copy(), self.rows(x.shape[0]), self.step)
+        return out if x.ndim == 2 else np.ascontiguousarray(out[:, 0])
 
     def same(self, x: Array, derivative: int = 0) -> Array:
         """The derivative on the grid of `x` itself (n,), the ends held at the nearest valid row."""

@@ -1,0 +1,19 @@
+"""The columns of the three equations are what the paper's equations say."""
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.channels import ORDERS, series, slopes
+
+
+def test_the_series_is_cosine_and_sine_of_each_order_in_turn() -> None:
+    theta = np.linspace(-7, 7, 50)
+    values = series(theta)
+    for n in range(1, ORDERS + 1):
+        assert values[:, 2 * n - 2] == pytest.approx(np.cos(n * theta), abs=1e-12)
+        assert values[:, 2 * n - 1] == pytest.approx(np.sin(n * theta), abs=1e-12)
+
+
+def test_the_slopes_are_its_derivatives() -> None:
+    theta, h = np.linspace(-7, 7, 50), 1e-6
+    assert slopes(theta) == pytest.approx((series(theta + h) - series(theta - h)) / (2 * h), abs=1e-6)

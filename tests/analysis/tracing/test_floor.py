@@ -1,0 +1,34 @@
+"""The floor is the noise of one run, whatever the repeats have in common and however they drift apart in time."""
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.floor import autocorrelation, compare, effective, strokes
+
+RNG = np.random.default_rng(5)
+
+
+def _noise(n: int, sigma: float) -> np.ndarray:
+    return sigma * RNG.standard_normal(n)
+
+
+def test_what_repeats_at_equal_angle_is_no_noise() -> None:
+    a, b = np.linspace(0, 60, 6000), np.linspace(0.3, 61, 5900)  # the second one turns a little slower
+    d = compare(a, np.sin(a) + _noise(a.size, 0.1), b, np.sin(b) + _noise(b.size, 0.1))
+    assert np.sqrt(np.mean(d**2)) == pytest.approx(0.1, rel=0.05)
+
+
+def test_strokes_are_compared_with_strokes_of_their_own_direction() -> None:
+    there = np.linspace(0, 20, 2000)
+    theta = np.concatenate([there, there[::-1], there])
+    assert len(strokes(theta)) == 3
+    backlash = np.where(np.gradient(theta) > 0, 5.0, -5.0)
+    d = compare(theta, backlash + _noise(theta.size, 0.1), theta, backlash + _noise(theta.size, 0.1))
+    assert np.sqrt(np.mean(d**2)) < 0.5  # far below the 10 between directions
+
+
+def test_slow_noise_has_fewer_independent_rows() -> None:
+    white = RNG.standard_normal(20000)
+    slow = np.convolve(white, np.ones(8), mode="valid")
+    assert effective(autocorrelation(white)) < 1.3
+    assert effective(autocorrelation(slow)) == pytest.approx(8.0, rel=0.2)
