@@ -95,7 +95,8 @@ class StiffnessLock(Procedure):
         motor, energy = self.wind_up(setting), 0.5 * self.tau_max**2 / setting.stiffness
         return [
             f"±{self.tau_max:g} N·m wind the locked gear up by ±{motor / setting.ratio / DEG:.3f}° at the output "
-            f"(±{motor / DEG:.1f}° of the motor) and store {energy:.3f} J, at the declared {setting.stiffness:g} N·m/rad",
+            f"(±{motor / DEG:.1f}° of the motor) and store {energy:.3f} J, at the declared "
+            f"{setting.stiffness:g} N·m/rad",
             f"a stop unwinds it at {self.unwind_rate:g} N·m/s, {self.tau_max / self.unwind_rate:.1f} s at most; "
             f"a second one, or a trip, lets go at once, and friction may then hold up to {self.tau_max:g} N·m",
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,16 @@ def test_a_cubic_spring_is_found_with_both_coefficients(tmp_path: Path) -> None:
     assert "a cubic describes it better" in found["sentence"]
     assert abs(found["cubic_k1"].value / 7160 - 1) < 0.02
     assert abs(found["cubic_k3"].value / 2.3e9 - 1) < 0.03
+
+
+def test_a_hysteretic_spring_has_its_loss_and_its_lines(tmp_path: Path) -> None:
+    loop = ["twin.effects.hysteresis.torque=0.5", "twin.effects.hysteresis.twist_deg=0.02"]
+    found = figures(tmp_path, [*LINES, *loop])
+    true = 2 * 0.5 / 7160 * 180 * 60 / math.pi
+    assert abs(found["hysteresis_loss"].value / true - 1) < 0.05
+    assert "The loop is hysteretic:" in found["loop_viscous"].how
+    for name, true in (("stiffness_K1", 7160), ("stiffness_K2", 9500), ("stiffness_K3", 12_500)):
+        assert abs(found[name].value / true - 1) < 0.02, name
 
 
 def test_a_viscous_spring_is_told_from_a_hysteretic_one_though_the_motor_sticks(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from rig.analysis import analyse
 from rig.analysis.angle import ARCMIN
 from rig.analysis.result import Verdict
@@ -19,6 +21,7 @@ def test_the_hysteresis_loss_is_the_gap_the_slipping_elements_leave() -> None:
     assert found.ci95[0] < true < found.ci95[1]
 
 
+@pytest.mark.slow
 def test_with_a_bent_spring_the_gap_is_that_over_its_slope_at_zero() -> None:
     found = figures(analyse(bent(slip=SLIP).run()))["hysteresis_loss"]
     assert abs(found.value / (2 * FORCE / 5000.0 * ARCMIN) - 1) < 0.05
@@ -64,6 +67,7 @@ def test_an_elastic_gear_has_no_loop_and_the_headline_says_below_what() -> None:
     assert "not told from none (below 0.0" in result.sentence
 
 
+@pytest.mark.slow
 def test_creep_at_the_holds_is_given_per_decade() -> None:
     found = figures(analyse(LockedGear(creep=150.0).run()))["creep_per_decade"]
     true = 100 * 150.0 / (K + 2 * 150.0)  # the chain's two elements slower than a hold still carry
@@ -72,6 +76,7 @@ def test_creep_at_the_holds_is_given_per_decade() -> None:
     assert none.ci95[0] < 0 < none.ci95[1]
 
 
+@pytest.mark.slow
 def test_a_sensor_offset_moves_no_figure() -> None:
     a, b = (figures(analyse(LockedGear(slip=SLIP, zero=z).run())) for z in (0.0, 0.3))
     for name in ("torsional_stiffness", "hysteresis_loss", "loop_hysteretic"):
@@ -86,6 +91,7 @@ def test_a_sensor_of_the_wrong_sign_is_rejected() -> None:
     assert "torsional_stiffness" not in figures(turned)
 
 
+@pytest.mark.slow
 def test_where_the_motor_sticks_and_slips_a_viscous_loop_bends_no_spring() -> None:
     gear = LockedGear(drag=400.0, rate=500.0, slips=24)  # 3.5 N·m while it slips, 0.04 N·m in the mean
     found = figures(analyse(gear.run()))

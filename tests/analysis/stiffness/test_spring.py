@@ -55,6 +55,7 @@ def test_three_lines_are_found_with_their_knots() -> None:
     assert "Knots fitted" in found["stiffness_K1"].how
 
 
+@pytest.mark.slow
 def test_a_cubic_spring_is_named_with_its_coefficients_and_its_lines_are_those_of_the_cubic() -> None:
     reach = reach_at_15(cubic)
     result = analyse(LockedGear(spring=cubic, reach=reach).run())
@@ -95,12 +96,14 @@ def test_a_dead_zone_is_play_and_not_a_soft_spring() -> None:
     assert abs(figures(result)["play"].value / (8e-5 * 180 * 60 / np.pi) - 1) < 0.05
 
 
+@pytest.mark.slow
 def test_declared_knots_are_used_and_said_to_be() -> None:
     result = analyse(LockedGear().run(manifest={"declared": {"T1": 4.0, "T2": 9.0}}))
     assert "Knots as declared" in figures(result)["stiffness_K2"].how
     assert figures(result)["stiffness_K2"].label == "Stiffness K2, 4 to 9 N·m"
 
 
+@pytest.mark.slow
 def test_without_a_slow_run_the_interval_is_as_wide_as_the_kinematic_error_may_tilt_it() -> None:
     result = analyse(LockedGear(error=PROFILE).run())
     figure = figures(result)["torsional_stiffness"]
@@ -109,6 +112,7 @@ def test_without_a_slow_run_the_interval_is_as_wide_as_the_kinematic_error_may_t
     assert any("slow run" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_with_the_slow_run_of_the_campaign_the_tilt_is_taken_off() -> None:
     result = analyse(LockedGear(error=PROFILE).run(), slow_run(seed=5))
     figure = figures(result)["torsional_stiffness"]
@@ -118,12 +122,14 @@ def test_with_the_slow_run_of_the_campaign_the_tilt_is_taken_off() -> None:
     assert not any("slow run" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_a_reference_of_another_motor_zero_is_not_used() -> None:
     other = FourierSeries(tuple(-a for a in PROFILE.a), tuple(-b for b in PROFILE.b))
     result = analyse(LockedGear(error=PROFILE, reach=60.0 / K).run(), slow_run(seed=5, profile=other))
     assert "does not fit this run" in figures(result)["torsional_stiffness"].how
 
 
+@pytest.mark.slow
 def test_how_much_of_the_error_the_loaded_gear_shows_is_fitted_where_the_motor_turns_far_enough() -> None:
     gear = LockedGear(error=PROFILE, error_share=0.6, reach=0.02)  # ±57° of the motor
     figure = figures(analyse(gear.run(), slow_run(seed=5)))["torsional_stiffness"]

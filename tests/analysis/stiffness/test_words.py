@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from rig.analysis import analyse
 from rig.analysis.result import Verdict
@@ -34,6 +35,7 @@ def test_one_ramp_is_not_ramps_and_prose_has_true_minus_signs() -> None:
     assert any("no hysteresis loss" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_an_output_that_follows_fails_the_check_of_the_lock() -> None:
     run = LockedGear().run()
     free = {**run.columns, "theta_l": run.columns["theta_m"] / 50 * 0.2}
@@ -50,12 +52,14 @@ def test_what_lies_in_series_is_taken_off() -> None:
     assert not any("Gear alone" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_a_path_softer_than_what_was_measured_is_said_to_be() -> None:
     assert Path((("fixture", 5000.0),)).gear(7160.0) == float("inf")
     result = analyse(LockedGear().run(manifest={"declared": {"K_fixture": 5000.0}}))
     assert any("softer than" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_a_limit_inside_the_interval_settles_nothing_and_one_outside_does() -> None:
     def verdict(lower: float) -> Verdict:
         manifest = {"limits": {"torsional_stiffness": {"lower": lower}}}
@@ -66,6 +70,7 @@ def test_a_limit_inside_the_interval_settles_nothing_and_one_outside_does() -> N
     assert verdict(9000.0) is Verdict.FAIL
 
 
+@pytest.mark.slow
 def test_lost_motion_is_the_wind_up_between_four_per_cent_of_rated_torque_either_way() -> None:
     figure = figures(analyse(LockedGear().run(manifest={"declared": {"T_rated": 100.0}})))["lost_motion"]
     assert abs(figure.value / (2 * 4.0 / K * 180 * 60 / np.pi) - 1) < 0.01
@@ -73,6 +78,7 @@ def test_lost_motion_is_the_wind_up_between_four_per_cent_of_rated_torque_either
     assert any("Lost motion" in s for s in small.cannot)
 
 
+@pytest.mark.slow
 def test_a_run_without_time_still_has_its_spring() -> None:
     run = LockedGear().run()
     columns = {k: v for k, v in run.columns.items() if k != "t"}
