@@ -4,6 +4,7 @@ CATALOGUE: dict[str, str] = {
     "can.cia402": "drivers.cia402:Cia402",
     "can.cia406": "drivers.cia406:Cia406",
     "can.cia404": "drivers.cia404:Cia404",
+    "can.odrive": "drivers.odrive:ODrive",
     "serial.qsb": "drivers.qsb:Qsb",
     "serial.ascii_torque": "drivers.ascii_torque:AsciiTorque",
 }

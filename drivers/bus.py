@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import struct
+import time
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -14,8 +15,10 @@ from rig.core.errors import NotReady
 
 SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
 OPERATIONAL = 0x05
+CANOPEN = "CANopen"
 MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
 NEVER = -1e9  # s, before any SYNC
+OLDEST = 0.1  # s: a time stamp farther back is on another clock than ours
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
 GONE = (can.CanError, OSError)
 
@@ -23,7 +26,7 @@ GONE = (can.CanError, OSError)
 class Frame(NamedTuple):
     """The newest frame of one identifier."""
 
-    arrived: float  # s on the clock of the loop, when it was taken from the queue
+    arrived: float  # s on the clock of the loop: by the adapter's time stamp, else when it was taken from the queue
     latched: float  # s, when the last SYNC before it was sent
     data: bytes
     number: int  # frames of this identifier so far
@@ -44,9 +47,13 @@ class Bus:
         clock: Clock,
         options: Mapping[str, Any],
         connect: Callable[..., Any] = can.Bus,
+        stamps: Callable[[], float] = time.time,
     ) -> None:
         self.name = name
+        self.protocol = CANOPEN  # what its devices speak
+        self.requests: list[int] = []  # identifiers asked for at every latch, where there is no SYNC
         self._connect = connect
+        self._stamps = stamps  # what the adapter's time stamps count on
         self.clock = clock
         self.frames: dict[int, Frame] = {}
         self.listeners: dict[int, Callable[[bytes, float], None]] = {}
@@ -61,6 +68,7 @@ class Bus:
         self._can: Any = None
         self._beat = NEVER
         self._messages: dict[int, can.Message] = {}
+        self._asks: dict[int, can.Message] = {}
 
     @property
     def is_open(self) -> bool:
@@ -96,6 +104,19 @@ class Bus:
             # python-can's default is a 29-bit identifier, which no CANopen node hears
             message = self._messages[identifier] = can.Message(arbitration_id=identifier, is_extended_id=False)
         message.data, message.dlc = bytearray(data), len(data)
+        return self._hand_over(message)
+
+    def ask(self, identifier: int) -> bool:
+        """A remote frame: whoever has that identifier answers with its 8 bytes. As `send`."""
+        if self._can is None or self.dead:
+            return False
+        message = self._asks.get(identifier)
+        if message is None:
+            message = can.Message(arbitration_id=identifier, is_extended_id=False, is_remote_frame=True, dlc=8)
+            self._asks[identifier] = message
+        return self._hand_over(message)
+
+    def _hand_over(self, message: can.Message) -> bool:
         try:
             self._can.send(message)
         except GONE as why:
@@ -142,16 +163,28 @@ class Bus:
         if message.is_error_frame:
             self.errors += 1
         elif not (message.is_extended_id or message.is_remote_frame):
-            self._keep(message.arbitration_id, bytes(message.data))
+            self._keep(message.arbitration_id, bytes(message.data), message.timestamp)
         return True
 
-    def _keep(self, identifier: int, data: bytes) -> None:
+    def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
         now = self.clock.now()
+        waited = self._stamps() - stamp
+        if 0.0 < waited < OLDEST:
+            now -= waited  # it lay in a queue for that long
         last = self.frames.get(identifier)
         self.frames[identifier] = Frame(now, self.synced, data, last.number + 1 if last else 1)
         listener = self.listeners.get(identifier)
         if listener is not None:
             listener(data, now)
+
+    def latch(self) -> None:
+        """Have its devices take their readings now: by SYNC, else by asking each for its own. Never raises."""
+        if self.protocol == CANOPEN:
+            self.sync()
+            return
+        self.drain()
+        for identifier in self.requests:
+            self.ask(identifier)
 
     def sync(self) -> None:
         """Have every synchronous node latch now; this host's heartbeat when it is due. Never raises."""

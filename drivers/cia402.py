@@ -152,9 +152,9 @@ class Cia402(Drive):
         limit = round(1000 * self.place.options.get("watchdog", 0.1))
         host = self.bus.host_node
         if host and self.node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
-            return f"heartbeat consumer of the drive, {limit} ms"
+            return f"heartbeat consumer of the drive, {limit} ms, set and read back"
         if self.node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
-            return f"RPDO timeout of the drive, {limit} ms"
+            return f"RPDO timeout of the drive, {limit} ms, set and read back"
         return ""
 
     def _disarm(self) -> None:

@@ -22,6 +22,7 @@ from rig.core.errors import NotReady
 
 logging.getLogger("canopen").setLevel(logging.CRITICAL)  # it logs what we say in sentences
 
+NODES = range(1, 128)
 START, PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
 BOOT_UP, STOPPED, OPERATIONAL, PREOP = 0x00, 0x04, 0x05, 0x7F  # NMT states in a heartbeat
 NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational", PREOP: "pre-operational"}
@@ -80,6 +81,8 @@ class Node:
 
     def open(self) -> None:
         """Open the bus and listen to the node; it is asked nothing yet. Raises NotReady."""
+        if self.number not in NODES:
+            raise NotReady(f"{self.who}: CANopen has nodes 1 to {NODES[-1]}")
         self.bus.open()
         network = canopen.Network()
         network.bus = self.bus.raw

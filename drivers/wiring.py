@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import can
 
-from drivers.bus import Bus
+from drivers.bus import CANOPEN, Bus
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
 
@@ -46,10 +47,13 @@ class Wiring:
     clock: Clock
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     connect: Callable[..., Any] = can.Bus  # what opens a bus
+    stamps: Callable[[], float] = time.time  # what its time stamps count on
     _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
-    def bus(self, place: Place) -> Bus:
-        """The bus a device is on. Raises UsageError when the bench file has none such."""
+    def bus(self, place: Place, protocol: str = CANOPEN) -> Bus:
+        """The bus a device is on. Raises UsageError when the bench file has none such, or when the devices that are
+        on it already speak another protocol: the same identifiers mean something else there.
+        """
         name = place.need("bus")
         if name not in self.sections:
             known = ", ".join(sorted(self.sections)) or "none"
@@ -59,12 +63,22 @@ class Wiring:
             options = {**section.get("options", {})}
             if section.get("bitrate"):
                 options["bitrate"] = section["bitrate"]
-            made = Bus(name, section["interface"], str(section["channel"]), self.clock, options, self.connect)
+            made = Bus(
+                name, section["interface"], str(section["channel"]), self.clock, options, self.connect, self.stamps
+            )
+            made.protocol = protocol
             made.host_node = section.get("host_node", 0)
             self._buses[name] = made
-        return self._buses[name]
+        found = self._buses[name]
+        if found.protocol != protocol:
+            raise UsageError(
+                f"{place.where}: a {protocol} device on CAN bus '{name}', where others speak {found.protocol}: their "
+                "identifiers collide (a CANopen heartbeat of node 127 is 'enter firmware update' of ODrive node 59); "
+                "give each protocol a bus of its own"
+            )
+        return found
 
     def latch(self) -> None:
-        """A SYNC on every open bus: its synchronous nodes take their reading now. Never raises."""
+        """Have the devices on every open bus take their readings now. Never raises."""
         for bus in self._buses.values():
-            bus.sync()
+            bus.latch()

@@ -44,11 +44,12 @@ class DeviceSection(Strict):
 
     type: str
     bus: str | None = None  # [bus.NAME] it is on
-    node: int | None = Field(default=None, ge=1, le=127)
+    node: int | None = Field(default=None, ge=0, le=127)
     port: str | None = None  # serial port
     baud: Annotated[int | None, quantity("bit/s", gt=0)] = None
     direction: Literal[1, -1] = 1  # -1 turns the sign of its readings (and commands) over
-    watchdog: Annotated[float, quantity("s", ge=0.01, le=10)] = 0.1  # the drive stops after this without its host
+    watchdog: Annotated[float | None, quantity("s", ge=0.01, le=10)] = None  # the drive stops this long after its host
+    torque_constant: Annotated[float | None, quantity("N·m/A", **Positive)] = None  # where a drive tells current only
     delay: Annotated[float, quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
 
     def options(self) -> dict[str, Any]:

@@ -25,6 +25,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rate", type=float, default=100.0, metavar="HZ", help="lines/s of the serial torque sensor")
     parser.add_argument("--slcan", type=Path, metavar="PATH", help="also a serial CAN adapter, a link to its pty")
     parser.add_argument("--socketcand", type=int, metavar="PORT", help="also the bus over TCP; 0: a free port")
+    parser.add_argument(
+        "--odrive", type=Path, metavar="PATH", help="also an ODrive, on a CAN bus of its own: its socket"
+    )
     parser.add_argument("--control", type=Path, default=FOLDER / "control", metavar="PATH", help="command channel")
     parser.add_argument("--bitrate", type=float, default=1e6, metavar="BIT/S", help="of the bus; inf: takes no time")
     parser.add_argument("--for", type=float, default=math.inf, dest="seconds", metavar="SECONDS", help="then stop")
@@ -45,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
 
     rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
-    doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate)
+    doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate, args.odrive)
     process = Process(assembly, doors)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())

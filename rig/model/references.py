@@ -37,6 +37,7 @@ REFERENCES: dict[str, str] = {
     "cia404": "CAN in Automation, CiA 404, CANopen device profile for measuring devices and closed-loop controllers",
     "cia406": "CAN in Automation, CiA 406, CANopen device profile for encoders",
     "lawicel": "Lawicel AB, CANUSB, ASCII commands of its manual (the slcan protocol)",
+    "odrive": "ODrive Robotics, CAN protocol (CANSimple) and firmware 0.5.6, odriverobotics.com/docs",
     "usdigital": "US Digital, QSB, list of commands, version 1.28",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
 }

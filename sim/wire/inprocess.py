@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Callable
 from typing import Any, final
 
 import can
 
 from rig.core.clock import Clock
 from sim.wire.assembly import Assembly
+from sim.wire.bus import Bus
 from sim.wire.frame import EXTENDED, REMOTE, Frame
 
 RELAX = 0.001  # s of wall time, for other processes to catch up
@@ -47,18 +49,22 @@ class VirtualWire(Clock):
 
     def connect(self, **_: Any) -> InProcessBus:
         """In place of `can.Bus`."""
-        return InProcessBus(self.assembly)
+        return InProcessBus(self.assembly.bus)
+
+    def door(self, bus: Bus) -> Callable[..., InProcessBus]:
+        """In place of `can.Bus`, to another bus of the same time."""
+        return lambda **_: InProcessBus(bus)
 
 
 @final
 class InProcessBus(can.BusABC):
     """A station on the twin's bus, as python-can sees one."""
 
-    def __init__(self, assembly: Assembly) -> None:
+    def __init__(self, bus: Bus) -> None:
         super().__init__(channel="in this process")
-        self._agenda = assembly.agenda
-        self._frames: deque[Frame] = deque()
-        self.port = assembly.bus.attach("host", lambda frame, t: self._frames.append(frame))
+        self._agenda = bus.agenda
+        self._frames: deque[tuple[Frame, float]] = deque()
+        self.port = bus.attach("host", lambda frame, t: self._frames.append((frame, t)))
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Queue a frame; it passes when the bus is free."""
@@ -77,9 +83,9 @@ class InProcessBus(can.BusABC):
         if not self._frames:
             self._agenda.run_until(until)
             return None
-        identifier, data = self._frames.popleft()
+        (identifier, data), passed = self._frames.popleft()
         return can.Message(
-            timestamp=self._agenda.now,
+            timestamp=passed,
             arbitration_id=identifier & IDENTIFIER,
             is_extended_id=bool(identifier & EXTENDED),
             is_remote_frame=bool(identifier & REMOTE),

@@ -8,8 +8,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple, final
 
-from sim.wire import qsb, serial_torque
+from sim.wire import odrive, qsb, serial_torque
 from sim.wire.assembly import Assembly
+from sim.wire.bus import Bus
 from sim.wire.control import Control
 from sim.wire.faults import fault_verbs
 from sim.wire.faults.of_sensors import Sensor
@@ -22,6 +23,7 @@ from sim.wire.socketcand import SocketCand
 from sim.wire.verbs import plant_verbs
 
 SETTLED = 0.1  # s, modelled: the nodes have booted when the first host comes
+ODRIVE = 0  # its node number, as it leaves the factory
 
 
 class Doors(NamedTuple):
@@ -33,6 +35,7 @@ class Doors(NamedTuple):
     slcan: Path | None = None
     socketcand: int | None = None
     torque_rate: float = 100.0  # lines/s of the serial torque sensor
+    odrive: Path | None = None  # a bus of its own
 
 
 @final
@@ -65,6 +68,8 @@ class Process:
         if doors.slcan is not None:
             self._line("slcan", doors.slcan, SerialCan(bus), math.inf)
             self._tell("CAN", f'can.Bus(interface="slcan", channel="{doors.slcan}")')
+        if doors.odrive is not None:
+            self._odrive(doors.odrive)
         if doors.serial is not None:
             self._serial(doors.serial, doors.torque_rate)
         verbs = {
@@ -73,6 +78,15 @@ class Process:
         }
         self._add(Control(self.reactor, doors.control, verbs))
         self._tell("control", f'{doors.control}, one JSON object a line, for example {{"do": "help"}}')
+
+    def _odrive(self, path: Path) -> None:
+        """An ODrive at the same motor as the CANopen drive; the two are not meant to be used together."""
+        assembly = self.assembly
+        bus = Bus(assembly.agenda, assembly.bus.bitrate)
+        settings = odrive.Settings(heartbeat=0.02, watchdog=0.15)  # s, what WIRING.md tells to set
+        axis = odrive.Axis(bus, ODRIVE, assembly.world, assembly.drive.rating, settings)
+        self._add(Hub(bus, self.reactor, path, self.reactor.stamp))
+        self._tell("CAN", f'can.Bus(interface="hdrig-unix", channel="{path}"), ODrive node {axis.node}, CANSimple')
 
     def _serial(self, folder: Path, rate: float) -> None:
         agenda, world = self.assembly.agenda, self.assembly.world

@@ -158,4 +158,4 @@ def test_when_the_host_falls_silent_the_drive_stops_by_itself():
     assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
     w.wire.wait_until(w.wire.now() + 0.3)
     assert w.twin.drive.drive_state is DriveState.FAULT
-    assert w.instruments.drive.guarded == "heartbeat consumer of the drive, 150 ms"
+    assert w.instruments.drive.guarded == "heartbeat consumer of the drive, 150 ms, set and read back"
