@@ -23,4 +23,5 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "export": ("rig.commands.export", "write a run as CSV, MDF4, MCAP or HDF5"),
     "identify": ("rig.commands.identify", "all runs of a gear to its parameters with intervals, and a gear file"),
     "simulate": ("rig.commands.simulate", "the kinematic error at speed that the model predicts for a gear"),
+    "reproduce": ("rig.commands.reproduce", "the paper's figures and tables from a campaign, its claims ruled by the data"),
 }

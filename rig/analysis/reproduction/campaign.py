@@ -1,0 +1,58 @@
+"""The readings of a campaign, and which of them a figure asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rig.analysis.kinematic_error import KinematicError
+from rig.analysis.profile import Profile
+from rig.analysis.reproduction.model import Model
+from rig.analysis.reproduction.reading import Reading
+
+NEAR = 0.06  # of a speed asked for: a constant torque does not hold a speed exactly
+SLOW_ENOUGH = 12.0  # rpm: the paper's 9.6, with what another rig may take for "around 10 rpm"
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Every run read, in the order they were made; the gear identified from some of them."""
+
+    readings: Sequence[Reading]
+    model: Model | None
+    no_model: str = ""  # why there is none
+
+    @property
+    def assembly(self) -> int:
+        """The one in which the gear was run at speed; else the first."""
+        fast = [r.assembly for r in self.readings if r.fast is not None]
+        return fast[0] if fast else min((r.assembly for r in self.readings), default=1)
+
+    def pure(self) -> tuple[Reading, KinematicError] | None:
+        """The unloaded slow run of most revolutions, in that assembly, and its θ̃_p."""
+        found = [(r, k) for r, k in self.slow(self.assembly) if r.tau_ext == 0.0 and k.speed_rpm <= SLOW_ENOUGH]
+        return max(found, key=lambda pair: revolutions(pair[1].profile), default=None)
+
+    def slow(self, assembly: int | None = None) -> list[tuple[Reading, KinematicError]]:
+        """Every speed of every slow run, of one assembly or of all."""
+        here = [r for r in self.readings if assembly is None or r.assembly == assembly]
+        return [(r, k) for r in here for k in r.slow]
+
+    def at_speed(self, rpm: float) -> Reading | None:
+        """The first unloaded run at about `rpm`; where several are, the nearest."""
+        found = [r for r in self.readings if r.fast is not None and r.tau_ext == 0.0 and _off(r, rpm) <= NEAR]
+        return min(found, key=lambda r: round(_off(r, rpm), 2), default=None)
+
+    def lock(self) -> Reading | None:
+        """The first lock test of which a stiffness was had."""
+        return next((r for r in self.readings if r.lock is not None and "lock.windup" in r.lock.curves), None)
+
+
+def _off(reading: Reading, rpm: float) -> float:
+    assert reading.fast is not None
+    return abs(reading.fast.speed_rpm / rpm - 1.0)
+
+
+def revolutions(profile: Profile) -> int:
+    """Of both directions."""
+    return profile.forward + profile.reverse

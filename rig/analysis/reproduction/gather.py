@@ -1,0 +1,126 @@
+"""A campaign's folder read by two processes: the runs one by one, and the gear they identify beside them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rig.analysis.reproduction.campaign import Campaign
+from rig.analysis.reproduction.model import Model, identify_gear
+from rig.analysis.reproduction.reading import Reading, read
+from rig.core.errors import DataError, HdrigError
+from rig.runfile import manifest as manifests
+
+PROCESSES = 2  # the machine beside a rig has two cores to spare
+BESIDE = ("friction", "coast_down")  # procedures that tell the gear's parameters and are in no figure
+SLOW = ("kinematic_error", "full_turn")
+SHOWN = ("constant_torque", "constant_speed", "sentinel")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A run as its manifest tells it."""
+
+    folder: Path
+    manifest: Mapping[str, Any]
+
+    @property
+    def procedure(self) -> str:
+        """Of the run."""
+        return str(self.manifest.get("procedure", ""))
+
+    @property
+    def conditions(self) -> Mapping[str, Any]:
+        """Of the run."""
+        return self.manifest.get("conditions") or {}
+
+    @property
+    def locked(self) -> bool:
+        """Whether the output was."""
+        return bool(self.conditions.get("output_locked"))
+
+    @property
+    def bare(self) -> bool:
+        """Free and unloaded."""
+        return not self.locked and not self.conditions.get("tau_ext")
+
+
+def entries(campaign: Path) -> list[Entry]:
+    """Every run in the folder that came to its end, in order; checks and warm-up left out. Raises DataError: none, or
+    runs of several gears.
+    """
+    found = [Entry(path.parent, manifests.read(path.parent)) for path in sorted(campaign.rglob(manifests.NAME))]
+    found = [e for e in found if _counts(e.manifest)]
+    if not found:
+        raise DataError(f"{campaign} holds no completed run")
+    for what in ("ratio", "serial"):
+        values = {str((e.manifest.get("gear") or {}).get(what)) for e in found}
+        if len(values) > 1:
+            raise DataError(
+                f"{campaign} holds runs of several gears ({what} {', '.join(sorted(values))}): one page each"
+            )
+    return sorted(found, key=lambda e: (str(e.manifest.get("started_utc") or ""), _number_of(e.manifest)))
+
+
+def _counts(manifest: Mapping[str, Any]) -> bool:
+    kind = (manifest.get("campaign") or {}).get("kind")
+    return manifest.get("status") in ("completed", "imported", None) and kind not in ("check", "warm-up")
+
+
+def _number_of(manifest: Mapping[str, Any]) -> int:
+    return int((manifest.get("campaign") or {}).get("run") or 0)
+
+
+def gather(found: Sequence[Entry], progress: Callable[[str], None] = lambda text: None) -> Campaign:
+    """Read every run and identify the gear. A run that cannot be read is told to `progress` and left out."""
+    reference = slow_reference(found)
+    with ProcessPoolExecutor(PROCESSES, multiprocessing.get_context("spawn"), _quiet) as pool:
+        model = pool.submit(identify_gear, *to_identify(found))
+        readings = [pool.submit(read, e.folder, reference if e.locked else None) for e in found]
+        progress(f"{len(found)} runs in {PROCESSES} processes")
+        read_ones = [r for entry, one in zip(found, readings, strict=True) if (r := _or_told(one, entry, progress))]
+        return Campaign(read_ones, *_model(model))
+
+
+def slow_reference(found: Sequence[Entry]) -> Path | None:
+    """The longest unloaded slow run of the assembly made first: others may show how slow is slow enough, or stick."""
+    slow = [e for e in found if e.procedure in SLOW and e.bare]
+    first = [e for e in slow if e.conditions.get("assembly", 1) == slow[0].conditions.get("assembly", 1)]
+    return max(first, key=lambda e: int(e.manifest.get("rows") or 0)).folder if first else None
+
+
+def to_identify(found: Sequence[Entry]) -> tuple[list[Path], list[Path]]:
+    """(runs that the figures at speed do not show, those they do), of the assembly that was run at speed."""
+    fast = next((e for e in found if e.procedure in SHOWN), None)
+    assembly = None if fast is None else fast.conditions.get("assembly", 1)
+    here = [e for e in found if assembly is None or e.conditions.get("assembly", 1) == assembly]
+    slow = slow_reference(here)
+    apart = [e.folder for e in here if e.locked or e.folder == slow or (e.bare and e.procedure in BESIDE)]
+    return apart, [e.folder for e in here if e.bare and e.procedure in SHOWN]
+
+
+def _or_told(one: Future[Reading], entry: Entry, progress: Callable[[str], None]) -> Reading | None:
+    try:
+        return one.result()
+    except HdrigError as error:
+        progress(f"{entry.folder.name} left out: {error}")
+        return None
+
+
+def _model(one: Future[Model]) -> tuple[Model | None, str]:
+    try:
+        return one.result(), ""
+    except HdrigError as error:
+        return None, str(error)
+
+
+def _quiet() -> None:
+    """A Ctrl-C is the main process's to handle; one thread of linear algebra a process, two fill the machine."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"

@@ -1,0 +1,133 @@
+"""One run cut down to what the figures need of it: small enough to be sent from one process to another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.analyse import analyse
+from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.reproduction.shaft import Shaft, shaft_of
+from rig.analysis.reproduction.waveform_spectrum import Spectrum, spectrum_of
+from rig.analysis.reproduction.ways import Way, ways_of
+from rig.analysis.result import Array, Result
+from rig.analysis.source import Motion, motion_of
+from rig.analysis.strokes import Stroke, find_strokes
+from rig.analysis.tame import Tame
+from rig.analysis.window import measured_window, part
+from rig.runfile.run import Run
+
+FAST = 60.0  # rpm: from here a run shows what speed does, below it the pure error and how slow is slow enough
+FEWEST = 2  # revolutions of one speed
+UNREAD = ("friction", "coast_down", "step_test", "sign_and_scale", "weigh", "lock_check")  # for identification alone
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A run without its rows. To the analysis it is a Source that recorded nothing more."""
+
+    folder: Path
+    name: str
+    manifest: Mapping[str, Any]
+    ratio: float
+    procedure: str
+    slow: tuple[KinematicError, ...] = ()  # one for each speed below FAST, slowest first
+    fast: KinematicError | None = None  # over the settled part at the speed held longest
+    shaft: Shaft | None = None  # the torque sensor over the same part
+    spectrum: Spectrum | None = None
+    torque: float = float("nan")  # N·m, constant command
+    lock: Result | None = None
+    ways: tuple[Way, ...] = ()  # of a slow run, at the speed of most turns
+
+    def column(self, name: str) -> Array | None:
+        """None: the rows stayed in the run folder."""
+        return None
+
+    def has(self, name: str) -> bool:
+        """False"""
+        return False
+
+    @property
+    def conditions(self) -> Mapping[str, Any]:
+        """What was set for the run."""
+        return self.manifest.get("conditions") or {}
+
+    @property
+    def declared(self) -> Mapping[str, Any]:
+        """What was believed of the gear."""
+        return self.manifest.get("declared") or {}
+
+    @property
+    def tau_ext(self) -> float:
+        """N·m on the load."""
+        return _number(self.conditions.get("tau_ext"), 0.0)
+
+    @property
+    def assembly(self) -> int:
+        """Which fitting of the wave generator; 1 where none is said."""
+        return int(_number(self.conditions.get("assembly"), 1.0))
+
+    @property
+    def depth_mm(self) -> float:
+        """From the reference depth, deeper is positive."""
+        return _number(self.conditions.get("depth_mm"), 0.0)
+
+
+def read(folder: Path, reference: Path | None = None) -> Reading:
+    """The run in `folder`; from a lock test the kinematic error of `reference` is taken off. Raises HdrigError."""
+    run = Run.open(folder)
+    bare = Reading(folder, run.name, dict(run.manifest), run.ratio, run.procedure)
+    with np.errstate(all="ignore"):
+        if bare.conditions.get("output_locked"):
+            return _with(bare, lock=analyse(run, None if reference is None else Run.open(reference)))
+        if run.procedure in UNREAD:
+            return bare
+        tame = Tame(run)
+        motion = motion_of(tame)
+        if motion is None or motion.theta_l is None or motion.theta_m.size < 16 or angles_disagree(motion):
+            return bare
+        return _turning(bare, tame, motion)
+
+
+def _turning(bare: Reading, run: Tame, motion: Motion) -> Reading:
+    groups = _groups(motion)
+    if not groups:
+        return bare
+    if abs(motion.speed_rpm(*_ends(max(groups, key=_revolutions)))) < FAST:
+        found = [k for g in groups if (k := measure(run, motion, g, slow=True)) is not None and k.speed_rpm < FAST]
+        ways = ways_of(motion, max(groups, key=_revolutions), motion.pick(run.column("tau_l")))
+        return _with(bare, slow=tuple(found), ways=ways)
+    window = measured_window(run, motion)
+    settled = part(motion, window.lo, window.hi)
+    if not (groups := _groups(settled)):
+        return bare
+    fast = measure(run, settled, max(groups, key=_revolutions), slow=False)
+    shaft = shaft_of(settled, settled.pick(run.column("tau_l")))
+    return _with(bare, fast=fast, shaft=shaft, spectrum=spectrum_of(settled), torque=window.torque)
+
+
+def _groups(motion: Motion) -> list[list[Stroke]]:
+    """Strokes of one speed together, slowest first; those of too few revolutions left out."""
+    strokes = find_strokes(motion)
+    return [g for g in groups_by_speed(motion, strokes) if _revolutions(g) >= FEWEST] if strokes else []
+
+
+def _ends(group: list[Stroke]) -> tuple[int, int]:
+    longest = max(group, key=lambda s: s.revolutions)
+    return int(longest.edges[0]), int(longest.edges[-1])
+
+
+def _revolutions(group: list[Stroke]) -> int:
+    return sum(s.revolutions for s in group)
+
+
+def _with(bare: Reading, **found: Any) -> Reading:
+    return Reading(bare.folder, bare.name, bare.manifest, bare.ratio, bare.procedure, **found)
+
+
+def _number(value: object, otherwise: float) -> float:
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else otherwise

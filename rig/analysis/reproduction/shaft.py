@@ -1,0 +1,63 @@
+"""The torque sensor over the wave-generator angle: what bends the gear, apart from both encoders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.result import Array
+from rig.analysis.revolutions import TERMS
+from rig.analysis.source import Motion
+from rig.analysis.strokes import find_strokes
+from rig.analysis.sums import harmonics
+
+Complex = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """Orders of τ_l as Re Σ z_n·exp(jnθ_m), N·m, (k,); `u` 1 σ of one part of each, from revolution to revolution."""
+
+    orders: Complex
+    u: Array
+    revolutions: int
+    mean: float  # N·m
+    mean_size: float  # N·m, mean of |τ_l|
+    swing: float  # N·m, peak to peak of the orders over a turn
+    u_swing: float  # N·m, 1 σ
+
+
+def shaft_of(motion: Motion, tau_l: Array | None) -> Shaft | None:
+    """Least squares revolution by revolution over the longest stroke; None without a whole torque or three turns."""
+    strokes = find_strokes(motion)
+    if tau_l is None or not np.isfinite(tau_l).all() or not strokes:
+        return None
+    longest = max(strokes, key=lambda s: s.revolutions)
+    pieces = list(pairwise(int(e) for e in longest.edges))
+    terms = min(TERMS, min(b - a for a, b in pieces) // 4)
+    if len(pieces) < 3 or terms < 1:
+        return None
+    each = np.array([_orders(motion.theta_m[a:b], tau_l[a:b], terms) for a, b in pieces])
+    mean, root = each.mean(axis=0), np.sqrt(len(pieces))
+    u = np.sqrt(0.5 * (each.real.var(axis=0, ddof=1) + each.imag.var(axis=0, ddof=1))) / root
+    swings = np.array([np.ptp(wave(z)) for z in each])
+    rows = tau_l[pieces[0][0] : pieces[-1][1]]
+    return Shaft(
+        mean, u, len(pieces), float(rows.mean()), float(np.abs(rows).mean()),
+        float(np.ptp(wave(mean))), float(swings.std(ddof=1) / root),
+    )  # fmt: skip
+
+
+def _orders(theta: Array, tau: Array, terms: int) -> Complex:
+    columns = np.concatenate((np.ones((1, theta.size)), harmonics(theta, terms)))
+    found = np.linalg.lstsq(columns.T, tau, rcond=None)[0]
+    return np.asarray(found[1 : 1 + terms] - 1j * found[1 + terms :])
+
+
+def wave(phasor: Complex, points: int = 512) -> Array:
+    """Re Σ z_n·exp(jnθ) in the middle of `points` equal parts of a turn, orders from 1 on."""
+    angle = np.multiply.outer((np.arange(points) + 0.5) / points * 2.0 * np.pi, np.arange(1.0, phasor.size + 1))
+    return np.asarray(np.cos(angle) @ phasor.real - np.sin(angle) @ phasor.imag)

@@ -1,0 +1,126 @@
+"""hdrig reproduce [CAMPAIGN]: the paper's figures and tables from a campaign, its claims ruled by the data."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.bench import ClockName
+from rig.bench import read as read_bench
+from rig.campaign import summary
+from rig.campaign.journal import NAME as JOURNAL
+from rig.campaign.journal import new_journal
+from rig.campaign.plan import read_plan
+from rig.campaign.planner import planned
+from rig.campaign.run import conduct, open_session
+from rig.commands.campaign import Terminal, refuse_nobody
+from rig.commands.options import bench_arguments
+from rig.commands.person import Person
+from rig.core.errors import Exit, HdrigError, UsageError
+from rig.interrupts import Interrupts
+
+if TYPE_CHECKING:
+    from rig.analysis.reproduction.gather import Entry
+
+BENCH, PLAN = "twin-paper", "paper-short"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig reproduce`."""
+    what = "folder of a campaign that was made; without one the plan is made first"
+    parser.add_argument("campaign", nargs="?", type=Path, metavar="CAMPAIGN", help=what)
+    bench_arguments(parser)
+    parser.add_argument("--plan", default=PLAN, metavar="PLAN", help=f"what to make without CAMPAIGN, default {PLAN}")
+    where = "where the page goes, default the campaign's folder; without CAMPAIGN where that folder goes, default runs"
+    for action in parser._actions:
+        if action.dest == "out":
+            action.help = where
+    parser.set_defaults(bench=BENCH, out=None)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Make the campaign where none is given, then the page."""
+    if args.campaign is not None:
+        return draw(args.campaign, args.out or args.campaign)
+    folder, exit = make(args)
+    if exit is not Exit.PASS:
+        print(f"hdrig campaign --resume {folder} goes on with it; hdrig reproduce {folder} draws it", file=sys.stderr)
+        return int(exit)
+    return draw(folder, folder)
+
+
+def make(args: argparse.Namespace) -> tuple[Path, Exit]:
+    """The plan, run by run, without a report for each; its folder and how it ended. Raises HdrigError."""
+    seed = [] if args.seed is None else [f"twin.seed={args.seed}"]
+    overrides = [*args.set, *seed]
+    bench = read_bench(args.bench, overrides)
+    campaign = planned(read_plan(args.plan), bench, args.seed or 0)
+    refuse_nobody(campaign, range(len(campaign.items)))
+    clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
+    journal = new_journal(args.out or Path("runs"), campaign, clock, overrides)
+    if bench.simulated:
+        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
+    print(f"campaign folder {journal.folder}", file=sys.stderr)
+    with Interrupts() as interrupts:
+        person = Person(interrupts)
+        with open_session(campaign, journal, clock, interrupts, args.note, person) as session:
+            exit = conduct(session, campaign, journal, Recording(bench, person))
+    text = "\n".join(summary.lines(journal)) + "\n"
+    (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    return journal.folder, exit
+
+
+class Recording(Terminal):
+    """Runs are recorded; what they say is read once, from all of them, for the page."""
+
+    def figure(self, folder: Path) -> str:
+        return "recorded"
+
+
+def draw(campaign: Path, out: Path) -> int:
+    """The page from the runs in `campaign` into `out`. Raises UsageError and DataError."""
+    from rig.analysis.reproduction.catalogue import exhibits
+    from rig.analysis.reproduction.gather import entries, gather
+    from rig.report.reproduction import told, write
+
+    if not campaign.is_dir():
+        raise UsageError(f"{campaign} is no folder; expected that of a campaign")
+    found = entries(campaign)
+    made = exhibits(gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr)))
+    backends = {str(e.manifest.get("backend")) for e in found}
+    backend = "sim" if "sim" in backends else next(iter(backends)) if len(backends) == 1 else None
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        page = write(out, made, facts(campaign, found), backend)
+    except OSError as error:
+        raise UsageError(f"cannot write into {out}: {error.strerror}; name another folder with --out") from None
+    print("SIMULATED" if backend == "sim" else f"campaign {campaign.name}")
+    print("\n".join(told(made)))
+    print(f"page {page}")
+    return int(Exit.INCOMPLETE if any(e.missing for e in made) else Exit.PASS)
+
+
+def facts(campaign: Path, found: Sequence[Entry]) -> list[str]:
+    """What stands below the title."""
+    gear = found[0].manifest.get("gear") or {}
+    days = sorted({str(e.manifest.get("started_utc") or "")[:10] for e in found} - {""})
+    said = [f"Gear {gear['serial']}"] if gear.get("serial") else []
+    said += [f"ratio {gear.get('ratio')}", f"{len(found)} runs"]
+    said += [days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"] if days else []
+    return [*said, *_planned(campaign), campaign.resolve().name]
+
+
+def _planned(campaign: Path) -> list[str]:
+    """Plan and bench, where the folder says them."""
+    from rig.campaign.journal import read_journal
+
+    if not (campaign / JOURNAL).is_file():
+        return []
+    try:
+        book = read_journal(campaign).book
+    except HdrigError:
+        return []
+    return [f"plan {Path(str(book['plan']['source'])).stem}", f"bench {Path(str(book['bench']['source'])).stem}"]

@@ -1,0 +1,107 @@
+"""All exhibits as one page: self-contained HTML, read without network or script, fit to be printed and hung up."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from rig.analysis.reproduction.claim import Ruling
+from rig.analysis.reproduction.exhibit import Exhibit
+from rig.report.figures import CATALOGUE, Drawing, Frame, svg
+from rig.report.page import css_string
+from rig.report.palette import DARK, LIGHT, variables
+from rig.report.reproduction import loads, spectrum_cpm, turn
+from rig.report.reproduction.text import SAID, SIGN, TONE, cell, count, found, record
+from rig.report.words import origin
+from rig.runfile.manifest import write_atomic
+
+HERE = Path(__file__).parent
+NAME = "reproduction.html"
+DATA = "reproduction.json"
+WIDE, NARROW = 640.0, 360.0  # px; each figure is drawn twice, so that its text is legible on a phone too
+OURS = (turn.TURNS, turn.COMPARED, spectrum_cpm.DRAWING, loads.DRAWING)
+DRAWINGS: Mapping[str, Drawing] = {d.name: d for d in (*CATALOGUE, *OURS)}
+
+
+def write(folder: Path, exhibits: Sequence[Exhibit], facts: Sequence[str], backend: str | None) -> Path:
+    """Write reproduction.html and reproduction.json into `folder`; return the page's path. Raises OSError.
+
+    `facts` stand below the title; `backend` is that of the runs' manifests.
+    """
+    write_atomic(folder / DATA, json.dumps(record(exhibits), indent=1, ensure_ascii=False).encode() + b"\n")
+    write_atomic(folder / NAME, render(exhibits, facts, backend).encode(errors="replace"))
+    return folder / NAME
+
+
+def render(exhibits: Sequence[Exhibit], facts: Sequence[str], backend: str | None) -> str:
+    """The page as text. The same arguments give the same text: no clock and no random number is asked."""
+    where = origin(backend)
+    rulings = count(exhibits)
+    view = {
+        "origin": where,
+        "facts": facts,
+        "score": [(SIGN[r], TONE[r], rulings[r], words) for r, words in SCORE.items()],
+        "exhibits": [_exhibit(e, where.mark) for e in exhibits],
+        "css": _css(where.mark),
+    }
+    loader = jinja2.FileSystemLoader(HERE)
+    environment = jinja2.Environment(
+        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.get_template("page.html").render(view)
+
+
+SCORE = {
+    Ruling.HOLDS: "of the paper’s claims hold in these data",
+    Ruling.FAILS: "do not",
+    Ruling.OPEN: "cannot be told from them",
+}
+
+
+def _exhibit(e: Exhibit, mark: str) -> dict[str, Any]:
+    return {
+        "anchor": e.anchor,
+        "number": e.number,
+        "title": e.title,
+        "paper": e.paper,
+        "how": e.how,
+        "missing": e.missing,
+        "claims": [
+            {
+                "sign": SIGN[c.ruling], "tone": TONE[c.ruling], "said": SAID[c.ruling], "paper": c.paper,
+                "found": found(c), "rule": c.rule,
+            }
+            for c in e.claims
+        ],
+        "columns": e.columns,
+        "rows": [[cell(value) for value in row] for row in e.rows],
+        **_pictures(e, mark),
+    }  # fmt: skip
+
+
+def _pictures(e: Exhibit, mark: str) -> dict[str, Markup]:
+    """Wide and narrow; empty where there is nothing to draw."""
+    drawing, pictures = DRAWINGS.get(e.drawing), {"wide": Markup(""), "narrow": Markup("")}
+    if drawing is None:
+        return pictures
+    for name, width in (("wide", WIDE), ("narrow", NARROW)):
+        text = svg(drawing, e.curves, Frame(width, mark), prefix=f"{e.anchor}-{name[0]}-")
+        pictures[name] = Markup(text or "")  # ours, and escaped by the XML writer
+    return pictures
+
+
+def _css(mark: str) -> Markup:
+    text = (HERE.parent / "page.css").read_text(encoding="utf-8") + (HERE / "page.css").read_text(encoding="utf-8")
+    for name, value in (
+        ("{{LIGHT}}", variables(LIGHT)),
+        ("{{DARK}}", variables(DARK)),
+        ("{{RUN}}", css_string("hdrig reproduce")),
+        ("{{MARK}}", css_string(mark)),
+    ):
+        text = text.replace(name, value)
+    return Markup(text)
