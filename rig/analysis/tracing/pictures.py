@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rig.analysis.tracing.bins import BINNED, FEWEST, Index, rms
+from rig.analysis.tracing.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import UNITS
 from rig.analysis.tracing.floor import strokes
-from rig.analysis.tracing.unknown import INDICES, Rest, homes, rest, score, spectrum
-from rig.analysis.tracing.unknown import _folds as folds
+from rig.analysis.tracing.shares import shares
+from rig.analysis.tracing.unknown import rest, spectrum
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
@@ -25,8 +25,6 @@ DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
 QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long
 ORDERS: Final = np.arange(0.02, 40.0, 0.02)  # of the motor: beyond the series, steps of one output turn
 EXCESS: Final = 0.21  # of the squared floor (a ratio of 1.1): below it there is nothing to share out
-COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory", "speed", "time")
-PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
 
 
 def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
@@ -35,7 +33,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
     where.<C>.<coordinate>.x, .before, .after (b,)
         RMS over floor in bins of a coordinate; x in ° for angles, ±1, N·m, rpm, s
     share.<C> (10,)
-        share of the excess before that each of `COORDINATES`, then of `PAIRS`, predicts in rows it was not fitted to, 0
+        share of the excess before that each of `shares.COORDINATES`, then of `PAIRS`, predicts in rows it was not fitted to, 0
         to 1; absent where there is no excess, NaN for the load in L, whose reading is itself the load
     share_frequency_hz.<C> (2,)
         a fixed frequency that runs of differing speed have in common, and its share; absent where there is none
@@ -85,30 +83,8 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
         out[f"{stem}.x"] = middles
         out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
     if np.mean(first.e**2) > 1 + EXCESS:
-        out |= shares(first, channel)
+        out |= shares(first, p.court.floors, channel)
     return out
-
-
-def shares(r: Rest, channel: str) -> dict[str, Array]:
-    """`share.*` of one channel: bin means of one half of the rows against the other half."""
-    found: dict[str, float] = {}
-    for h in homes(r, channel):  # an angle stands there twice: in bins, and as one order
-        found[h.coordinate] = max(h.share, found.get(h.coordinate, 0.0))
-    excess = float(np.mean(r.e**2)) - 1.0
-    alone = [found.get(name, 0.0) for name in COORDINATES]
-    both = [score(r, folds(r), crossed(r, *pair)) / excess for pair in PAIRS]
-    own = [channel == "L" and bool({"load", "memory"} & {*names}) for names in (*((c,) for c in COORDINATES), *PAIRS)]
-    out = {f"share.{channel}": np.where(own, np.nan, np.clip(alone + both, 0.0, 1.0))}
-    line = next((h for h in homes(r, channel) if h.frequency_hz is not None), None)
-    if line is not None and line.frequency_hz is not None:
-        out[f"share_frequency_hz.{channel}"] = np.array([line.frequency_hz, min(line.share, 1.0)])
-    return out
-
-
-def crossed(r: Rest, one: str, other: str) -> Index:
-    """Cells of two coordinates, −1 where either is unknown."""
-    a, b = INDICES[one](r), INDICES[other](r)
-    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1).astype(np.int64)
 
 
 def by_order(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:

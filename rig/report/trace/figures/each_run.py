@@ -44,15 +44,18 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
         panel.yaxis.set_major_locator(FixedLocator(list(range(len(runs)))))
         panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: runs[len(runs) - 1 - round(y)]))
         panel.tick_params(axis="y", labelleft=column == 0, labelcolor=LIGHT["ink"], labelsize=11)
-        style = {"textcoords": "offset points", "fontweight": "bold"}
         at = (2 - left if column == 0 else 0, 30 if k == 0 else 10)
-        panel.annotate(f"{channel.name}, {channel.unit}", (0, 1), at, "axes fraction", **style)
+        panel.annotate(
+            f"{channel.name}, {channel.unit}", (0, 1), at, "axes fraction", "offset points", fontweight="bold"
+        )
         if k == 0:
             handles = [handle({**BEFORE, "marker": "o", "ls": "none"}, "before")]
             handles += [handle({**AFTER, "marker": "s", "ls": "none"}, "after")]
             handles += [handle({**FLOOR, "marker": "|", "ms": 11, "mew": 2, "ls": "none"}, "floor")]
             key(panel, handles, columns=3)
-            panel.get_legend().set_bbox_to_anchor((-left / width, 1.0), transform=panel.transAxes)
+            legend = panel.get_legend()
+            if legend is not None:
+                legend.set_bbox_to_anchor((-left / width, 1.0), transform=panel.transAxes)
     return figure
 
 

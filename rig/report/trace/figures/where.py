@@ -73,12 +73,13 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
 def _key(panel: Axes) -> None:
     handles = [handle(BEFORE, "before"), handle(AFTER, "after"), handle(FLOOR, "floor")]
     key(panel, handles, columns=3)
-    panel.get_legend().set_bbox_to_anchor((-0.02, 1.22), transform=panel.transAxes)
+    legend = panel.get_legend()
+    if legend is not None:
+        legend.set_bbox_to_anchor((-0.02, 1.22), transform=panel.transAxes)
 
 
 def _name(panel: Axes, text: str) -> None:
-    style = {"xytext": (2 - LEFT, 8), "textcoords": "offset points", "fontweight": "bold"}
-    panel.annotate(text, (0, 1), xycoords="axes fraction", **style)
+    panel.annotate(text, (0, 1), (2 - LEFT, 8), "axes fraction", "offset points", fontweight="bold")
 
 
 def _found(curves: Curves, channel: Channel, name: str) -> tuple[Array, Array, Array] | None:
