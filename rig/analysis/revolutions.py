@@ -82,6 +82,20 @@ def _curves(
     return curves, (total, position, rows)
 
 
+def _each(pieces: list[Sums], trend: Array, degree: int, order0: list[int]) -> tuple[Array, float]:
+    """Coefficients of every revolution once the stroke's trend is off its sums, (R, 1 + 2·terms), and what is left."""
+    slow = slice(1, degree + 1)
+    coefficients, residual_square = np.empty((len(pieces), len(order0))), 0.0
+    for r, piece in enumerate(pieces):
+        moment = piece.moment - piece.gram[:, slow] @ trend[1:]
+        square = piece.square - 2.0 * float(trend[1:] @ piece.moment[slow])
+        square += float(trend[1:] @ piece.gram[slow, slow] @ trend[1:])
+        own = Sums(piece.gram[np.ix_(order0, order0)], moment[order0], square, piece.count)
+        coefficients[r] = own.solve()
+        residual_square += own.residual(coefficients[r])
+    return coefficients, residual_square
+
+
 def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
     """Fourier coefficients of every whole revolution, by least squares over all its rows, with one trend per stroke.
 
@@ -118,16 +132,7 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
         whole = whole + sums(stroke.start, edges[0]) + sums(edges[-1], stroke.stop)
     trend = whole.solve()[slow]
 
-    coefficients = np.empty((stroke.revolutions, 1 + 2 * terms))
-    residual_square = 0.0
-    for r, piece in enumerate(pieces):
-        moment = piece.moment - piece.gram[:, 1 : degree + 1] @ trend[1:]
-        square = piece.square - 2.0 * float(trend[1:] @ piece.moment[1 : degree + 1])
-        square += float(trend[1:] @ piece.gram[1 : degree + 1, 1 : degree + 1] @ trend[1:])
-        own = Sums(piece.gram[np.ix_(order0, order0)], moment[order0], square, piece.count)
-        coefficients[r] = own.solve()
-        residual_square += own.residual(coefficients[r])
-
+    coefficients, residual_square = _each(pieces, trend, degree, order0)
     slow_mean = np.array([p.gram[0, 1 : degree + 1] @ trend[1:] / max(p.count, 1) for p in pieces])
     curves, (total, position, rows) = _curves(
         motion, edges, lambda theta, error: error - zero - trend @ slow_columns(theta)

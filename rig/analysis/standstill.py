@@ -95,6 +95,31 @@ def floor_of(x: Array, t: Array | None, count: float = 0.0) -> Floor:
     return Floor(float(x.mean()), u_mean, rms, u_rms, slope, u_drift)
 
 
+def _add_channel(
+    found: Findings, named: tuple[str, str, str], x: Array, t: Array | None, count: float, since: str
+) -> tuple[float, list[dict[str, float | str]]]:
+    """Figures of one channel, (key, label, unit) `named`; its rms and the lines at fixed frequency in it."""
+    name, label, unit = named
+    f = floor_of(x - x[0], t, count)
+    how = f"rms about the line of its drift, {since}; interval from the scatter of twenty pieces."
+    if f.rms == 0.0:
+        how = f"It never left one count ({since}): its noise is below the resolution."
+    found.figure(f"noise_{name}", f"{label}, noise at rest", f.rms, unit, f.u_rms, how)
+    if name.startswith("tau"):
+        how = f"Mean at rest, {since}: zero of the sensor and what friction still holds."
+        found.figure(f"zero_{name}", f"{label}, mean at rest", f.mean + float(x[0]), unit, f.u_mean, how)
+    if t is None:
+        return f.rms, []
+    how = f"Line through {since}; half a count of quantisation at least is in the interval."
+    found.figure(f"drift_{name}", f"{label}, drift", f.drift, f"{unit}/min", f.u_drift, how)
+    if f.rms == 0.0:
+        return f.rms, []
+    duration = float(t[-1] - t[0])
+    highest = 0.4 * (x.size - 1) / duration
+    seen = find_lines(TURN * (t - t[0]), x, highest, slowest=TEN / duration, most=MOST_LINES)
+    return f.rms, [_row(name, line, unit, f.rms) for line in seen]
+
+
 def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
     """Noise floor of every channel: rms, drift, lines at fixed frequency, after the run has settled."""
     raw = {name: motion.pick(run.column(name)) for name, *_ in CHANNELS}
@@ -120,34 +145,10 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
         if name not in known:
             found.cannot.append(f"{label}: not recorded.")
             continue
-        x = known[name][first:] * scale
-        count = _count(run, name, known[name]) * scale
-        f = floor_of(x - x[0], t, count)
-        how = f"rms about the line of its drift, {since}; interval from the scatter of twenty pieces."
-        if f.rms == 0.0:
-            how = f"It never left one count ({since}): its noise is below the resolution."
-        found.figure(f"noise_{name}", f"{label}, noise at rest", f.rms, unit, f.u_rms, how)
-        if name.startswith("tau"):
-            how = f"Mean at rest, {since}: zero of the sensor and what friction still holds."
-            found.figure(f"zero_{name}", f"{label}, mean at rest", f.mean + float(x[0]), unit, f.u_mean, how)
-        said.append(f"{label.lower()} {f.rms:.3g} {unit}")
-        if t is not None:
-            found.figure(
-                f"drift_{name}",
-                f"{label}, drift",
-                f.drift,
-                f"{unit}/min",
-                f.u_drift,
-                f"Line through {since}; half a count of quantisation at least is in the interval.",
-            )
-            duration = float(t[-1] - t[0])
-            rate = (rows - 1) / duration
-            seen = (
-                find_lines(TURN * (t - t[0]), x, 0.4 * rate, slowest=TEN / duration, most=MOST_LINES)
-                if f.rms > 0
-                else []
-            )
-            lines += [_row(name, line, unit, f.rms) for line in seen]
+        x, count = known[name][first:] * scale, _count(run, name, known[name]) * scale
+        rms, seen = _add_channel(found, (name, label, unit), x, t, count, since)
+        said.append(f"{label.lower()} {rms:.3g} {unit}")
+        lines += seen
     if t is None:
         found.cannot.append("No usable time column: drift and fixed frequencies cannot be had.")
     else:

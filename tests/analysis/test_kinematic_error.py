@@ -209,6 +209,6 @@ def test_two_speeds_are_not_mixed_and_the_slower_one_is_the_kinematic_error() ->
     slow, fast = slow_run(1, cycles=1), slow_run(2, cycles=1, frequency=0.03)
     columns = {n: np.concatenate((slow.columns[n], fast.columns[n])) for n in slow.columns}
     columns["t"] = np.arange(columns["t"].size) * 1e-3
-    result = analyse(replace(slow, columns=columns, manifest={**slow.manifest, "procedure": "speed_convergence"}))
+    result = analyse(replace(slow, columns=columns, manifest={**slow.manifest, "procedure": "kinematic_error"}))
     assert abs(figures(result)["mean_speed"].value - 9.6) < 0.05
     assert [round(float(r["speed_rpm"]), 1) for r in result.tables["speeds"]] == [9.6, 28.8]
