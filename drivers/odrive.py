@@ -150,6 +150,9 @@ class ODrive(Drive):
                 why = self.axis.error or "is the motor calibrated?"
                 self.halt()
                 raise NotReady(f"{told} within {STEP_PATIENCE:g} s: {why}")
+            if self.axis.expired_now:  # the machine was away for that long
+                self.axis.send(cs.CLEAR, b"\0")
+                self.axis.request(cs.CLOSED_LOOP)
             self.axis.send(cs.SET_TORQUE, cs.encode_torque(0.0))
             self.bus.wait(FEED, lambda: self.axis.state == cs.CLOSED_LOOP)
 
@@ -213,7 +216,8 @@ class ODrive(Drive):
         data = cs.encode_torque(self._direction * tau)
         if not self.axis.send(cs.SET_TORQUE, data):
             return 0.0
-        return self._direction * float(struct.unpack("<f", data)[0])
+        carried: float = struct.unpack("<f", data)[0]
+        return float(self._direction * carried)
 
     def halt(self) -> bool:
         """Idle and zero torque at once; True when a heartbeat says that it left closed loop. Never raises."""

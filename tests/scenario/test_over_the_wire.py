@@ -59,7 +59,7 @@ class Twin:
 def twin(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Twin]:
     doors = Path("/tmp") / f"hdrig-test-{os.getpid()}"  # a socket's path may have 107 characters at most
     doors.mkdir()
-    options = ["--bus", "can", "--control", "control", "--serial", "serial", "--slcan", "slcan"]
+    options = ["--bus", "can", "--control", "control", "--serial", "serial", "--slcan", "slcan", "--odrive", "odrive"]
     process = subprocess.Popen(
         [*HDRIG, "twin", *options, "--socketcand", "0", "--for", "600"], cwd=doors, stdout=subprocess.PIPE, text=True
     )
@@ -98,7 +98,7 @@ def figures_of(out: Path, procedure: str) -> dict[str, tuple[float, float]]:
     return {f["key"]: (f["value"], f.get("half_width") or 0.0) for f in result["figures"]}
 
 
-@pytest.mark.parametrize("bench", ["twin-can", "twin-canopen", "twin-slcan", "twin-socketcand"])
+@pytest.mark.parametrize("bench", ["twin-can", "twin-canopen", "twin-slcan", "twin-socketcand", "twin-odrive"])
 def test_the_kinematic_error_found_over_the_wire_is_that_of_the_plant(twin: Twin, bench: str, tmp_path: Path) -> None:
     done = run(twin, bench, "kinematic-error", tmp_path, *SHORT)
     assert "completed" in done.stderr, done.stderr
