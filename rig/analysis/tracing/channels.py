@@ -6,7 +6,8 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
     M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
-c_0 and the torque sensor's zero z belong to the run. B_ml shows in A only when the torque sensor sits behind the mesh's
+T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and 0.1 ms already
+shows at 300 rpm. c_0 and the torque sensor's zero z belong to the run. B_ml shows in A only when the torque sensor sits behind the mesh's
 own drag; it is known to be small. Without a torque sensor T comes from L with what
 is declared, and L is no equation any more.
 """
@@ -40,6 +41,7 @@ BASELINE: Final = (
     "B_l",
     "tau_cl",
     "tau_l0",
+    "lag",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
@@ -74,7 +76,8 @@ def rows(run: Recording, channel: str) -> Rows:
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
-    made = [{"A": _angle, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
+    alone = _angle if "tau_l" in run.has else _angle_alone
+    made = [{"A": alone, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
     y = np.concatenate([m[0] for m in made])
     z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
     return y, z, tuple(INDEX[name] for name in made[0][1])
@@ -102,16 +105,24 @@ def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     return y, columns
 
 
+def _angle_alone(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+    """A without a torque sensor: what the load's bearings take is missing in T and stands beside it."""
+    y, columns = _angle(s, f)
+    return y, columns | {"B_l": f(s.theta_l, 1) / s.gear.K, "tau_cl": f(s.way) / s.gear.K}
+
+
 def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_m - s.tau_l / s.ratio)
     columns = dict(zip(SERIES, f(-s.tau_l[:, None] * slopes(s.theta_m)).T, strict=True))
     columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
+    columns |= {"lag": f(s.tau_l, 1) / s.ratio}
     return y, columns
 
 
 def _load(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_l + s.tau_ext)
     columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "tau_l0": np.ones_like(y)}
+    columns |= {"lag": -f(s.tau_l, 1)}
     return y, columns
 
 
@@ -197,6 +208,11 @@ def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother) -> dict[str,
     return out
 
 
+def damping_of(coefficient: float, stiffness: float, lag: float) -> float:
+    """B_sp [N·m·s/rad] from what stands before ṙ in A, −B_sp/K² + δ/K."""
+    return (lag / stiffness - coefficient) * stiffness**2
+
+
 def known_of(values: Mapping[str, float]) -> Known:
     """What effects may lean on, from the baseline's coefficients."""
     from rig.model.fourier import FourierSeries
@@ -204,7 +220,7 @@ def known_of(values: Mapping[str, float]) -> Known:
     stiffness = 1 / values["compliance"]
     return Known(
         K=stiffness,
-        B_sp=-values["damping"] * stiffness**2,
+        B_sp=damping_of(values["damping"], stiffness, values["lag"]),
         J_m=values["J_m"],
         J_l=values["J_l"],
         torque_zero=values["tau_l0"],

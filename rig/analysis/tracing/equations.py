@@ -102,9 +102,9 @@ class Equations:
 def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:
     """Columns of `term` in each channel of `kept`, pieces joined, rows as in `kept`."""
     made = [footprint(term.effect.columns(piece, term.shape), piece, run.smoother) for piece in run.pieces]
-    return {
-        channel: np.concatenate([m[channel] for m in made])[r.keep] for channel, r in kept.items() if channel in made[0]
-    }
+    joined = {c: np.concatenate([m[c] for m in made])[r.keep] for c, r in kept.items() if c in made[0]}
+    # a column of something that was not measured explains nothing
+    return {c: z if np.isfinite(z).all() else np.zeros_like(z) for c, z in joined.items()}
 
 
 def equations(runs: Sequence[Recording], noise: Noise) -> Equations:

@@ -45,7 +45,7 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
 
 def alike(a: Recording, b: Recording) -> bool:
     """Same words, and the same motion."""
-    if a.said != b.said or a.has != b.has or "theta_m" not in a.has:
+    if a.said != b.said or a.has != b.has:
         return False
     x, y = travel(a), travel(b)
     return all(abs(u - v) <= CLOSE * max(abs(u), abs(v), 1e-9) for u, v in zip(x, y, strict=True))

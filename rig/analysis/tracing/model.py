@@ -12,7 +12,7 @@ import numpy.typing as npt
 from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import BASELINE, INDEX
 from rig.analysis.tracing.equations import Equations, Key, Term
-from rig.analysis.tracing.thresholds import MESH, SECOND
+from rig.analysis.tracing.thresholds import LAG, MESH, SECOND
 from rig.model.effect import Array
 
 PIECES = 4  # of a run and channel: the clusters of the sandwich, each many correlation times long
@@ -165,10 +165,11 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
 
 
 def prior(size: int, stiffness: float = 7160.0) -> Array:
-    """Information (size,) known beforehand: the two columns that may only be small."""
+    """Information (size,) known beforehand: the three columns that may only be small."""
     out = np.zeros(size)
     out[INDEX["mesh"]] = (stiffness / MESH) ** 2
     out[INDEX["damping_2"]] = (stiffness / SECOND) ** 2
+    out[INDEX["lag"]] = 1 / LAG**2
     return out
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rig.analysis.angle import ARCSEC
-from rig.analysis.tracing.channels import INDEX, ORDERS
+from rig.analysis.tracing.channels import INDEX, ORDERS, damping_of
 from rig.analysis.tracing.model import Solution, covariance, extended, fit
 from rig.analysis.tracing.refine import nudged
 from rig.model.effect import Array, Fit, Parameter, parameter
@@ -20,6 +20,7 @@ PLAIN = {
     "J_l": "kg·m²",
     "B_l": "N·m·s/rad",
     "tau_cl": "N·m",
+    "lag": "s",
 }
 TOGETHER = (("B_m", "B_ml"), ("B_l", "B_ml"))
 """Viscous terms of equations 6 and 7 that stand before the same speed: what is given is B_m + B_ml, and B_l with it."""
@@ -33,8 +34,9 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
     if seen[INDEX["compliance"]] and np.isfinite(stiff):
         along = _unit(c, "compliance") * -(stiff**2)
         out.append(_of("K", stiff, along, c, "N·m/rad"))
-        damping = -s.value("damping") * stiff**2
-        both = _unit(c, "damping") * -(stiff**2) + _unit(c, "compliance") * 2 * s.value("damping") * stiff**3
+        damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
+        both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
+        both += _unit(c, "compliance") * (2 * s.value("damping") * stiff - lag) * stiff**2
         out.append(_of("B_sp", damping, both, c, "N·m·s/rad"))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
     if seen[INDEX["a1"]]:

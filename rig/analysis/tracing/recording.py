@@ -141,6 +141,7 @@ def _piece(
     n = c["theta_m"].size
     if n < 10 * smooth.half:
         return None
+    c = _substituted(c, smooth.dt, run, tau_ext)
     time = start + first + smooth.dt * np.arange(n)
     derived = _derived(c, smooth)
     return Signals(
@@ -157,6 +158,21 @@ def _piece(
         gear=UNKNOWN,
         **derived,
     )
+
+
+def _substituted(c: Mapping[str, Array], dt: float, run: Run, tau_ext: float) -> dict[str, Array]:
+    """Stand-ins for readings that are not there, so that columns have something to lean on.
+
+    The shaft torque of a free load is what its declared inertia and weight take; the motor angle is the load's times N.
+    """
+    out = dict(c)
+    if not np.isfinite(out["theta_m"]).any():
+        out["theta_m"] = out["theta_l"] * run.ratio
+    locked = bool(run.conditions.get("output_locked"))
+    if not np.isfinite(out["tau_l"]).any() and np.isfinite(out["theta_l"]).any() and not locked:
+        inertia = float(run.declared.get("J_l") or UNKNOWN.J_l)
+        out["tau_l"] = inertia * flat_rate(out["theta_l"], dt, 2) - tau_ext
+    return out
 
 
 def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:

@@ -14,7 +14,7 @@ from rig.model.effect import Array, Reach, Shape
 NUDGE = 1e-2  # relative, of a shape parameter: large against rounding, small against a shape's width
 LARGEST = 0.7  # of the logarithm, in one step: no further than the neighbour in the bank
 CLOSE = 2e-3  # relative: further steps change no figure that is shown
-ROUNDS = 6
+ROUNDS = 4
 
 
 def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:

@@ -69,9 +69,24 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         after=errors(p.eq, p.court, final),
         next_run=ruling.next_run,
         notes=p.campaign.notes,
-        cannot=ruling.cannot,
+        cannot=(*ruling.cannot, *absent(p)),
         curves=curves(p, before, final) | pictures(p, before, final),
     )
+
+
+def absent(p: Prepared) -> tuple[str, ...]:
+    """What cannot be told for want of a channel."""
+    has = frozenset().union(*(run.has for run in p.campaign.runs))
+    return tuple(sentence for channel, sentence in WITHOUT.items() if channel not in has)
+
+
+WITHOUT = {
+    "t": "No run has a time column: speeds, inertias and damping have no scale; 250 rows a second were assumed.",
+    "theta_m": "No motor angle: neither the kinematic error nor the motor's torque balance can be looked at.",
+    "theta_l": "No load angle: the kinematic error, the stiffness and the load's torque balance cannot be looked at.",
+    "tau_l": "No shaft torque: it was taken from the declared load inertia; sensor effects of it cannot be seen.",
+    "tau_m": "No motor torque: friction and torque ripple of the motor side cannot be seen.",
+}
 
 
 def own_shares(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> dict[str, float]:

@@ -13,7 +13,7 @@ from rig.analysis.tracing.equations import Key, Term
 from rig.analysis.tracing.model import Design, Solution, extended, fit, without
 from rig.analysis.tracing.refine import refine
 from rig.analysis.tracing.scan import Drop, Own, cross, drops, own
-from rig.analysis.tracing.thresholds import EVIDENCE, MOST, SMALLEST, STILL, STILL_RUN
+from rig.analysis.tracing.thresholds import EVIDENCE, MOST, RELATIVE, SMALLEST, STILL, STILL_RUN
 from rig.model.effect import Array, Fit, Known, Reach
 
 ROUNDS = 4
@@ -93,7 +93,15 @@ def search(
             break
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
-        chosen = next((r for r in ranked if r.evidence > EVIDENCE and r.size > SMALLEST and _new(r.term, s)), None)
+        first = ranking[0].evidence if ranking else 0.0
+        chosen = next(
+            (
+                r
+                for r in ranked
+                if r.evidence > max(EVIDENCE, RELATIVE * first) and r.size > SMALLEST and _new(r.term, s)
+            ),
+            None,
+        )
         if chosen is None:
             break
         s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
@@ -137,6 +145,14 @@ def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
             d = extended(d, term, runs)
         s = refine(d, terms[-1], runs, covered)[1]
     return s
+
+
+def polished(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Every term's shape found again beside the terms that are left, each in its turn."""
+    for term in s.design.terms:
+        i = s.design.terms.index(term)
+        s = refine(reduced(s.design, [i]), term, runs, covered)[1]
+    return settled(s, runs, covered) if s.design.terms else s
 
 
 def _change(before: Known, now: Known) -> float:

@@ -13,12 +13,14 @@ SETTLING: Final = 0.15  # s left out of the torque equations on both sides of a 
 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
 SECOND: Final = 1e-6  # s², (B_sp/K)²: a damping ratio of 5 % at 16 Hz, the second order of the spring's damping
+LAG: Final = 3e-4  # s, most that a torque sensor's own low-pass delays it: 530 Hz, first order; more is a channel read late
 ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
 
 FLOOR_LEAST: Final = 400  # rows that two repeats must share before their difference is believed
 UNCORRELATED: Final = 0.05  # of the autocorrelation: below it rows count as independent
 
 FAINTEST: Final = 1e-5  # share of a column that must be its own before it is solved for
+RELATIVE: Final = 3e-4  # of the first effect's evidence: below a sixtieth of its size lies what its law has wrong
 CLEAR: Final = 0.5  # share of a column beside the model that must not be sensor noise
 EVIDENCE: Final = 12.0  # nats; at 300 variants tried, chance gets there once in a thousand campaigns
 

@@ -29,7 +29,7 @@ from rig.analysis.tracing.model import Solution, design, fit
 from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
-from rig.analysis.tracing.search import Found, search, still
+from rig.analysis.tracing.search import Found, polished, search, still
 from rig.analysis.tracing.thresholds import OWN
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Parameter
@@ -59,11 +59,14 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     floors = {key: floor_of(p.measured, p.eq, key) for key in keys}
     start = fit(design(p.eq, (), p.split.fitted))
     found = Found(start, ())
+    covered = reach([p.eq.runs[i] for i in p.split.fitted])
     if not still(start, floors):
-        covered = reach([p.eq.runs[i] for i in p.split.fitted])
         bank = fill(p.eq, list(CATALOGUE.values()), p.split.fitted, covered)
         found = search(start.design, bank, p.split.fitted, keys, covered, floors)
     solution, held, worths = convicted(found.solution, p.court)
+    if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
+        solution = polished(solution, p.split.fitted, covered)
+        solution, held, worths = convicted(solution, p.court)
     return report(p, found, solution, held, worths)
 
 
