@@ -6,10 +6,10 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
     M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
-T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and 0.1 ms already
-shows at 300 rpm. c_0 and the torque sensor's zero z belong to the run. B_ml shows in A only when the torque sensor sits behind the mesh's
-own drag; it is known to be small. Without a torque sensor T comes from L with what
-is declared, and L is no equation any more.
+T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
+tenth of a millisecond stands above the noise of L. c_0 and the torque sensor's zero z belong to the run. B_ml shows in
+A only when the torque sensor sits behind the mesh's own drag; it is known to be small. Without a torque sensor T comes
+from L with what is declared, and L is no equation any more.
 """
 
 from __future__ import annotations
@@ -115,7 +115,6 @@ def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_m - s.tau_l / s.ratio)
     columns = dict(zip(SERIES, f(-s.tau_l[:, None] * slopes(s.theta_m)).T, strict=True))
     columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
-    columns |= {"lag": f(s.tau_l, 1) / s.ratio}
     return y, columns
 
 
