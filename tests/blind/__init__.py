@@ -30,4 +30,5 @@ body, the friction memory or the hysteresis.
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the matrices are small and the cores shared
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):  # before numpy: matrices are small and the cores shared
+    os.environ.setdefault(threads, "1")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from typing import ClassVar
 
 import numpy as np
+from scipy.optimize import minimize
 from sklearn.ensemble import HistGradientBoostingRegressor
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
@@ -15,8 +17,17 @@ from tests.blind.peers.data import Split
 from tests.blind.peers.peer import Guess, Peer, halves, scaled
 
 NOTHING: frozenset[str] = frozenset()
-POINTS = 400  # of the Gaussian process: its price grows with the cube
+STEPS = 15  # of the search for the lengths
+POINTS = 300  # of the Gaussian process: its price grows with the cube
 LEAVES = ((8, 0.05), (31, 0.05), (31, 0.15))  # leaves per tree and learning rate tried on the tuning runs
+
+
+def short_search(
+    likelihood: Callable[[np.ndarray], tuple[float, np.ndarray]], start: np.ndarray, bounds: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Lengths by at most STEPS steps of L-BFGS-B."""
+    found = minimize(likelihood, start, jac=True, bounds=bounds, method="L-BFGS-B", options={"maxiter": STEPS})
+    return found.x, found.fun
 
 
 class Boosting(Peer):
@@ -50,7 +61,7 @@ class Gaussian(Peer):
         x, held = scaled(split.train.x, split.held.x)
         size = split.train.y.std() + 1e-30
         kernel = ConstantKernel(1.0) * RBF(np.full(x.shape[1], 3.0), (0.1, 1e3)) + WhiteKernel(0.3, (1e-4, 3.0))
-        model = GaussianProcessRegressor(kernel, normalize_y=True)
+        model = GaussianProcessRegressor(kernel, normalize_y=True, optimizer=short_search)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ConvergenceWarning)
             model.fit(x[rows], split.train.y[rows] / size)
