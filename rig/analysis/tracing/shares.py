@@ -35,7 +35,7 @@ def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Arra
 
 
 def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: str, name: str, orders: int) -> float:
-    """As `score`, of the first `orders` harmonics of an angle, one size in all runs, each run with an offset of its own.
+    """As `score`, of the first `orders` harmonics of an angle, one size in all runs, each run with its own offset.
 
     What offsets alone explain is taken off. Slow runs see a sixth of an output turn: bins would not join up there.
     """

@@ -46,6 +46,8 @@ def render(trace: Trace, source: Provenance) -> str:
         "origin": origin,
         "heading": words.heading(trace),
         "facts": source.facts(trace),
+        "sentence": words.plainly(trace.verdict.sentence),
+        "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes)],
         "ruling": words.RULINGS[trace.verdict.status],
         "meaning": words.MEANING[trace.verdict.status],
         "sizes": words.sizes(trace.effects),
@@ -123,9 +125,8 @@ def _next(trace: Trace) -> dict[str, Any] | None:
     conditions = [": ".join((run_words.named(k)[0], _value(k, v))) for k, v in run.conditions.items()]
     return {
         "procedure": run_words.PROCEDURES.get(run.procedure, run_words.humanise(run.procedure)),
-        "command": run.procedure.replace("_", "-"),
         "conditions": conditions,
-        "because": run.because,
+        "because": words.plainly(run.because),
     }
 
 

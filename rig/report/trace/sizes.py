@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+from rig.analysis.angle import ARCSEC
 from rig.model.effect import Parameter
 from rig.report.numbers import ABSENT, estimate, fixed, plain
 
 MILLI = {"N·m": "mN·m", "N·m·s/rad": "mN·m·s/rad", "kg·m²": "g·m²", "s": "ms"}
+FINE = 0.01  # rad; smaller angles are errors, which people read in arcsec, larger ones phases
 SMALL = 0.1  # below it the prefix saves the reader from counting zeros
 
 
@@ -22,6 +24,8 @@ def three(value: float | None) -> str:
 
 def said(p: Parameter) -> str:
     """Value with 95 % interval and unit."""
+    if p.unit == "rad" and 0 < abs(p.value) < FINE:
+        return estimate(p.value * ARCSEC, (p.ci95[0] * ARCSEC, p.ci95[1] * ARCSEC), "arcsec")
     if p.unit in MILLI and 0 < abs(p.value) < SMALL:
         return estimate(p.value * 1e3, (p.ci95[0] * 1e3, p.ci95[1] * 1e3), MILLI[p.unit])
     return estimate(p.value, p.ci95, p.unit)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from rig.analysis.tracing.result import Candidate, Trace
+from rig.analysis.tracing.result import Candidate, Status, Trace
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE
@@ -80,13 +80,16 @@ def suspects(trace: Trace) -> tuple[list[Suspect], list[str]]:
 def _suspect(trace: Trace, c: Candidate) -> Suspect:
     v = trace.verdict
     in_model = {e.effect for e in trace.effects} | set(v.effects)
-    ruling = "added" if c.effect in in_model else "rival" if c.effect in v.rivals else "dismissed"
+    equals = {*v.rivals, *v.effects} if v.status is Status.AMBIGUOUS else set(v.rivals)
+    ruling = "rival" if c.effect in equals else "added" if c.effect in in_model else "dismissed"
     errors = [
         f"{channel.short} {join(three(c.heldout_rms[channel.sensor] * channel.factor), channel.unit)}"
         for channel in CHANNELS
         if channel.sensor in c.heldout_rms
     ]
-    why = " ".join(f"{part.rstrip('.')}." for part in (_ruled(trace, c, ruling), _capital(c.why)) if part)
+    why = " ".join(
+        f"{part.rstrip('.')}." for part in (_ruled(trace, c, ruling), _capital(words.plainly(c.why))) if part
+    )
     return Suspect(words.named(c.effect), words.in_short(c.effect), plain(c.evidence, 3), errors, ruling, why or ABSENT)
 
 

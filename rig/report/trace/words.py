@@ -69,6 +69,13 @@ def in_short(effect: str) -> str:
     return CATALOGUE[effect].in_short if effect in CATALOGUE else IN_SHORT.get(effect, "")
 
 
+def plainly(text: str) -> str:
+    """A sentence of the trace with the effects' machine names as words."""
+    for name in (*CATALOGUE, *IN_SHORT):
+        text = text.replace(name, name.replace("_", " "))
+    return text
+
+
 def listed(names: Sequence[str]) -> str:
     """ "a", "a and b", "a, b and c"."""
     if len(names) < 2:

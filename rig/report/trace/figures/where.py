@@ -52,6 +52,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     figure = Figure(figsize=(frame.width * PX, total * PX), dpi=72)
     figure.patch.set_visible(False)
     width = (frame.width - LEFT - 12 - GAP * (across - 1)) / across
+    if frame.mark:  # once across all of them: a panel is too small for it
+        panel_at(figure, frame, (LEFT, HEAD, frame.width - LEFT, total - HEAD - FOOT)).set_axis_off()
     first = None
     for row, (channel, coordinates) in enumerate(lines):
         top = HEAD + row * (height + BETWEEN + FOOT)

@@ -1,0 +1,63 @@
+"""Figures of a trace: drawn from what there is, absent without it, and what they say is what the arrays hold."""
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.shares import COORDINATES, PAIRS
+from rig.report.figures import Frame, svg
+from rig.report.figures.canvas import Drawing
+from rig.report.trace.channels import CHANNELS
+from rig.report.trace.figures import CATALOGUE, before_after, home
+from rig.report.trace.page import drawn
+from tests.report.trace import made_up
+
+CURVES = drawn(made_up.explained())
+NARROW = Frame(360.0)
+
+
+def named(drawing: Drawing) -> str:
+    return drawing.name
+
+
+@pytest.mark.parametrize("drawing", CATALOGUE, ids=named)
+def test_a_figure_without_its_curves_is_absent(drawing: Drawing) -> None:
+    assert svg(drawing, {}, NARROW) is None
+    assert isinstance(drawing.say({}), str)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drawing", [d for d in CATALOGUE if d is not before_after.SHAFT_TORQUE], ids=named)
+def test_a_figure_of_simulated_runs_says_so(drawing: Drawing) -> None:
+    text = svg(drawing, CURVES, Frame(360.0, "SIMULATED"))
+    assert text is not None
+    assert "SIMULATED" in text
+    assert drawing.say(CURVES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drawing", CATALOGUE, ids=named)
+def test_curves_of_nan_do_not_break_a_figure(drawing: Drawing) -> None:
+    holes = {name: np.full(np.shape(values), np.nan) for name, values in CURVES.items()}
+    svg(drawing, holes, NARROW)
+
+
+def test_channels_at_their_floor_have_no_close_up() -> None:
+    assert svg(before_after.SHAFT_TORQUE, CURVES, NARROW) is None
+    assert "close.slow_ke_2.M.turns" in CURVES  # 1.4 times its floor
+
+
+def test_slow_fast_and_loaded_runs_are_told_by_speed_and_load() -> None:
+    found = before_after.chosen(CURVES, CHANNELS[0])
+    assert found == {"slow": "slow_ke_2", "fast": "speed_400rpm_2", "loaded": "load_40nm_2"}
+    lone = {name: values for name, values in CURVES.items() if "400rpm" not in name and "load_40" not in name}
+    assert before_after.chosen(lone, CHANNELS[0]) == {"slow": "slow_ke_2"}
+
+
+def test_what_predicts_the_residual_is_named_in_the_order_the_tracer_gives() -> None:
+    assert len(home.ROWS) == len(COORDINATES) + len(PAIRS)
+    assert "motor angle and torque 88 %" in home.DRAWING.say(CURVES)
+    assert PAIRS[0] == ("motor_angle", "load")
+
+
+def test_the_motor_torque_is_shown_in_millinewton_metres() -> None:
+    assert "RMS 8.5 mN·m off before" in before_after.MOTOR_TORQUE.say(CURVES)  # a fifth of 60 mN·m/√2

@@ -1,0 +1,167 @@
+"""The page of a trace: each verdict in its own words, errors beside their floors, what others wrote only shown."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rig.analysis.tracing.result import Before, Candidate, Floor, Found, Trace
+from rig.model.effect import parameter
+from rig.report.trace import page
+from rig.report.trace.campaign import Provenance, provenance
+from tests.report.test_page import HOSTILE, Reader
+from tests.report.trace import made_up
+
+
+def bare(trace: Trace) -> Trace:
+    """Without what figures are drawn from: the words alone, which takes no time."""
+    return replace(trace, curves={}, before=Before({}, trace.before.pooled), after=Before({}, trace.after.pooled))
+
+
+def read(trace: Trace, source: Provenance | None = None) -> Reader:
+    return Reader(page.render(trace, source or made_up.source()))
+
+
+@pytest.fixture(scope="module")
+def pages() -> dict[str, Reader]:
+    return {name: read(bare(make())) for name, make in made_up.ALL.items()}
+
+
+@pytest.mark.parametrize("status", made_up.ALL)
+def test_the_page_holds_together(pages: dict[str, Reader], status: str) -> None:
+    found = pages[status]
+    assert len(found.ids()) == len(set(found.ids()))
+    wanted = {value[1:] for _, name, value in found.attributes if name == "href"}
+    assert wanted <= set(found.ids())
+    assert not any(later - earlier > 1 for earlier, later in zip(found.headings, found.headings[1:], strict=False))
+
+
+@pytest.mark.parametrize(
+    ("status", "said"),
+    [
+        ("explained", "Explained"),
+        ("no_missing_effect", "it does not say that the gear has no other effect"),
+        ("ambiguous", "Naming one would be a guess"),
+        ("unknown_effect", "no physics is claimed for it"),
+    ],
+)
+def test_every_verdict_has_its_own_honest_words(pages: dict[str, Reader], status: str, said: str) -> None:
+    assert said in pages[status].words
+    assert all(said not in other.words for name, other in pages.items() if name != status)
+
+
+def test_the_error_before_and_after_stands_beside_its_floor(pages: dict[str, Reader]) -> None:
+    words = pages["explained"].words
+    assert "8.20 → 0.910 arcsec" in words
+    assert "9.10 → 1.01 × the floor" in words
+    assert "floor 0.900 arcsec" in words
+    assert "2.80 → 2.00 mN·m" in words  # 0.0028 and 0.002 N·m
+
+
+def test_where_nothing_was_added_there_is_no_before_and_after(pages: dict[str, Reader]) -> None:
+    words = pages["no_missing_effect"].words
+    assert "0.900 arcsec" in words
+    assert "→" not in words
+    assert "How far the baseline moved" not in words
+
+
+def test_the_size_of_the_effect_has_its_interval_in_the_verdict(pages: dict[str, Reader]) -> None:
+    assert "A_inf = 0.461 ± 0.011, lag = 4.30 ± 0.20 ms" in pages["explained"].words
+
+
+def test_a_baseline_parameter_that_moved_beyond_its_interval_is_marked() -> None:
+    text = page.render(bare(made_up.explained()), made_up.source())
+    rows = [part for part in text.split("<tr") if '<th scope="row">K ' in part or '<th scope="row">J_m ' in part]
+    assert ["far" in row.split(">")[0] for row in rows] == [True, False]
+    assert "+2.0 %" in " ".join(rows[0].split()).replace("\u00a0", " ")  # 7160 to 7300 N·m/rad
+
+
+def test_rivals_are_both_called_so_and_the_deciding_run_is_given(pages: dict[str, Reader]) -> None:
+    words = pages["ambiguous"].words
+    assert words.count("rival") >= 2
+    assert "Sentinel run" in words
+    assert "120 rpm" in words
+    assert "separates quadratic drag from thermal friction drift" in words
+
+
+def test_an_unknown_effect_says_where_it_lives_and_is_given_no_name(pages: dict[str, Reader]) -> None:
+    assert "in the load angle, order 37 per turn" in pages["unknown_effect"].words
+
+
+def test_every_suspect_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
+    words = pages["explained"].words
+    assert "Alone it removes 3 % of the excess, 60 % would be asked for." in words
+    assert "No more than chance gives." in words  # 5 nats
+    assert "stribeck friction" in words  # of those that explained nothing
+
+
+def test_effects_fitted_in_each_run_are_not_passed_off_as_unseen() -> None:
+    vibration = Found("external_vibration", (parameter("frequency", 8.0, 0.01, "Hz"),), 0.99)
+    found = read(bare(replace(made_up.explained(), effects=(vibration,))))
+    assert "read from that run itself" in found.words
+    assert "read from that run itself" not in read(bare(made_up.explained())).words
+
+
+def test_simulated_runs_are_called_so_whatever_their_manifests_say() -> None:
+    source = Provenance({"slow_ke_1": {"backend": "can"}})
+    assert "SIMULATED" in read(bare(made_up.explained()), source).words
+    measured = read(bare(replace(made_up.explained(), simulated=False)), source)
+    assert "MEASURED" in measured.words
+    assert "SIMULATED" not in measured.words
+
+
+def test_manifests_that_disagree_leave_the_origin_unknown() -> None:
+    source = Provenance({"a": {"backend": "can"}, "b": {"backend": "imported"}})
+    assert "ORIGIN UNKNOWN" in read(bare(replace(made_up.explained(), simulated=False)), source).words
+
+
+def test_every_run_is_listed_with_what_it_was_used_for() -> None:
+    text = page.render(bare(made_up.explained()), made_up.source())
+    used = {"standstill": "not used", "slow_ke_2": "held out", "slow_ke_1": "fitted", "speed_400rpm_2": "held out"}
+    for run, said in used.items():
+        row = next(part for part in text.split("<tr>") if part.startswith(f'<td class="code">{run}<'))
+        assert said in row
+
+
+def test_words_of_others_are_escaped() -> None:
+    base = bare(made_up.explained())
+    hostile = replace(
+        base,
+        campaign=HOSTILE,
+        notes=(HOSTILE,),
+        candidates=(Candidate("quadratic_drag", 20.0, HOSTILE),),
+        floors=(Floor(HOSTILE, 1.0, "rad", HOSTILE),),
+    )
+    text = page.render(hostile, Provenance({HOSTILE: {"backend": HOSTILE, "procedure": HOSTILE}}))
+    assert "<script" not in text
+    assert "<img" not in text
+    Reader(text)
+
+
+def test_a_trace_of_nearly_nothing_still_makes_a_page() -> None:
+    base = made_up.explained()
+    empty = replace(
+        bare(base), baseline=(), baseline_after=(), floors=(), candidates=(), effects=(), ratios_before={}, notes=()
+    )
+    assert "No effect of the library explained anything" in read(empty, Provenance()).words
+
+
+def test_manifests_that_cannot_be_read_are_left_out(tmp_path: Path) -> None:
+    for name, text in (("good", '{"backend": "sim"}'), ("torn", '{"backend": '), ("list", "[1]")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "manifest.json").write_text(text)
+    found = provenance(tmp_path, {}, "")
+    assert found.manifests["good"] == {"backend": "sim"}
+    assert "torn" not in found.manifests
+
+
+@pytest.mark.slow
+def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> None:
+    written = page.write(tmp_path, made_up.explained(), made_up.source())
+    text = written.read_text()
+    assert text == page.render(made_up.explained(), made_up.source())
+    found = Reader(text)
+    outside = [v for _, name, v in found.attributes if name in ("src", "href") and not v.startswith("#")]
+    assert outside == []
+    assert text.count("<figure") == 8  # the shaft torque is at its floor and has no close-up
+    assert len(text) < 1_500_000
