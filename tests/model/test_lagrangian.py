@@ -1,4 +1,4 @@
-"""Equations 6 and 7 follow from T, V and D, for either sense of the output and any kinematic error; the model is passive.
+"""Equations 6 and 7 follow from T, V and D, for either sense of the output and any error; the model is passive.
 
 The equations are taken from the simulator's own residual, not written a second time.
 """
@@ -107,7 +107,9 @@ def evaluated(force: object, s: dict[str, object], gear: Gear, x: np.ndarray) ->
     ]  # fmt: skip
     e = s["error"]
     plain = force.doit()  # type: ignore[attr-defined]
-    plain = plain.replace(sympy.Subs, lambda expr, variables, point: expr.subs(dict(zip(variables, point, strict=True))))
+    plain = plain.replace(
+        sympy.Subs, lambda expr, variables, point: expr.subs(dict(zip(variables, point, strict=True)))
+    )
     for old, new in steps:
         plain = plain.subs(old, new)
     plain = plain.subs(theta_m, u).replace(e, lambda z: error.subs(u, z)).doit()

@@ -16,6 +16,7 @@ from rig.model.simulate.waveform import TURN, Array, NoSteadyState, Waveform
 POINTS = 160  # a turn: five times the 15 orders of the paper's series both ways; more where the series is longer
 PER_ORDER = 10  # points for each order of a longer series
 CLOSE = 1e-12  # of the scale of each unknown: where Newton's steps end
+NEAR = 1e-6  # the same where steps no longer shrink
 MOST_STEPS = 40
 HALVINGS = 8  # of a Newton step that would stop the motor or not come closer
 STAGES = (1.0, 0.3, 0.0)  # extra damping, as a share of critical, where the direct attempt does not converge
@@ -190,6 +191,7 @@ def _newton(
 ) -> tuple[Turn, float]:
     """Newton's method; with `omega` given, τ is an unknown and the mean of 1/ω_m one more equation."""
     size = grid.theta.size
+    left = np.inf
     scale = np.concatenate((np.full(size, np.abs(turn.omega_m).mean()), np.full(size, 1e-4), [max(abs(tau), 0.1)]))
     for _ in range(MOST_STEPS):
         off, matrix = _system(gear, grid, turn, tau, tau_ext, way, omega)
@@ -203,9 +205,8 @@ def _newton(
         else:
             raise NoSteadyState("the motor would come to rest within the turn: it does not turn steadily")
         turn, tau = trial, tau - length * float(step[-1]) if omega is not None else tau
-        if np.max(np.abs(step) / scale[: step.size]) < CLOSE:
-            return turn, tau
-        if np.max(np.abs(step) / scale[: step.size]) < 1e-9 and length == 1.0:  # rounding ends quadratic convergence
+        last, left = left, float(np.max(np.abs(step) / scale[: step.size]))
+        if left < CLOSE or (left < NEAR and left > 0.3 * last):  # rounding has ended the quadratic convergence
             return turn, tau
     raise NoSteadyState("no steady turning was found: too close to a resonance, or to standstill")
 
