@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.equations import Key
-from rig.analysis.tracing.unknown import INDICES, Rest, homes, score
-from rig.analysis.tracing.unknown import _folds as folds
+from rig.analysis.tracing.unknown import INDICES, Rest, folds, homes, score
 from rig.model.effect import Array
 
 RIDGE: Final = 1.0  # rows: a harmonic that no run shows stays zero

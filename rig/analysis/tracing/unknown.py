@@ -72,7 +72,7 @@ def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:
 
 def homes(r: Rest, channel: str) -> list[Home]:
     """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
-    fold = _folds(r)
+    fold = folds(r)
     total = float(np.mean(r.e**2)) - 1.0
     out = [Home(name, channel, score(r, fold, index(r)) / max(total, 0.05)) for name, index in INDICES.items()]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
@@ -82,7 +82,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
     return sorted(out, key=lambda h: -h.share)
 
 
-def _folds(r: Rest) -> Array:
+def folds(r: Rest) -> Array:
     """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
     return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
 
