@@ -84,21 +84,22 @@ def draw(campaign: Path, out: Path) -> int:
     """The page from the runs in `campaign` into `out`. Raises UsageError and DataError."""
     from rig.analysis.reproduction.catalogue import exhibits
     from rig.analysis.reproduction.gather import entries, gather
-    from rig.report.reproduction import told, write
+    from rig.report.reproduction import About, told, write
 
     if not campaign.is_dir():
         raise UsageError(f"{campaign} is no folder; expected that of a campaign")
     found = entries(campaign)
-    made = exhibits(gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr)))
+    read = gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr))
+    made = exhibits(read)
     backends = {str(e.manifest.get("backend")) for e in found}
     backend = "sim" if "sim" in backends else next(iter(backends)) if len(backends) == 1 else None
     try:
         out.mkdir(parents=True, exist_ok=True)
-        page = write(out, made, facts(campaign, found), backend)
+        page = write(out, made, About(facts(campaign, found), read.left_out, backend))
     except OSError as error:
         raise UsageError(f"cannot write into {out}: {error.strerror}; name another folder with --out") from None
     print("SIMULATED" if backend == "sim" else f"campaign {campaign.name}")
-    print("\n".join(told(made)))
+    print("\n".join([*told(made), *(f"left out: {why}" for why in read.left_out)]))
     print(f"page {page}")
     return int(Exit.INCOMPLETE if any(e.missing for e in made) else Exit.PASS)
 

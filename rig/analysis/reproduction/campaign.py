@@ -21,12 +21,18 @@ class Campaign:
     readings: Sequence[Reading]
     model: Model | None
     no_model: str = ""  # why there is none
+    unread: tuple[str, ...] = ()  # runs that could not be read, and why
 
     @property
     def assembly(self) -> int:
         """The one in which the gear was run at speed; else the first."""
         fast = [r.assembly for r in self.readings if r.fast is not None]
         return fast[0] if fast else min((r.assembly for r in self.readings), default=1)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Every run, or speed of one, that does not count, and why."""
+        return (*self.unread, *(f"{r.name}: {why}" for r in self.readings for why in r.rejected))
 
     def pure(self) -> tuple[Reading, KinematicError] | None:
         """The unloaded slow run of most revolutions, in that assembly, and its θ̃_p."""

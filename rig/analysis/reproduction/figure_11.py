@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,8 +14,10 @@ from rig.analysis.reproduction.claim import Claim, Number, all_of, missing, posi
 from rig.analysis.reproduction.comparison import Shown, compared, model_words
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.figure_7 import explained
-from rig.analysis.reproduction.load_effect import why_worse
+from rig.analysis.reproduction.load_effect import UnderLoad, under_load, why_worse
+from rig.analysis.reproduction.shaft import wave
 from rig.analysis.reproduction.split import Split, peak_to_peak, rms, split_of, words
+from rig.model.linear import natural_frequency
 
 SPEEDS = {"a": 120.0, "b": 300.0, "c": 500.0}
 PAPER = {
@@ -35,13 +39,22 @@ def figures(campaign: Campaign) -> tuple[Exhibit, ...]:
     """All three; what compares speeds stands with the last."""
     splits = {part: split_of(campaign, rpm) for part, rpm in SPEEDS.items()}
     found = [s for s in splits.values() if s is not None]
+    again = under_load(campaign, splits["c"])
     between = (
         grows([peak_to_peak(s.fast) for s in found], [s.fast.speed_rpm for s in found]),
-        higher([_higher(s) for s in found], [s.fast.speed_rpm for s in found]),
+        higher([_higher(s) for s in found], [s.fast.speed_rpm for s in found], _resonance(campaign, found)),
         worse([n for s in found if (n := s.rms_left()) is not None]),
-        why_worse(campaign, splits["c"]),
+        why_worse(splits["c"], again),
     )
-    return tuple(_one(campaign, part, splits[part], between if part == "c" else ()) for part in SPEEDS)
+    *slower, fastest = (_one(campaign, part, splits[part], between if part == "c" else ()) for part in SPEEDS)
+    return (*slower, _with_load(fastest, splits["c"], again))
+
+
+def _with_load(exhibit: Exhibit, split: Split | None, again: UnderLoad | None) -> Exhibit:
+    """What the model leaves once its pure error depends on the load, below what it leaves without."""
+    if split is None or again is None:
+        return exhibit
+    return replace(exhibit, curves={**exhibit.curves, "turn.left_loaded": wave(split.total - again.simulated)})
 
 
 def _one(campaign: Campaign, part: str, split: Split | None, between: tuple[Claim, ...]) -> Exhibit:
@@ -68,10 +81,22 @@ def grows(sizes: Sequence[Number], speeds: Sequence[float]) -> Claim:
     return _rising(GROWS, "Peak to peak", sizes, speeds, rule)
 
 
-def higher(sizes: Sequence[Number], speeds: Sequence[float]) -> Claim:
+def higher(sizes: Sequence[Number], speeds: Sequence[float], remark: str = "") -> Claim:
     """rms of what lies above order 2."""
     rule = "rms of the orders 3 to 15 at each speed less that at the one before, above zero with its 95 % interval."
-    return _rising(HIGHER, "rms of orders 3 to 15", sizes, speeds, rule)
+    claim = _rising(HIGHER, "rms of orders 3 to 15", sizes, speeds, rule)
+    return replace(claim, words=f"{claim.words} {remark}".strip())
+
+
+def _resonance(campaign: Campaign, splits: Sequence[Split]) -> str:
+    """What the model has there, and which order meets its natural frequency."""
+    if campaign.model is None or any(s.simulated is None for s in splits):
+        return ""
+    f_n = natural_frequency(campaign.model.gear) / (2.0 * math.pi)
+    made = [float(np.sqrt(0.5 * np.sum(np.abs(s.simulated[2:]) ** 2))) for s in splits if s.simulated is not None]
+    orders = [60.0 * f_n / s.fast.speed_rpm for s in splits]
+    has, meets = ", ".join(f"{size:.1f}" for size in made), ", ".join(f"{n:.1f}" for n in orders)
+    return f"The model has {has} arcsec: its natural frequency, {f_n:.1f} Hz, is order {meets} at these speeds."
 
 
 def _rising(paper: str, what: str, sizes: Sequence[Number], speeds: Sequence[float], rule: str) -> Claim:

@@ -55,8 +55,8 @@ def suffices(revolutions: Array) -> Claim:
     value = _left(total / n)
     without = np.array([_left((total - one) / (n - 1)) for one in revolutions])
     half = t95(n - 1) * float(np.sqrt((n - 1) / n * np.sum((without - without.mean()) ** 2)))
-    left = Number(100 * value, 100 * (value - half), 100 * (value + half), "%")
-    return Claim(CLAIM, at_most(left, 100 * LEFT), "Fifteen terms leave {} of the mean square.", (left,), RULE)
+    left = Number.of(1e6 * value, 1e6 * half, "ppm")
+    return Claim(CLAIM, at_most(left, 1e6 * LEFT), "Fifteen terms leave {} of the mean square.", (left,), RULE)
 
 
 def _left(curve: Array) -> float:

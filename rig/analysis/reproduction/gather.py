@@ -78,14 +78,16 @@ def _number_of(manifest: Mapping[str, Any]) -> int:
 
 
 def gather(found: Sequence[Entry], progress: Callable[[str], None] = lambda text: None) -> Campaign:
-    """Read every run and identify the gear. A run that cannot be read is told to `progress` and left out."""
+    """Read every run and identify the gear. What cannot be read is left out, and the campaign says so."""
     reference = slow_reference(found)
     with ProcessPoolExecutor(PROCESSES, multiprocessing.get_context("spawn"), _quiet) as pool:
         model = pool.submit(identify_gear, *to_identify(found))
         readings = [pool.submit(read, e.folder, reference if e.locked else None) for e in found]
         progress(f"{len(found)} runs in {PROCESSES} processes")
-        read_ones = [r for entry, one in zip(found, readings, strict=True) if (r := _or_told(one, entry, progress))]
-        return Campaign(read_ones, *_model(model))
+        read_ones = [_or_why(one) for one in readings]
+        gear, why = _model(model)
+    unread = [f"{e.folder.name}: {r}" for e, r in zip(found, read_ones, strict=True) if isinstance(r, str)]
+    return Campaign([r for r in read_ones if isinstance(r, Reading)], gear, why, tuple(unread))
 
 
 def slow_reference(found: Sequence[Entry]) -> Path | None:
@@ -105,12 +107,11 @@ def to_identify(found: Sequence[Entry]) -> tuple[list[Path], list[Path]]:
     return apart, [e.folder for e in here if e.bare and e.procedure in SHOWN]
 
 
-def _or_told(one: Future[Reading], entry: Entry, progress: Callable[[str], None]) -> Reading | None:
+def _or_why(one: Future[Reading]) -> Reading | str:
     try:
         return one.result()
     except HdrigError as error:
-        progress(f"{entry.folder.name} left out: {error}")
-        return None
+        return str(error)
 
 
 def _model(one: Future[Model]) -> tuple[Model | None, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,20 +23,33 @@ WHY = "…because the pure error depends on the load, and the load is more there
 NOTHING = "It takes the torque sensor, slow runs under several loads, and a model."
 
 
-def why_worse(campaign: Campaign, split: Split | None) -> Claim:
-    """The model again with θ̃_p as small as slow runs under that mean torque have it: is what it leaves explained?"""
+@dataclass(frozen=True)
+class UnderLoad:
+    """The model again, with `kept` of its θ̃_p: what slow runs under load say is left at the torque carried there."""
+
+    simulated: Complex  # θ̃, arcsec
+    kept: float
+    before: float  # N·m carried in the slow run
+    there: float  # N·m carried in the run at speed
+    swing: float  # N·m, peak to peak, in the run at speed
+
+
+def under_load(campaign: Campaign, split: Split | None) -> UnderLoad | None:
+    """None without torque sensor, slow runs under loads on both sides of that torque, or a model."""
     pure = campaign.pure()
     if split is None or split.left is None or campaign.model is None or pure is None or split.reading.shaft is None:
-        return missing(WHY, NOTHING)
-    curve = shrinking(loaded(campaign), _zero(campaign.model))
-    before, there = _carried(pure[0], campaign.model), abs(split.reading.shaft.mean - _zero(campaign.model))
-    if curve is None or before is None or not curve[0].min() <= there <= curve[0].max():
-        return missing(WHY, NOTHING)
+        return None
+    zero, shaft = _zero(campaign.model), split.reading.shaft
+    curve, before, there = shrinking(loaded(campaign), zero), _carried(pure[0], zero), abs(shaft.mean - zero)
+    if (
+        curve is None
+        or before is None
+        or not curve[0].min() <= min(before, there) <= max(before, there) <= curve[0].max()
+    ):
+        return None
     kept = float(np.interp(there, *curve) / np.interp(before, *curve))
     again = simulate(scaled(campaign.model, kept), split.fast, split.decomposition)
-    if again is None:
-        return missing(WHY, "With the smaller error the model does not turn steadily.")
-    return judged(split, again[0], kept, (before, there))
+    return None if again is None else UnderLoad(again[0], kept, before, there, shaft.swing)
 
 
 def loaded(campaign: Campaign) -> list[Way]:
@@ -65,24 +78,25 @@ def scaled(model: Model, kept: float) -> Gear:
     return replace(model.gear, kinematic_error=smaller)
 
 
-def judged(split: Split, again: Complex, kept: float, torques: tuple[float, float]) -> Claim:
-    """What is left before and after."""
-    left = split.rms_left()
-    assert left is not None
-    after = replace(split, simulated=again).rms_left()
+def why_worse(split: Split | None, again: UnderLoad | None) -> Claim:
+    """Whether the load explains what the model leaves of θ̃."""
+    left = None if split is None else split.rms_left()
+    if split is None or left is None or again is None:
+        return missing(WHY, NOTHING)
+    after = replace(split, simulated=again.simulated).rms_left()
     assert after is not None
-    share = after.over(left)
     told = (
-        f"The gear carries {torques[1]:.2f} N·m there, {torques[0]:.2f} N·m in the slow run; slow runs under load say "
-        f"that {100 * kept:.1f} % of θ̃_p are then left. With that the model leaves {{}} instead of {{}}."
+        f"The gear carries {again.there:.2f} N·m there, swinging by {again.swing:.1f} N·m, and {again.before:.2f} N·m in "
+        f"the slow run; slow runs under load say that {100 * again.kept:.1f} % of θ̃_p are then left. With that the model "
+        "leaves {} instead of {}."
     )
     rule = f"What the model leaves with θ̃_p so scaled, over what it left before: rms at most {HALF:g}, half its square."
-    return Claim(WHY, at_most(share, HALF), told, (after, left), rule)
+    return Claim(WHY, at_most(after.over(left), HALF), told, (after, left), rule)
 
 
-def _carried(reading: Reading, model: Model) -> float | None:
+def _carried(reading: Reading, zero: float) -> float | None:
     """Mean |τ_l| of a slow run over both directions, N·m."""
-    sizes = [abs(w.torque - _zero(model)) for w in reading.ways]
+    sizes = [abs(w.torque - zero) for w in reading.ways]
     return float(np.mean(sizes)) if sizes else None
 
 

@@ -15,6 +15,7 @@ from rig.analysis.reproduction.shaft import Shaft, shaft_of
 from rig.analysis.reproduction.waveform_spectrum import Spectrum, spectrum_of
 from rig.analysis.reproduction.ways import Way, ways_of
 from rig.analysis.result import Array, Result
+from rig.analysis.smoothness import sentence, smoothness
 from rig.analysis.source import Motion, motion_of
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.tame import Tame
@@ -35,7 +36,8 @@ class Reading:
     manifest: Mapping[str, Any]
     ratio: float
     procedure: str
-    slow: tuple[KinematicError, ...] = ()  # one for each speed below FAST, slowest first
+    slow: tuple[KinematicError, ...] = ()  # one for each speed below FAST at which it ran smoothly, slowest first
+    rejected: tuple[str, ...] = ()  # why the others do not count
     fast: KinematicError | None = None  # over the settled part at the speed held longest
     shaft: Shaft | None = None  # the torque sensor over the same part
     spectrum: Spectrum | None = None
@@ -98,9 +100,7 @@ def _turning(bare: Reading, run: Tame, motion: Motion) -> Reading:
     if not groups:
         return bare
     if abs(motion.speed_rpm(*_ends(max(groups, key=_revolutions)))) < FAST:
-        found = [k for g in groups if (k := measure(run, motion, g, slow=True)) is not None and k.speed_rpm < FAST]
-        ways = ways_of(motion, max(groups, key=_revolutions), motion.pick(run.column("tau_l")))
-        return _with(bare, slow=tuple(found), ways=ways)
+        return _slow(bare, run, motion, groups)
     window = measured_window(run, motion)
     settled = part(motion, window.lo, window.hi)
     if not (groups := _groups(settled)):
@@ -108,6 +108,21 @@ def _turning(bare: Reading, run: Tame, motion: Motion) -> Reading:
     fast = measure(run, settled, max(groups, key=_revolutions), slow=False)
     shaft = shaft_of(settled, settled.pick(run.column("tau_l")))
     return _with(bare, fast=fast, shaft=shaft, spectrum=spectrum_of(settled), torque=window.torque)
+
+
+def _slow(bare: Reading, run: Tame, motion: Motion, groups: list[list[Stroke]]) -> Reading:
+    """Every speed by itself; one at which the motor stuck or hunted says nothing of the gear."""
+    reference = motion.pick(run.column("theta_ref"))
+    rejected = []
+    for group in list(groups):
+        evenness = smoothness(motion, group, reference)
+        if evenness is not None and not evenness.passed:
+            rejected.append(sentence(evenness))
+            groups.remove(group)
+    found = [k for g in groups if (k := measure(run, motion, g, slow=True)) is not None and k.speed_rpm < FAST]
+    most = max(groups, key=_revolutions, default=None)
+    ways = () if most is None else ways_of(motion, most, motion.pick(run.column("tau_l")))
+    return _with(bare, slow=tuple(found), ways=ways, rejected=tuple(rejected))
 
 
 def _groups(motion: Motion) -> list[list[Stroke]]:

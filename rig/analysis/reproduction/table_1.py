@@ -8,6 +8,7 @@ from rig.analysis.flexibility import declared
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, Ruling, covers, missing, positive
 from rig.analysis.reproduction.exhibit import Cell, Exhibit
+from rig.analysis.reproduction.model import Model
 from rig.model.gearfile import UNITS, Parameter
 
 TITLE = "Parameters"
@@ -15,6 +16,7 @@ PAPER = (
     "Inertias, dampings, ratio N = 50 and stiffness K = 7160 N·m/rad; a constant torque of friction was identified "
     "beside them. Of the table's numbers only N and K are readable in the text at hand."
 )
+SYMBOLS = {"tau_c": "τ_c"}
 READABLE = {"N": 50.0, "K": 7160.0}
 ROWS = ("N", "J_m", "J_l", "K", "B_m", "B_ml", "B_l", "B_sp", "tau_c", "F_cl")
 FRICTION = "A constant torque of friction"
@@ -31,7 +33,7 @@ def table(campaign: Campaign) -> Exhibit:
     said = {name: declared(campaign.readings[0].declared, name) for name in ROWS}
     rows = tuple(_row(name, p, said[name]) for name in ROWS if (p := model.parameters.get(name)) is not None)
     apart = "none of them one that Figs. 7 and 11 compare the model with" if model.held_out else "with those of Fig. 11"
-    how = f"One fit to {len(model.runs)} runs, {apart}: {', '.join(model.runs)}."
+    how = f"One fit to {len(model.runs)} runs, {apart}: {', '.join(model.runs)}. {_notes(model)}"
     claims = (friction(model.parameters.get("tau_c")),)
     return Exhibit("Table 1", TITLE, PAPER, how, claims, columns=COLUMNS, rows=rows)
 
@@ -40,9 +42,15 @@ def _row(name: str, p: Parameter, said: float | None) -> tuple[Cell, ...]:
     unit = UNITS[name]
     number = Number(p.value, *p.interval, unit)
     return (
-        name, number, _bare(said, unit), _within(number, said), _bare(READABLE.get(name), unit),
-        f"{p.origin}; {p.note}" if p.note else p.origin,
+        SYMBOLS.get(name, name), number, _bare(said, unit), _within(number, said), _bare(READABLE.get(name), unit),
+        p.origin,
     )  # fmt: skip
+
+
+def _notes(model: Model) -> str:
+    """What is to be known of single parameters."""
+    noted = [(SYMBOLS.get(n, n), p.note) for n in ROWS if (p := model.parameters.get(n)) is not None and p.note]
+    return " ".join(f"{name}: {note}." for name, note in noted)
 
 
 def _bare(value: float | None, unit: str) -> Cell:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from rig.analysis.reproduction.claim import Ruling
 from rig.analysis.reproduction.exhibit import Exhibit
@@ -25,26 +26,33 @@ NAME = "reproduction.html"
 DATA = "reproduction.json"
 WIDE, NARROW = 640.0, 360.0  # px; each figure is drawn twice, so that its text is legible on a phone too
 OURS = (turn.TURNS, turn.COMPARED, spectrum_cpm.DRAWING, loads.DRAWING)
+SUBSCRIPT = re.compile(r"([A-Za-zθτψωΩ]\u0303?)_([a-z]{1,2})(?![a-z_])")  # θ̃_p, K_n, B_sp, tau_c: as symbols
 DRAWINGS: Mapping[str, Drawing] = {d.name: d for d in (*CATALOGUE, *OURS)}
 
 
-def write(folder: Path, exhibits: Sequence[Exhibit], facts: Sequence[str], backend: str | None) -> Path:
-    """Write reproduction.html and reproduction.json into `folder`; return the page's path. Raises OSError.
+class About(NamedTuple):
+    """What the page says besides the exhibits: below the title, of runs that do not count, the manifests' backend."""
 
-    `facts` stand below the title; `backend` is that of the runs' manifests.
-    """
+    facts: Sequence[str]
+    left_out: Sequence[str]
+    backend: str | None
+
+
+def write(folder: Path, exhibits: Sequence[Exhibit], about: About) -> Path:
+    """Write reproduction.html and reproduction.json into `folder`; return the page's path. Raises OSError."""
     write_atomic(folder / DATA, json.dumps(record(exhibits), indent=1, ensure_ascii=False).encode() + b"\n")
-    write_atomic(folder / NAME, render(exhibits, facts, backend).encode(errors="replace"))
+    write_atomic(folder / NAME, render(exhibits, about).encode(errors="replace"))
     return folder / NAME
 
 
-def render(exhibits: Sequence[Exhibit], facts: Sequence[str], backend: str | None) -> str:
+def render(exhibits: Sequence[Exhibit], about: About) -> str:
     """The page as text. The same arguments give the same text: no clock and no random number is asked."""
-    where = origin(backend)
+    where = origin(about.backend)
     rulings = count(exhibits)
     view = {
         "origin": where,
-        "facts": facts,
+        "facts": about.facts,
+        "left_out": about.left_out,
         "score": [(SIGN[r], TONE[r], rulings[r], words) for r, words in SCORE.items()],
         "exhibits": [_exhibit(e, where.mark) for e in exhibits],
         "css": _css(where.mark),
@@ -53,7 +61,13 @@ def render(exhibits: Sequence[Exhibit], facts: Sequence[str], backend: str | Non
     environment = jinja2.Environment(
         loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
+    environment.filters["symbols"] = symbols
     return environment.get_template("page.html").render(view)
+
+
+def symbols(text: str) -> Markup:
+    """`text` escaped, what follows an underscore set below the line, and numbers held together with their ±."""
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))).replace(" ± ", "\u00a0±\u00a0"))
 
 
 SCORE = {

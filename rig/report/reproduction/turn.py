@@ -70,11 +70,20 @@ def draw_compared(curves: Curves, frame: Frame) -> Figure | None:
     if len(there) > 1:
         key(panels[0], handles, columns)
     if left is not None:
-        panels[1].plot(*closed(theta, left), color=LIGHT["ink"], lw=1.3)
+        _left(panels[1], theta, left, line(curves, "turn.left_loaded", len(theta)))
         panels[1].yaxis.set_major_locator(MaxNLocator(3))
         title(panels[1], "Measured less model", "arcsec")
     angle_axis(panels, frame)
     return figure
+
+
+def _left(panel: Axes, theta: Array, left: Array, loaded: Array | None) -> None:
+    """What the model leaves, and what it leaves once its pure error depends on the load."""
+    handles = panel.plot(*closed(theta, left), color=LIGHT["ink"], lw=1.3, label="model")
+    if loaded is not None:
+        style: dict[str, Any] = {"color": LIGHT["good"], "lw": 1.6, "ls": (0, (4, 1.6))}
+        handles += panel.plot(*closed(theta, loaded), label="with θ̃_p as under that load", **style)
+        key(panel, handles)
 
 
 def say(curves: Curves) -> str:
