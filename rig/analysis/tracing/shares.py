@@ -11,6 +11,7 @@ from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.unknown import INDICES, Rest, folds, homes, score
 from rig.model.effect import Array
 
+COARSE: Final = 8  # levels of the second coordinate: loads and speeds of a campaign are about as many
 RIDGE: Final = 1.0  # rows: a harmonic that no run shows stays zero
 ORDERS_OF: Final = {"motor_angle": 15, "load_angle": 8}  # the paper's series; runout, ovality, gravity
 COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory", "speed", "time")
@@ -58,6 +59,8 @@ def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: 
 
 
 def crossed(r: Rest, one: str, other: str) -> Array:
-    """Cells of two coordinates, −1 where either is unknown."""
+    """Cells of two coordinates, the second one coarse so that a cell holds rows enough; −1 where either is unknown."""
     a, b = INDICES[one](r), INDICES[other](r)
-    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
+    levels = int(b.max(initial=0)) + 1
+    coarse = b * min(levels, COARSE) // levels
+    return np.where((a >= 0) & (b >= 0), a * COARSE + coarse, -1)
