@@ -86,9 +86,9 @@ def why_worse(split: Split | None, again: UnderLoad | None) -> Claim:
     after = replace(split, simulated=again.simulated).rms_left()
     assert after is not None
     told = (
-        f"The gear carries {again.there:.2f} N·m there, swinging by {again.swing:.1f} N·m, and {again.before:.2f} N·m in "
-        f"the slow run; slow runs under load say that {100 * again.kept:.1f} % of θ̃_p are then left. With that the model "
-        "leaves {} instead of {}."
+        f"The gear carries {again.there:.2f} N·m there, swinging by {again.swing:.1f} N·m, and {again.before:.2f} N·m "
+        f"in the slow run; slow runs under load say that {100 * again.kept:.1f} % of θ̃_p are then left. With that the "
+        "model leaves {} instead of {}."
     )
     rule = f"What the model leaves with θ̃_p so scaled, over what it left before: rms at most {HALF:g}, half its square."
     return Claim(WHY, at_most(after.over(left), HALF), told, (after, left), rule)
