@@ -29,6 +29,7 @@ SHORTER: dict[str, dict[str, Any]] = {
     "full-turn": {"speed_rpm": 120.0},
     "speed-convergence": {"amplitude_deg": 360.0, "speeds_rpm": "60,40,30"},
     "coast-down": {"repeats": 1, "speed_rpm": 200.0},
+    "friction": {"speeds_rpm": "60,200", "seconds": 1.0, "breakaways": 1},
     "sentinel": {"revolutions": 10, "settle": 1.0},
     "standstill": {"duration": 3.0},
     "held-standstill": {"duration": 3.0},
