@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.core.errors import HdrigError
+from rig.core.errors import Exit, HdrigError
 
 Array = npt.NDArray[np.float64]
 TURN = 2.0 * np.pi
@@ -15,6 +15,8 @@ TURN = 2.0 * np.pi
 
 class NoSteadyState(HdrigError):
     """The gear does not turn steadily under this torque."""
+
+    exit = Exit.USAGE
 
 
 @dataclass(frozen=True)
