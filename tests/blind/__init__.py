@@ -19,13 +19,13 @@ reader whether it takes a folder. What is here, in the order it is used:
     python -m tests.blind.generate --suite 30 --seed 1 --out DIR
     python -m tests.blind.score DIR
 
-Kinds: single (textbook form), single_other (another form), crowded (one main effect among eight at 2 to 6 % of their
-typical size), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper,
-noreps, one_direction, no_torque_sensor.
+Kinds: single (textbook form), single_other (another form), crowded (one main effect among eight at 1.01 to 1.12 times
+the floor), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper, noreps,
+one_direction, no_torque_sensor.
 
 Limits of this test: rig, noise and effects are simulated by people who had read the same notes as the tracer's authors;
 the declared inertias are exact; every run starts from the same home position; one effect at a time claims the extra
-body, the friction memory or the hysteresis.
+body, the friction memory or the hysteresis; sizes of the plan without a torque sensor are those with one.
 """
 
 import os

@@ -13,7 +13,7 @@ from tests.blind.forms import EFFECTS, LIBRARY, OUTSIDE, Form, form_of, forms_of
 from tests.blind.plans import PLANS
 from tests.blind.residual import residuals, rms
 from tests.blind.sensors import draw_noise
-from tests.blind.strength import Stage, calibrate, over_floor, shape_rng, short, size
+from tests.blind.strength import Stage, calibrate, excess_of, over_floor, shape_rng, short, size
 from tests.blind.taken import Taken
 
 Truth = dict[str, object]
@@ -34,7 +34,7 @@ class Request:
 
 @dataclass(frozen=True)
 class Part:
-    """One hidden effect. `alone`: residual over floor it reaches by itself (foretold; 0 for the small ones)."""
+    """One hidden effect. `alone`: residual over floor it reaches by itself (foretold)."""
 
     form: Form
     strength: float
@@ -117,17 +117,25 @@ def compatible(forms: list[Form]) -> bool:
     return True
 
 
-def small_ones(main: Form, rng: np.random.Generator) -> list[tuple[Form, float]]:
-    """Eight other effects at 2 to 6 % of their typical size: there, and not worth a name."""
+def small_forms(main: Form, rng: np.random.Generator) -> list[Form]:
+    """Eight other effects the plant can hold beside the main one."""
     chosen: list[Form] = []
     skip = {main.effect, "missed_counts", "torsional_mode", "presliding_friction"}  # these have no small size
     for name in rng.permutation([name for name in EFFECTS if name not in skip]):
         form = any_of(rng, forms_of(str(name)))
-        if compatible([main, *chosen, form]):
+        if len(chosen) < 8 and compatible([main, *chosen, form]):
             chosen.append(form)
-        if len(chosen) == 8:
-            break
-    return [(form, float(rng.uniform(0.02, 0.06))) for form in chosen]
+    return chosen
+
+
+def small_parts(stage: Stage, main: Form, rng: np.random.Generator, clean: list[Taken]) -> list[Part]:
+    """Eight effects at 1.01 to 1.12 times the floor, each by itself: there, and not worth a name."""
+    out = []
+    for place, form in enumerate(small_forms(main, rng), 1):
+        excess = float(rng.uniform(0.14, 0.5))  # root of the ratio squared less one; grows with the strength
+        whole = max(excess_of(stage, form, place, 1.0, clean), 0.05)
+        out.append(Part(form, min(excess / whole, form.strongest), "small", float(np.hypot(1, excess))))
+    return out
 
 
 def make(request: Request) -> Case:
@@ -141,11 +149,12 @@ def make(request: Request) -> Case:
     brief = [run for run in clean if run.plan.name in kept]
     parts: list[Part] = []
     for place, form in enumerate(found):
-        target = request.over_floor or float(np.exp(rng.uniform(np.log(1.3), np.log(20.0))))
+        least = 4.0 if request.kind == "crowded" else 1.3
+        target = request.over_floor or float(np.exp(rng.uniform(np.log(least), np.log(20.0))))
         strength, alone = calibrate(stage, form, place, target, brief)
         parts.append(Part(form, strength, "main", alone))
     if request.kind == "crowded":
-        parts += [Part(form, share, "small", 0.0) for form, share in small_ones(found[0], rng)]
+        parts += small_parts(stage, found[0], rng, brief)
     return assemble(request, stage, parts, clean)
 
 

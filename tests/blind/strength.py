@@ -96,21 +96,26 @@ def calibrate(stage: Stage, form: Form, place: int, target: float, clean: list[T
     """Strength at which `form` alone reaches `target` times the floor, within the form's physical bounds, and what it
     then reaches (foretold from the last try).
     """
-    plan = short(stage.plan)
 
     def excess_at(strength: float) -> float:
-        builder = Builder(stage.rig)
-        form.build(builder, shape_rng(stage.seed, place), strength)
-        return size(over_floor(simulate(builder, plan, stage.noise, stage.seed), clean), (form.effect,))
+        return excess_of(stage, form, place, strength, clean)
 
     return secant(excess_at, target, form.weakest, form.strongest)
+
+
+def excess_of(stage: Stage, form: Form, place: int, strength: float, clean: list[Taken]) -> float:
+    """Root of (residual over floor) squared less one, of `form` alone on the short plan; grows with the strength."""
+    builder = Builder(stage.rig)
+    form.build(builder, shape_rng(stage.seed, place), strength)
+    runs = simulate(builder, short(stage.plan), stage.noise, stage.seed)
+    return float(np.sqrt(max(size(over_floor(runs, clean), (form.effect,)) ** 2 - 1, 1e-4)))
 
 
 def secant(excess_at: Callable[[float], float], target: float, low: float, high: float) -> tuple[float, float]:
     """Excess power grows about as strength squared: up to three corrections along that line."""
     strength, want = min(max(1.0, low), high), np.sqrt(target**2 - 1)
     for _ in range(3):
-        have = np.sqrt(max(excess_at(strength) ** 2 - 1, 1e-4))
+        have = excess_at(strength)
         better = float(np.clip(strength * np.clip(want / have, 0.05, 20.0), low, high))
         change = better / strength
         strength = better
