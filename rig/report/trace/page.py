@@ -19,7 +19,7 @@ from rig.report.trace import tables, words
 from rig.report.trace.campaign import Provenance
 from rig.report.trace.cards import cards
 from rig.report.trace.channels import CHANNELS
-from rig.report.trace.figures import BEFORE_AFTER, WHERE
+from rig.report.trace.figures import BEFORE_AFTER, WHERE, home
 from rig.report.trace.sizes import said
 from rig.report.words import Origin
 from rig.runfile.manifest import write_atomic
@@ -57,6 +57,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "orders": [(*words.meaning(p), said(p)) for p in tables.orders(trace.baseline)],
         "together": [words.listed([words.PARAMETERS.get(n, (n,))[0] for n in g]) for g in trace.cannot_be_told_apart],
         "floors": tables.floors(trace),
+        "told": home.told(curves),
         "lives": [words.place(c) for c in trace.lives_in],
         "suspects": lines,
         "silent": words.listed(silent),

@@ -56,6 +56,9 @@ def test_slow_fast_and_loaded_runs_are_told_by_speed_and_load() -> None:
 def test_what_predicts_the_residual_is_named_in_the_order_the_tracer_gives() -> None:
     assert len(home.ROWS) == len(COORDINATES) + len(PAIRS)
     assert "motor angle and torque 88 %" in home.DRAWING.say(CURVES)
+    assert home.told(CURVES) == [
+        "Kinematic error: motor angle and torque predict 88\u00a0% of the excess over the floor."
+    ]
     assert PAIRS[0] == ("motor_angle", "load")
 
 

@@ -23,7 +23,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     parts = [p for p in PARTS if line(curves, p[0]) is not None and line(curves, f"{p[1]}.before_arcsec") is not None]
     if not parts:
         return None
-    figure, panels = sheet(frame, [frame.pick(140, 120)] * len(parts))
+    figure, panels = sheet(frame, [frame.pick(140, 120)] * len(parts), keys=int(frame.narrow))
     for panel, (across, stem, name) in zip(panels, parts, strict=True):
         panel.axhline(0, color=LIGHT["axis"], lw=1)
         x = line(curves, across)
@@ -38,8 +38,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
         panel.set_xlim(0, 360)
         panel.xaxis.set_major_locator(MultipleLocator(frame.pick(45, 90)))
         panel.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}°"))
-        title(panel, name, "arcsec")
-    key(panels[0], [handle({**BEFORE, "ls": "-"}, "before"), handle(AFTER, "after")])
+        title(panel, name, "arcsec", keys=int(frame.narrow and panel is panels[0]))
+    key(panels[0], [handle({**BEFORE, "ls": "-"}, "before"), handle(AFTER, "after")], columns=2 * frame.narrow)
     foot(panels[-1], "Angle within one turn")
     return figure
 

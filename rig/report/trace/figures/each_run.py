@@ -97,5 +97,4 @@ DRAWING = Drawing(
     "its floor has nothing left to explain. The same numbers stand in the table below.",
     draw,
     say,
-    full=True,
 )

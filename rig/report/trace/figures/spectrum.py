@@ -46,10 +46,12 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     found = spectra(curves)
     if not found:
         return None
-    figure, panels = sheet(frame, [frame.pick(180, 160)] * len(found))
+    figure, panels = sheet(frame, [frame.pick(180, 160)] * len(found), keys=int(frame.narrow))
     for panel, s in zip(panels, found, strict=True):
         _panel(panel, s, frame)
-    key(panels[0], [handle({**BEFORE, "ls": "-"}, "before"), handle(AFTER, "after")])
+        name = f"Residual of the {s.channel.name.lower()} {s.channel.short}"
+        title(panel, name, s.channel.unit, keys=int(frame.narrow and panel is panels[0]))
+    key(panels[0], [handle({**BEFORE, "ls": "-"}, "before"), handle(AFTER, "after")], columns=2 * frame.narrow)
     foot(panels[-1], "Order, cycles per motor turn")
     return figure
 
@@ -68,7 +70,6 @@ def _panel(panel: Axes, s: Spectrum, frame: Frame) -> None:
     panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(20, 8)), integer=True, steps=[1, 2, 5, 10]))
     panel.set_xlim(0, float(s.order.max()))
     panel.grid(axis="x", color=LIGHT["grid"], linewidth=0.6)
-    title(panel, f"Residual of the {s.channel.name.lower()} {s.channel.short}", s.channel.unit)
 
 
 def say(curves: Curves) -> str:

@@ -155,5 +155,4 @@ DRAWING = Drawing(
     "torque and speed axes are even up to 1 and logarithmic beyond. Bins with fewer than 30 samples are left out.",
     draw,
     say,
-    full=True,
 )
