@@ -15,7 +15,7 @@ from rig.model.references import REFERENCES
 N, DT = 50.0, 0.001
 KNOWN = Known(7000.0, 5.0, 1.5e-3, 0.8, FourierSeries((1e-5, 2e-4, 0.0), (0.0, 1e-4, 1e-5)))
 REACH = Reach(
-    ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, load_turns=1.0,
+    ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, band=72.0, load_turns=1.0,
     counts_m=65536, counts_l=1_296_000,
 )  # fmt: skip
 FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}

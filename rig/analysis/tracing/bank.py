@@ -48,7 +48,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
         torque=float(np.nanmax(torque)) if np.isfinite(torque).any() else 0.0,
         duration=max(float(p.t[-1]) for p in pieces) - min(float(p.t[0]) for p in pieces),
         rate=min(run.rate for run in runs),
-        band=1.4 * min(run.smoother.sigma_hz for run in runs),  # the low-pass leaves a third of it there
+        band=2.0 * min(run.smoother.sigma_hz for run in runs),  # the low-pass leaves a seventh of it there
         load_turns=float(np.nanmax(turns)) / (2 * np.pi),
         counts_m=runs[0].counts_m,
         counts_l=runs[0].counts_l,

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from rig.analysis.tracing.membership import one_rig, starts
 from rig.analysis.tracing.recording import Recording, record
 from rig.core.errors import HdrigError, UsageError
 from rig.runfile.run import Run
@@ -33,15 +34,18 @@ def read_campaign(folder: Path) -> Campaign:
     if not places:
         raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it")
     opened, notes = _open(places)
-    first = min((s for s in map(_started, opened) if s is not None), default=0.0)
+    opened, unfit = one_rig(opened)
+    begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
-        found = list(pool.map(lambda run: _record(run, first), opened))
+        found = list(pool.map(_record, opened, begun))
     runs = [r for r in found if isinstance(r, Recording)]
+    notes += unfit
     notes += [f"{r.name}: {note}" for r in runs for note in r.notes]
     notes += [r for r in found if isinstance(r, str)]
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {'; '.join(notes)[:300]}")
     runs, odd = _same_gear(sorted(runs, key=lambda r: (r.start, r.name)))
+    runs = _same_sensors(runs)
     return Campaign(folder.name, tuple(runs), any(run.simulated for run in opened), tuple(notes + odd))
 
 
@@ -56,21 +60,26 @@ def _open(places: list[Path]) -> tuple[list[Run], list[str]]:
     return opened, notes
 
 
-def _started(run: Run) -> float | None:
+def _record(run: Run, start: float) -> Recording | str:
     try:
-        said = run.started
-    except UsageError:
-        return None
-    return said.timestamp() if said else None
-
-
-def _record(run: Run, first: float) -> Recording | str:
-    started = _started(run)
-    try:
-        made = record(run, (started if started is not None else first) - first)
+        made = record(run, start)
     except (HdrigError, ValueError) as error:
         return f"{run.name} was left out: {error}."
     return made if made.pieces else f"{run.name} was left out: no {0.1:g} s of it without a gap."
+
+
+def _same_sensors(runs: list[Recording]) -> list[Recording]:
+    """A sensor is as noisy in every run; where a reading looks rougher than in the smoothest run, it really moved."""
+    turning = [r for r in runs if r.procedure != "standstill" and not r.locked]
+    least: dict[str, float] = {}
+    for run in turning:
+        for name, rms in run.noise.items():
+            raw = rms * run.thinned**0.5
+            least[name] = min(raw, least.get(name, raw))
+    return [
+        replace(run, noise={n: min(rms, least.get(n, rms) / run.thinned**0.5) for n, rms in run.noise.items()})
+        for run in runs
+    ]
 
 
 def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:

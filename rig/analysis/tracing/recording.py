@@ -35,6 +35,7 @@ class Recording:
     counts_m: float
     counts_l: float
     rate: float  # Hz of the file
+    thinned: int  # rows of the file per row at the working rate
     noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
 
@@ -89,6 +90,7 @@ def record(run: Run, start: float) -> Recording:
         counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
         counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
         rate=1 / dt,
+        thinned=factor,
         noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
         notes=motion.notes if motion else (),
     )

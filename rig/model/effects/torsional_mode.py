@@ -26,6 +26,7 @@ class TorsionalMode(Effect):
     LOWEST: Final = 20.0  # Hz
     STEP: Final = 1.08  # neighbouring frequencies within a half width of a 4 % damped peak
     ZETA: Final = 0.04
+    EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
@@ -41,6 +42,8 @@ class TorsionalMode(Effect):
         """One column: the acceleration behind the spring."""
         side, frequency, zeta = shape
         alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
+        # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
+        alpha = np.where(np.abs(signals.omega_m) > self.EXCITED, alpha, 0.0)
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: resonated(alpha, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]}
 
