@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.bins import BINNED
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.unknown import INDICES, Rest, folds, homes, score
 from rig.model.effect import Array
@@ -22,7 +23,7 @@ def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Arra
     """`share.*` of one channel: bin means of one half of the rows against the other half."""
     excess = float(np.mean(r.e**2)) - 1.0
     fold = folds(r)
-    alone = [score(r, fold, INDICES[name](r)) for name in COORDINATES]
+    alone = [score(r, fold, levels(r, name)) for name in COORDINATES]
     for i, (name, orders) in enumerate(ORDERS_OF.items()):
         alone[i] = max(alone[i], score_of_orders(r, fold, floors, channel, name, orders))
     both = [score(r, fold, crossed(r, *pair)) for pair in PAIRS]
@@ -60,7 +61,18 @@ def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: 
 
 def crossed(r: Rest, one: str, other: str) -> Array:
     """Cells of two coordinates, the second one coarse so that a cell holds rows enough; −1 where either is unknown."""
-    a, b = INDICES[one](r), INDICES[other](r)
-    levels = int(b.max(initial=0)) + 1
-    coarse = b * min(levels, COARSE) // levels
+    a, b = levels(r, one), levels(r, other)
+    count = int(b.max(initial=0)) + 1
+    coarse = b * min(count, COARSE) // count
     return np.where((a >= 0) & (b >= 0), a * COARSE + coarse, -1)
+
+
+def levels(r: Rest, name: str) -> Array:
+    """Bin of each row: loads and speeds evenly on the axis they are drawn on, lest long runs take them all."""
+    if name == "memory":
+        load = levels(r, "load")
+        return np.where(load >= 0, 2 * load + (r.at["torque_rate"] > 0), -1)
+    if name not in ("load", "speed", "time"):
+        return INDICES[name](r)
+    found = BINNED[name](r)
+    return np.full(r.e.size, -1) if found is None else np.asarray(found[0])

@@ -63,6 +63,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "silent": words.listed(silent),
         "added": words.added(trace),
         "own": words.of_each_run(trace),
+        "found_first": words.listed([words.named(e.effect) for e in trace.effects if e.effect in words.OWN]),
         "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
         "moved": physical,
         "moved_orders": orders,

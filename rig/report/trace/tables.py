@@ -61,7 +61,8 @@ def moved(trace: Trace) -> tuple[list[Moved], list[Moved]]:
 def _moved(a: Parameter, b: Parameter) -> Moved:
     half = math.hypot(a.ci95[1] - a.ci95[0], b.ci95[1] - b.ci95[0]) / 2
     shift = b.value - a.value
-    relative = 100 * shift / abs(a.value) if a.value else math.nan
+    known = abs(a.value) > (a.ci95[1] - a.ci95[0]) / 2  # else a percentage of it says nothing
+    relative = 100 * shift / abs(a.value) if known else math.nan
     sign = "+" if relative >= 0.05 else "−" if relative <= -0.05 else ""
     percent = join(f"{sign}{abs(relative):.1f}", "%") if math.isfinite(relative) else ABSENT
     times = f"{abs(shift) / half:.1f} ×" if half > 0 else ABSENT

@@ -40,6 +40,7 @@ PARAMETERS = {  # of the baseline: symbol, what it is
     "J_l": ("J_l", "inertia, load side"),
     "B_l": ("B_l", "viscous friction, load side"),
     "tau_cl": ("τ_cl", "constant friction, load side"),
+    "lag": ("δ", "lag of the torque sensor"),
 }
 
 OWN = {"external_vibration": "phase and amplitude of the vibration", "missed_counts": "instants of the steps"}
