@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, RPM
-from rig.analysis.identify.recording import Recording
+from rig.analysis.angle import ARCSEC, RPM, TURN
+from rig.analysis.identify.recording import Plateau, Recording, plateaus
 from rig.analysis.identify.slow import SLOW
-from rig.analysis.kinematic_error import groups_by_speed
 from rig.analysis.profile import combine
 from rig.analysis.revolutions import analyse_stroke
-from rig.analysis.strokes import find_strokes
+from rig.analysis.strokes import Stroke
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, Waveform, at_speed
 
@@ -35,23 +34,21 @@ class Prediction:
 
 
 def predictions(runs: Sequence[Recording], gear: Gear, terms: int) -> list[Prediction]:
-    """One for every unloaded run at speed, slowest first."""
+    """One for every unloaded run at speed under no loop, slowest first."""
     made = [p for r in runs if not r.locked and r.tau_ext == 0.0 and (p := _of(r, gear, terms)) is not None]
     return sorted(made, key=lambda p: abs(p.speed_rpm))
 
 
 def _of(run: Recording, gear: Gear, terms: int) -> Prediction | None:
-    groups = groups_by_speed(run.motion, find_strokes(run.motion))
-    if not groups:
+    # a loop that holds the speed bends the waveform: only what runs free is what the equations say
+    level = [p for p in plateaus(run) if abs(p.omega) * RPM > SLOW and not p.followed]
+    if not level:
         return None
-    main = max(groups, key=lambda g: sum(s.revolutions for s in g))
-    if sum(s.revolutions for s in main) < FEWEST or min(int(np.min(np.diff(s.edges))) for s in main) < 4 * terms:
+    best = max(level, key=lambda p: p.duration)
+    stroke = _stroke(best)
+    if stroke.revolutions < FEWEST or int(np.min(np.diff(stroke.edges))) < 4 * terms:
         return None
-    strokes = [analyse_stroke(run.motion, s, terms) for s in main]
-    speeds = np.concatenate([s.speed_rpm for s in strokes])
-    rpm = float(np.mean(np.abs(speeds))) * float(np.sign(strokes[0].direction))
-    if not abs(rpm) > SLOW or len({s.direction for s in strokes}) > 1:
-        return None
+    strokes, rpm = [analyse_stroke(run.motion, stroke, terms)], best.omega * RPM
     profile = combine(strokes, np.zeros(terms))
     value, interval = profile.peak_to_peak()
     try:
@@ -64,6 +61,15 @@ def _of(run: Recording, gear: Gear, terms: int) -> Prediction | None:
     return Prediction(
         run.name, rpm, value, interval, _swing(wave, terms), gear.kinematic_error.peak_to_peak() * ARCSEC, rms
     )
+
+
+def _stroke(plateau: Plateau) -> Stroke:
+    """The plateau cut at whole turns."""
+    theta = plateau.run.theta_m[plateau.lo : plateau.hi + 1]
+    progress = np.maximum.accumulate(plateau.way * (theta - theta[0]))
+    turns = round(float(progress[-1]) / TURN)
+    edges = plateau.lo + np.searchsorted(progress, TURN * np.arange(turns + 1))
+    return Stroke(int(plateau.way), plateau.lo, plateau.hi, np.minimum(edges, plateau.hi).astype(np.int64))
 
 
 def _swing(wave: Waveform, terms: int) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from rig.analysis.intervals import t95
 from rig.analysis.result import Array
 
+ENOUGH = 8  # degrees of freedom from which the scatter of the rows is believed against their own variances
 HALVINGS = 60  # of the between-run variance: to the last digits
 
 
@@ -45,7 +46,8 @@ def random_effects(X: Array, y: Array, variance: Array) -> Solved:
     """Rows whose scatter is `variance` each, (n,), plus one variance between rows chosen so that χ² is what it should.
 
     The estimator of Paule and Mandel: runs repeat less well than one run's own scatter says, because a zero, a
-    temperature or a lubricant film changed between them      [paule1982]
+    temperature or a lubricant film changed between them      [paule1982]. Where they repeat better than that, the rows'
+    variance was taken too large and is scaled down, given enough of them to tell.
     """
     n, p = X.shape
     dof = n - p
@@ -62,4 +64,6 @@ def random_effects(X: Array, y: Array, variance: Array) -> Solved:
         low, high = (middle, high) if chi2(middle) > dof else (low, middle)
     c, covariance = weighted(X, y, variance + high)
     pull = float(np.sqrt(chi2(0.0) / max(dof, 1)))
+    if dof >= ENOUGH and pull < 1.0:
+        covariance = covariance * pull**2
     return Solved(c, covariance, max(dof, 1), float(np.sqrt(high)), pull)
