@@ -85,7 +85,7 @@ def higher(sizes: Sequence[Number], speeds: Sequence[float], remark: str = "") -
     """rms of what lies above order 2."""
     rule = "rms of the orders 3 to 15 at each speed less that at the one before, above zero with its 95 % interval."
     claim = _rising(HIGHER, "rms of orders 3 to 15", sizes, speeds, rule)
-    return replace(claim, words=f"{claim.words} {remark}".strip())
+    return replace(claim, words=f"{claim.words} {remark}".strip()) if claim.numbers else claim
 
 
 def _resonance(campaign: Campaign, splits: Sequence[Split]) -> str:

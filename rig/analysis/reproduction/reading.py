@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from rig.analysis.reproduction.waveform_spectrum import Spectrum, spectrum_of
 from rig.analysis.reproduction.ways import Way, ways_of
 from rig.analysis.result import Array, Result
 from rig.analysis.smoothness import sentence, smoothness
-from rig.analysis.source import Motion, motion_of
+from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.tame import Tame
 from rig.analysis.window import measured_window, part
@@ -31,7 +32,6 @@ UNREAD = ("friction", "coast_down", "step_test", "sign_and_scale", "weigh", "loc
 class Reading:
     """A run without its rows. To the analysis it is a Source that recorded nothing more."""
 
-    folder: Path
     name: str
     manifest: Mapping[str, Any]
     ratio: float
@@ -69,6 +69,11 @@ class Reading:
         return _number(self.conditions.get("tau_ext"), 0.0)
 
     @property
+    def speed_rpm(self) -> float:
+        """What it was meant to turn at, either way; NaN where that is not said."""
+        return abs(_number(self.conditions.get("speed_rpm"), math.nan))
+
+    @property
     def assembly(self) -> int:
         """Which fitting of the wave generator; 1 where none is said."""
         return int(_number(self.conditions.get("assembly"), 1.0))
@@ -81,11 +86,15 @@ class Reading:
 
 def read(folder: Path, reference: Path | None = None) -> Reading:
     """The run in `folder`; from a lock test the kinematic error of `reference` is taken off. Raises HdrigError."""
-    run = Run.open(folder)
-    bare = Reading(folder, run.name, dict(run.manifest), run.ratio, run.procedure)
+    return reading_of(Run.open(folder), None if reference is None else Run.open(reference))
+
+
+def reading_of(run: Source, reference: Source | None = None) -> Reading:
+    """What the figures need of `run`."""
+    bare = Reading(run.name, dict(run.manifest), run.ratio, run.procedure)
     with np.errstate(all="ignore"):
         if bare.conditions.get("output_locked"):
-            return _with(bare, lock=analyse(run, None if reference is None else Run.open(reference)))
+            return replace(bare, lock=analyse(run, reference))
         if run.procedure in UNREAD:
             return bare
         tame = Tame(run)
@@ -107,7 +116,7 @@ def _turning(bare: Reading, run: Tame, motion: Motion) -> Reading:
         return bare
     fast = measure(run, settled, max(groups, key=_revolutions), slow=False)
     shaft = shaft_of(settled, settled.pick(run.column("tau_l")))
-    return _with(bare, fast=fast, shaft=shaft, spectrum=spectrum_of(settled), torque=window.torque)
+    return replace(bare, fast=fast, shaft=shaft, spectrum=spectrum_of(settled), torque=window.torque)
 
 
 def _slow(bare: Reading, run: Tame, motion: Motion, groups: list[list[Stroke]]) -> Reading:
@@ -122,7 +131,7 @@ def _slow(bare: Reading, run: Tame, motion: Motion, groups: list[list[Stroke]]) 
     found = [k for g in groups if (k := measure(run, motion, g, slow=True)) is not None and k.speed_rpm < FAST]
     most = max(groups, key=_revolutions, default=None)
     ways = () if most is None else ways_of(motion, most, motion.pick(run.column("tau_l")))
-    return _with(bare, slow=tuple(found), ways=ways, rejected=tuple(rejected))
+    return replace(bare, slow=tuple(found), ways=ways, rejected=tuple(rejected))
 
 
 def _groups(motion: Motion) -> list[list[Stroke]]:
@@ -138,10 +147,6 @@ def _ends(group: list[Stroke]) -> tuple[int, int]:
 
 def _revolutions(group: list[Stroke]) -> int:
     return sum(s.revolutions for s in group)
-
-
-def _with(bare: Reading, **found: Any) -> Reading:
-    return Reading(bare.folder, bare.name, bare.manifest, bare.ratio, bare.procedure, **found)
 
 
 def _number(value: object, otherwise: float) -> float:
