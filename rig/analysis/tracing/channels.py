@@ -19,7 +19,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
+from rig.analysis.tracing.counts import FREE, LOCKED, one_a_stay, resting
 from rig.analysis.tracing.recording import Recording
 from rig.analysis.tracing.smoothing import Smoother
 from rig.model.effect import Array, Known, Port, Signals
@@ -85,17 +87,26 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:
-    """Rows in which the channel's equation holds: all but the ends in A, sliding ones in M and L."""
+    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L."""
     smooth = run.smoother
     inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
     inside[:ENDS] = inside[-ENDS:] = False
     if channel == "A":
-        return inside
+        return np.asarray(inside & _angle_known(piece, run))
     sliding = piece.way != 0
     if channel == "L":
         usual = float(np.median(np.abs(piece.omega_m[sliding]))) / run.ratio if sliding.any() else 0.0
         sliding &= (smooth.same(piece.theta_l, 1) * piece.way) > SLIDING * usual
     return np.asarray(inside & (smooth(sliding.astype(float)) > 1 - 1e-9))
+
+
+def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
+    """Rows in which the motor's angle is known to better than a count; with a locked output one of every stay too."""
+    f = run.smoother
+    rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
+    if not run.locked:
+        return np.asarray(f(rest.astype(float)) < 1e-9, dtype=np.bool_)
+    return one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
 
 
 def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:

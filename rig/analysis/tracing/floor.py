@@ -14,6 +14,7 @@ from rig.analysis.tracing.thresholds import FLOOR_LEAST, UNCORRELATED
 from rig.model.effect import Array
 
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
+WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
 SOON = 3.0  # times the usual gap between repeats: later ones may have drifted
 
 
@@ -95,12 +96,26 @@ def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channe
     a, b = (pair[0], channel), (pair[1], channel)
     if a not in e or b not in e:
         return None
-    d = compare(eq.rows[a].theta_m, e[a], eq.rows[b].theta_m, e[b])
+    theta_a, theta_b = eq.rows[a].theta_m, eq.rows[b].theta_m
+    d = compare(theta_a, e[a], theta_b + output_turns(theta_a, theta_b, eq.runs[pair[0]].ratio), e[b])
     if d.size < FLOOR_LEAST:
         return None
     offset = float(d.mean())
     d = d - offset
     return Scatter(pair, float(np.sqrt(np.mean(d**2))), d.size, offset, autocorrelation(d))
+
+
+def output_turns(theta_a: Array, theta_b: Array, ratio: float) -> float:
+    """Whole turns of the output that bring b next to a, as motor angle [rad]; 0 where their number is no whole one.
+
+    The motor is where the last run left it: repeats at constant torque begin anywhere. After a turn of the output both
+    angles are what they were; after one of the motor alone the output is not.
+    """
+    turn = 2 * np.pi * round(ratio)
+    if abs(ratio - round(ratio)) > WHOLE:
+        return 0.0
+    middle = 0.5 * (theta_a.min() + theta_a.max() - theta_b.min() - theta_b.max())
+    return float(turn * np.round(middle / turn))
 
 
 def autocorrelation(d: Array) -> Array:

@@ -23,6 +23,7 @@ from rig.analysis.tracing.thresholds import FLOOR_LEAST, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
+STAYS = 0.1  # of the rows of a locked run: fewer are left where it was read stay by stay
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,22 @@ def measure(eq: Equations, e: Mapping[Key, Array], among: Sequence[int]) -> Meas
         n = np.array([s.rows for s in found])
         sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in found], weights=n)))
         kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
-        by_run |= {(i, channel): s.rms for s in found for i in s.pair}
+        by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
         local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
     return Measured(Noise(sigma, kappa, local), by_run, how)
+
+
+def _alone(
+    eq: Equations, e: Mapping[Key, Array], channel: str, among: Sequence[int], found: Sequence[Scatter]
+) -> list[Scatter]:
+    """In A, whose noise is white, runs of conditions that no pair was compared in, each beside itself: how an encoder's
+    rounding averages out depends on the speed.
+    """
+    if channel != "A":
+        return []
+    said = {eq.runs[i].said for s in found for i in s.pair}
+    rest = [i for i in among if eq.runs[i].said not in said and (i, channel) in e]
+    return [s for i in rest if (s := neighbours(eq, e, (i, channel))) is not None]
 
 
 def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: float) -> float:
@@ -98,7 +112,20 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
 
 
 def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
-    """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all."""
+    """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all; where a
+    motor sticks and jumps, its encoder's rounding at least, which repeats share.
+    """
+    return max(_compared(measured, eq, key), float(np.hypot(measured.noise.sigma[key[1]], _rounding(eq, key))))
+
+
+def _rounding(eq: Equations, key: Key) -> float:
+    """RMS of the motor encoder's rounding at the output [rad] in A of a run read stay by stay; 0 in any other."""
+    run, r = eq.runs[key[0]], eq.rows[key]
+    read_by_stay = run.locked and run.counts_m > 0 and r.y.size < STAYS * r.keep.size
+    return 2 * np.pi / (run.counts_m * run.ratio * np.sqrt(12)) if key[1] == "A" and read_by_stay else 0.0
+
+
+def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     if key in measured.by_run:
         return measured.by_run[key]
     run, channel = key

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor import autocorrelation, compare, effective, strokes
+from rig.analysis.tracing.floor import autocorrelation, compare, effective, output_turns, strokes
 
 RNG = np.random.default_rng(5)
 
@@ -32,3 +32,10 @@ def test_slow_noise_has_fewer_independent_rows() -> None:
     slow = np.convolve(white, np.ones(8), mode="valid")
     assert effective(autocorrelation(white)) < 1.3
     assert effective(autocorrelation(slow)) == pytest.approx(8.0, rel=0.2)
+
+
+def test_repeats_that_began_elsewhere_are_compared_after_whole_turns_of_the_output() -> None:
+    theta = np.linspace(0.0, 400.0, 4000)
+    shift = output_turns(theta, theta + 2 * np.pi * 130, 50.0)
+    assert shift == pytest.approx(-2 * np.pi * 150)  # 3 turns of the output are nearer than 2
+    assert output_turns(theta, theta + 2 * np.pi * 130, 50.25) == 0.0

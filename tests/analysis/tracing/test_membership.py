@@ -1,0 +1,37 @@
+"""Which runs of a folder are traced together, and when they were taken."""
+
+from types import SimpleNamespace
+from typing import Any
+
+from rig.analysis.tracing.membership import one_rig, starts
+
+
+def run(name: str, number: int = 1, rig_time: float | None = None, status: str = "completed", **conditions: Any) -> Any:
+    campaign = {"uid": "c", "run": number} | ({} if rig_time is None else {"rig_time_s": rig_time})
+    return SimpleNamespace(
+        name=name, conditions=conditions, started=None, manifest={"status": status, "campaign": campaign}
+    )
+
+
+def test_the_assembly_most_runs_were_taken_in_is_kept_and_the_rest_told() -> None:
+    runs = [run("a", 1, assembly=1), run("b", 2, assembly=2, depth_mm=0.15), run("c", 3, assembly=1)]
+    kept, notes = one_rig(runs)
+    assert [r.name for r in kept] == ["a", "c"]
+    assert notes == ["1 runs of other assemblies or depths than assembly 1 at 0.0 mm were left out."]
+
+
+def test_an_attempt_that_tripped_gives_way_to_the_one_that_was_completed() -> None:
+    runs = [run("first", 4, status="tripped"), run("again", 4), run("alone", 5, status="stopped")]
+    kept, notes = one_rig(runs)
+    assert [r.name for r in kept] == ["again", "alone"]
+    assert notes == ["first (tripped) was left out: the campaign made it again."]
+
+
+def test_runs_without_a_campaign_are_kept_as_they_are() -> None:
+    bare = SimpleNamespace(name="x", conditions={}, started=None, manifest={"status": "stopped"})
+    assert one_rig([bare]) == ([bare], [])
+
+
+def test_the_rig_s_own_time_counts_where_the_campaign_says_it_of_every_run() -> None:
+    assert starts([run("a", 1, 20.0), run("b", 2, 620.0)]) == [0.0, 600.0]
+    assert starts([run("a", 1, 20.0), run("b", 2)]) == [0.0, 0.0]
