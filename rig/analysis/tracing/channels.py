@@ -47,7 +47,6 @@ BASELINE: Final = (
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
-EXCITED: Final = 3.0  # rad/s of the motor; below, order 15 stays under 7 Hz, far below the gear's own resonance
 SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
@@ -132,14 +131,7 @@ def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
 
 def _load(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.tau_l + s.tau_ext)
-    # turning slowly the load only follows the motor; its own encoder would show noise and what friction does
-    follows = np.abs(s.omega_m[f.centres(s.omega_m.size)]) < EXCITED
-    columns = {
-        "J_l": np.where(follows, f(s.theta_m, 2) / s.ratio, f(s.theta_l, 2)),
-        "B_l": f(s.theta_l, 1),
-        "tau_cl": f(s.way),
-        "tau_l0": np.ones_like(y),
-    }
+    columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "tau_l0": np.ones_like(y)}
     columns |= {"lag": -f(s.tau_l, 1)}
     return y, columns
 
