@@ -48,6 +48,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "facts": source.facts(trace),
         "sentence": words.plainly(trace.verdict.sentence),
         "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes)],
+        "remainder": words.remainder(trace),
         "ruling": words.RULINGS[trace.verdict.status],
         "meaning": words.MEANING[trace.verdict.status],
         "sizes": words.sizes(trace.effects),

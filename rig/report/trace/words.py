@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 from rig.analysis.tracing.local import IN_SHORT
 from rig.analysis.tracing.result import Found, Status, Trace
+from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE
 from rig.report.numbers import plain
-from rig.report.trace.sizes import said
+from rig.report.trace import sizes as sized
+from rig.report.trace.channels import CHANNELS
 from rig.report.words import Ruling, humanise
 
 RULINGS = {
@@ -88,7 +90,7 @@ def sizes(found: Sequence[Found]) -> list[str]:
     """One sentence for each effect added: its first parameters with their intervals."""
     out = []
     for effect in found:
-        parts = [f"{p.name} = {said(p)}" for p in effect.parameters[:3]]
+        parts = [f"{p.name} = {sized.said(p)}" for p in effect.parameters[:3]]
         if parts:
             out.append(f"{named(effect.effect)}: {', '.join(parts)}.")
     return out
@@ -102,6 +104,15 @@ def heading(trace: Trace) -> str:
 def place(coordinate: str | None) -> str:
     """A coordinate as a phrase."""
     return PLACES.get(coordinate or "", (coordinate or "").replace("_", " "))
+
+
+def remainder(trace: Trace) -> str:
+    """What stays above the floor although effects were named; "" where nothing does or the verdict says it itself."""
+    if trace.verdict.status is Status.UNKNOWN:
+        return ""
+    loud = [(c, r) for c in CHANNELS if (r := trace.ratios_after.get(c.sensor, 0.0)) > EXPLAINED]
+    said = listed([f"the {c.name.lower()} stays at {plain(r, 3)} times its floor" for c, r in loud])
+    return f"Not all of it: {said}. What that is, is not known." if said else ""
 
 
 def added(trace: Trace) -> str:

@@ -88,6 +88,13 @@ def test_an_unknown_effect_says_where_it_lives_and_is_given_no_name(pages: dict[
     assert "in the load angle, order 37 per turn" in pages["unknown_effect"].words
 
 
+def test_an_explanation_that_leaves_a_channel_above_its_floor_says_so() -> None:
+    base = bare(made_up.explained())
+    partly = replace(base, ratios_after=base.ratios_after | {"tau_l": 1.73})
+    assert "Not all of it: the shaft torque stays at 1.73 times its floor." in read(partly).words
+    assert "Not all of it" not in read(base).words
+
+
 def test_every_suspect_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
     words = pages["explained"].words
     assert "Alone it removes 3 % of the excess, 60 % would be asked for." in words
