@@ -1,4 +1,5 @@
-"""CiA 402 servo drive over CANopen, torque mode (CST): the host closes the loop      [cia402]
+"""CiA 402 servo drive over CANopen: cyclic synchronous torque, the host closing the loop, or velocity or position
+[cia402]
 
 Its state machine is walked here, one transition at a time. canopen's own helper is not used: its `reset_from_fault`
 goes on to OPERATION ENABLED. Commands are sent at once (RPDO type 255), readings are latched on SYNC.
@@ -7,67 +8,43 @@ goes on to OPERATION ENABLED. Commands are sent at once (RPDO type 255), reading
 from __future__ import annotations
 
 import contextlib
-import math
 import struct
 from typing import ClassVar
 
-from drivers.node import Mapped, Node, emergency_text
+from drivers.node import Mapped, Node, Refused, emergency_text
+from drivers.pdo import Inputs, Outputs
+from drivers.profile402 import (
+    DISABLE,
+    ENABLE,
+    ENERGISED,
+    RESET,
+    SHUTDOWN,
+    SWITCH_ON,
+    TURN,
+    counts_position,
+    speed_unit,
+    state_of,
+)
+from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.devices import Drive, DriveReading, Identity
 from rig.core.errors import NotReady
-from rig.core.sample import NAN, Setpoint
+from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 
 PROFILE = 402
-TORQUE_MODE = 10  # CST in 6060h
-SUPPORTED = 1 << 9  # of 6502h: CST
-DISABLE, SHUTDOWN, SWITCH_ON, ENABLE, RESET = 0x00, 0x06, 0x07, 0x0F, 0x80  # controlwords
-TURN = 2 * math.pi
 NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
-PERMILLE = 1000.0
 SCALE_TOLERANCE = 0.02  # a rated torque that differs by more is another scale, not rounding
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
-COMMAND = (Mapped(0x6040, 0, 16), Mapped(0x6071, 0, 16))
-STATUS = (Mapped(0x6041, 0, 16), Mapped(0x6061, 0, 8), Mapped(0x6077, 0, 16))
-MOTION = (Mapped(0x6064, 0, 32),)
-
-
-def state_of(statusword: int) -> str:
-    """The state a statusword tells      [cia402, 6.3]"""
-    if statusword & 0x4F == 0x40:
-        return "switch on disabled"
-    match statusword & 0x6F:
-        case 0x21:
-            return "ready to switch on"
-        case 0x23:
-            return "switched on"
-        case 0x27:
-            return "operation enabled"
-        case 0x07:
-            return "quick stop active"
-    match statusword & 0x4F:
-        case 0x0F:
-            return "fault reaction active"
-        case 0x08:
-            return "fault"
-        case 0x00:
-            return "not ready to switch on"
-    return f"no state of the standard (statusword {statusword:04X}h)"
-
-
-def decode_status(data: bytes) -> tuple[int, int, int]:
-    """TPDO 1 (6041h u16, 6061h i8, 6077h i16) to statusword, mode and torque in per mille of the rated one."""
-    status, mode, torque = struct.unpack("<Hbh", data)
-    return status, mode, torque
-
-
-def encode_command(controlword: int, permille: int) -> bytes:
-    """RPDO 1: 6040h u16, 6071h i16 in per mille of the rated torque."""
-    return struct.pack("<Hh", controlword, permille)
+STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
+SHOWN = STATUS[1:2]
+MOTION = (Mapped(0x6064, 0, 32, "i"),)
+CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
+KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
 class Cia402(Drive):
@@ -75,13 +52,16 @@ class Cia402(Drive):
 
     name = "drive"
     answers: ClassVar[tuple[int, ...]] = (5, 4)  # data bytes of its frames after a SYNC
-    commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick
+    commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick; 6 in velocity and position mode
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.bus = wiring.bus(place)
         self.node = Node(self.bus, place.need("node"), "drive")
+        self.remarks = self.node.remarks
         self.place = place
         self.guarded = ""  # what stops the drive when this program dies, in words
+        self.mode = Mode.TORQUE
+        self._inputs, self._outputs = Inputs(self.node), Outputs(self.node)
         self._direction = place.options.get("direction", 1)
         self._rated = place.torque_rated
         self._step = TURN / place.counts_per_turn
@@ -90,11 +70,10 @@ class Cia402(Drive):
         self._enabled = self._connected = False
         self._trouble = ""
         self._last = DriveReading(NEVER, NAN, 0, NAN)
-        self._saturated = 0
+        self._scale = Scale(place)
+        self._written = NEVER  # s, when
 
-    @property
-    def _identifiers(self) -> tuple[int, int, int]:
-        return 0x200 + self.node.number, 0x180 + self.node.number, 0x280 + self.node.number
+    # ---- connecting ----
 
     def connect(self) -> Identity:
         """Identify, compare scales, configure, start. Nothing is energised: the drive is told to disable first."""
@@ -111,9 +90,6 @@ class Cia402(Drive):
         return identity
 
     def _compare_scales(self) -> None:
-        supported = self.node.read_uint(0x6502, default=SUPPORTED)
-        if not supported & SUPPORTED:
-            raise NotReady(f"{self.node.who} does not offer cyclic torque mode (6502h = {supported:#x}, bit 9 is 0)")
         rated = self.node.read_uint(0x6076, default=round(self._rated * 1000)) / 1000
         if abs(rated / self._rated - 1) > SCALE_TOLERANCE:
             raise NotReady(
@@ -126,35 +102,64 @@ class Cia402(Drive):
                 f"{self.node.who} counts {increments / turns:g} per turn (608Fh), motor.counts_per_turn in the bench "
                 f"file is {self.place.counts_per_turn}"
             )
+        unit = self.node.read_uint(0x60A8, default=0)
+        if not counts_position(unit):
+            raise NotReady(
+                f"{self.node.who} tells positions in another unit (60A8h = {unit:08X}h), expected increments"
+            )
         motor, shaft = (self.node.read_uint(0x6091, sub, default=1) for sub in (1, 2))
         if motor != shaft:
             raise NotReady(f"{self.node.who} has a gear of {motor}:{shaft} of its own (6091h), expected 1:1")
 
     def _configure(self) -> None:
-        command, status, motion = self._identifiers
-        for unused in (0x1401, 0x1402, 0x1403, 0x1802, 0x1803):
-            self.node.switch_off_pdo(unused)
-        self.node.map_pdo(0x1400, command, 255, COMMAND)
-        self.node.map_pdo(0x1800, status, 1, STATUS)
-        self.node.map_pdo(0x1801, motion, 1, MOTION)
+        self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
         self.node.produce_heartbeat()
         limit = min(round(self.place.torque_limit / self._rated * PERMILLE), 0xFFFF)
-        self.node.write_if_there(0x6072, 0, struct.pack("<H", limit))
+        self._prefer(0x6072, struct.pack("<H", limit), "its torque is limited by this program alone")
         for code in (0x605A, 0x605C, 0x605E):  # quick stop, disable operation, fault reaction: drive function off
-            self.node.write_if_there(code, 0, struct.pack("<h", 0))
-        self.node.put(0x6071, 0, struct.pack("<h", 0))
-        self.node.write(0x6060, 0, struct.pack("<b", TORQUE_MODE))
+            self._prefer(code, struct.pack("<h", 0), "it reacts in a way of its own before its torque goes off")
+        self._take_mode(Mode.TORQUE)
         self.guarded = self._arm()
         self._disarm()
+
+    def _prefer(self, index: int, value: bytes, otherwise: str) -> None:
+        """Write an object if it is there; a drive that insists on another value is remarked on."""
+        try:
+            self.node.write_if_there(index, 0, value)
+        except Refused as why:
+            self.node.remarks.append(f"{why}: {otherwise}")
+
+    def _take_mode(self, mode: Mode) -> None:
+        """Targets of `mode` in RPDO 1, and in 6060h. The node is pre-operational."""
+        target = TARGETS[mode]
+        supported = self.node.read_uint(0x6502, default=target.supported)
+        if not supported & target.supported:
+            bit = target.supported.bit_length() - 1
+            raise NotReady(
+                f"{self.node.who} does not offer cyclic {mode} mode (6502h = {supported:#x}, bit {bit} is 0)"
+            )
+        if mode is Mode.VELOCITY:
+            code = self.node.read_uint(0x60A9, default=0)
+            unit = speed_unit(code, self.place.counts_per_turn)
+            if unit is None:
+                raise NotReady(f"{self.node.who} tells speeds in a unit not known here (60A9h = {code:08X}h)")
+            self._scale.speed_unit = unit
+        self._outputs.arrange(target.mapped, CHOSEN)
+        if mode is not Mode.POSITION:
+            self.node.put(target.object.at, 0, bytes(target.object.bits // 8))
+        self.node.write(0x6060, 0, struct.pack("<b", target.number))
+        self.mode = mode
 
     def _arm(self) -> str:
         """Have the drive stop by itself when this host falls silent; by what, in words. "" when it cannot."""
         limit = round(1000 * self.place.options.get("watchdog", 0.1))
         host = self.bus.host_node
-        if host and self.node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
-            return f"heartbeat consumer of the drive, {limit} ms, set and read back"
-        if self.node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
-            return f"RPDO timeout of the drive, {limit} ms, set and read back"
+        with contextlib.suppress(Refused):
+            if host and self.node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
+                return f"heartbeat consumer of the drive, {limit} ms, set and read back"
+        with contextlib.suppress(Refused):
+            if self.node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
+                return f"RPDO timeout of the drive, {limit} ms, set and read back"
         return ""
 
     def _disarm(self) -> None:
@@ -165,11 +170,8 @@ class Cia402(Drive):
             self.node.put(0x1400, 5, struct.pack("<H", 0))
 
     def _first_reading(self) -> None:
-        status, motion = self._identifiers[1:]
         self.bus.frames.clear()
-        self.bus.sync()
-        if not self.bus.wait(0.5, lambda: status in self.bus.frames and motion in self.bus.frames):
-            raise NotReady(f"{self.node.who} sent no PDOs after a SYNC: is anything else mapped or filtered?")
+        self._inputs.first(0.5)
         self.read()
 
     def close(self) -> None:
@@ -179,56 +181,65 @@ class Cia402(Drive):
         self._connected = False
         self.bus.close()
 
-    def enable(self) -> None:
-        """Walk to OPERATION ENABLED with zero torque, the watchdog armed. Raises NotReady: where it stuck."""
+    # ---- states ----
+
+    def enable(self, mode: Mode = Mode.TORQUE) -> None:
+        """Walk to OPERATION ENABLED at rest, the watchdog armed. Raises NotReady: where it stuck."""
         if not self._connected:
             raise NotReady("the drive is not connected")
-        self.read()
-        if trouble := self._trouble or self.node.trouble(self.bus.clock.now()):
-            raise NotReady(trouble)
+        if mode is not self.mode:
+            self.node.pause()
+            self._take_mode(mode)
+            self.node.start()
+        self._scale.position = self._direction * self.node.read_int(0x6064) * self._step
         self._walk(SHUTDOWN, "ready to switch on")
         self._walk(SWITCH_ON, "switched on")
-        mode = self.node.read_int(0x6061)
-        if mode != TORQUE_MODE:
-            raise NotReady(f"{self.node.who} did not take torque mode: 6061h is {mode}, expected {TORQUE_MODE}")
+        told, wanted = self.node.read_int(0x6061), TARGETS[mode].number
+        if told != wanted:
+            raise NotReady(f"{self.node.who} did not take {mode} mode: 6061h is {told}, expected {wanted}")
         self._arm()
         self._walk(ENABLE, "operation enabled")
         self._angle.forget()
         self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
+        self._written = self.bus.clock.now()
         self._enabled = True
 
+    def _command(self, controlword: int, raw: int) -> bool:
+        return self._outputs.send(controlword, raw, TARGETS[self.mode].number)
+
+    def _hold(self, controlword: int) -> bool:
+        """A controlword with nothing asked for: no torque, rest, the angle it has."""
+        return self._command(controlword, self._scale.rest(self.mode))
+
     def _walk(self, controlword: int, wanted: str) -> None:
-        self.bus.send(self._identifiers[0], encode_command(controlword, 0))
+        self._hold(controlword)
         until = self.bus.clock.now() + STEP_PATIENCE
         while (state := state_of(self.node.read_uint(0x6041))) != wanted:
             if state.startswith("fault"):
                 raise NotReady(f"{self.node.who} is in {state}: {self._error()}")
             if self.bus.clock.now() > until:
                 raise NotReady(f"{self.node.who} stays in '{state}', expected '{wanted}' within {STEP_PATIENCE:g} s")
-            self.bus.send(self._identifiers[0], encode_command(controlword, 0))
+            self._hold(controlword)
 
     def _error(self) -> str:
         code = self.node.read_uint(0x603F, default=0)
         return self.node.emergency or f"error {code:04X}h, {emergency_text(code)}"
 
+    # ---- in a run ----
+
     def read(self) -> DriveReading:
         """The newest PDOs; never waits. A frame of another length than mapped is a fault, not a number."""
         self.bus.drain()
-        status, motion = (self.bus.frames.get(i) for i in self._identifiers[1:])
-        if status is None or motion is None:
-            return self._last
-        if len(status.data) != 5 or len(motion.data) != 4:
-            self._blame(
-                f"{self.node.who} sends PDOs of {len(status.data)} and {len(motion.data)} bytes, expected 5 and 4"
-            )
+        latched = self._inputs.take()
+        if self._inputs.wrong:
+            self._blame(self._inputs.wrong)
+        if latched == NEVER:
             return self._told(self._last)
-        word, mode, permille = decode_status(status.data)
-        self._judge(word, mode)
-        flags = self._saturated | (Flag.SATURATED_DRIVE if word & 1 << 11 else 0)
-        latched = min(status.latched, motion.latched)  # the older of the two: neither may fall silent alone
+        word, mode, permille, position = self._inputs.values
+        self._judge(int(word), mode)
+        flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & 1 << 11 else 0
         if latched != self._last.t:
-            self.node.answered(motion)
-            jump = self._angle.step(struct.unpack("<i", motion.data)[0])
+            jump = self._angle.step(int(position))
             if jump:
                 flags |= Flag.EPOCH
                 self._blame(f"the motor's count jumped by {jump} between two readings: reset, or a count lost")
@@ -237,14 +248,14 @@ class Cia402(Drive):
         self._last = DriveReading(latched, counts * self._step, counts, tau, flags)
         return self._told(self._last)
 
-    def _judge(self, statusword: int, mode: int) -> None:
+    def _judge(self, statusword: int, mode: float) -> None:
         state = state_of(statusword)
         if state.startswith("fault"):
             self._blame(self.node.emergency or f"{self.node.who} is in {state}")
         elif self._enabled and state != "operation enabled":
             self._blame(f"{self.node.who} left operation by itself: {state} (safe torque off?)")
-        elif self._enabled and mode != TORQUE_MODE:
-            self._blame(f"{self.node.who} left torque mode: 6061h is {mode}")
+        elif self._enabled and mode == mode and mode != TARGETS[self.mode].number:  # NaN: it does not tell
+            self._blame(f"{self.node.who} left {self.mode} mode: 6061h is {mode:g}")
         if self._enabled and (told := self.node.trouble(self.bus.clock.now())):
             self._blame(told)
 
@@ -255,19 +266,18 @@ class Cia402(Drive):
         self._trouble = self._trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
-        """Per mille of the rated torque, within the limit; zero unless enabled."""
-        if not self._enabled:
-            return 0.0
-        limit = self.place.torque_limit
-        asked = setpoint.tau if math.isfinite(setpoint.tau) else 0.0
-        tau = min(max(asked, -limit), limit)
-        permille = int(tau / self._rated * PERMILLE)  # towards zero: never more than was asked
-        self._saturated = int(Flag.SATURATED_DRIVE) if abs(asked) > limit else 0
+        """What fits the frame, within the limits. Nothing is sent unless it is enabled for that kind of setpoint."""
+        nothing = NAN if KINDS[type(setpoint)] is Mode.POSITION else 0.0
+        if not self._enabled or KINDS[type(setpoint)] is not self.mode:
+            return nothing
+        now = self.bus.clock.now()
+        raw, carried = self._scale.within(self.mode, setpoint[0], now - self._written)
         if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
-            return 0.0  # a drive that is not heard may not hear: nothing is queued that could reach it later
-        if not self.bus.send(self._identifiers[0], encode_command(ENABLE, self._direction * permille)):
-            return 0.0
-        return permille / PERMILLE * self._rated
+            return nothing  # a drive that is not heard may not hear: nothing is queued that could reach it later
+        self._written = now
+        return carried if self._command(ENABLE, raw) else nothing
+
+    # ---- off ----
 
     def halt(self) -> bool:
         """Disable voltage at once; True when a statusword confirms that nothing is energised. Never raises."""
@@ -276,7 +286,7 @@ class Cia402(Drive):
             return False
         self.bus.discard()
         for _ in range(2):  # one may meet a full queue
-            self.bus.send(self._identifiers[0], encode_command(DISABLE, 0))
+            self._hold(DISABLE)
         off = self._confirmed_off()
         with contextlib.suppress(
             NotReady
@@ -286,26 +296,21 @@ class Cia402(Drive):
 
     def _confirmed_off(self) -> bool:
         """By the statusword after a SYNC: SDO answers may be late, or somebody else's."""
-        command, status, _ = self._identifiers
         until = self.bus.clock.now() + CONFIRM
         while self.bus.clock.now() < until and not self.bus.dead:
-            self.bus.frames.pop(status, None)
-            self.bus.sync()
-            self.bus.wait(CONFIRM / 10, lambda: status in self.bus.frames)
-            frame = self.bus.frames.get(status)
-            if frame is not None and len(frame.data) == 5:
-                if state_of(decode_status(frame.data)[0]) not in ("operation enabled", "quick stop active"):
-                    return True
-                self.bus.send(command, encode_command(DISABLE, 0))
+            with contextlib.suppress(NotReady):
+                self._inputs.first(CONFIRM / 10)
+            if self._inputs.take() != NEVER and state_of(int(self._inputs.values[0])) not in ENERGISED:
+                return True
+            self._hold(DISABLE)
         return False
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
         if not self._connected:
             raise NotReady("the drive is not connected")
-        command = self._identifiers[0]
         for word in (DISABLE, RESET, DISABLE):
-            self.bus.send(command, encode_command(word, 0))
+            self._hold(word)
             self.bus.wait(0.01, lambda: False)
         state = state_of(self.node.read_uint(0x6041))
         if state.startswith("fault"):
@@ -313,5 +318,5 @@ class Cia402(Drive):
         if self.node.rebooted:
             raise NotReady(f"{self.node.who} rebooted: disconnect and connect again, its configuration is lost")
         self.node.forget()
-        self._trouble = ""
+        self._trouble = self._inputs.wrong = ""
         self._first_reading()  # or the last statusword, still a fault, would be read again

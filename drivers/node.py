@@ -6,6 +6,7 @@ thread is needed, before a run or in it.
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import queue
 import struct
@@ -26,12 +27,17 @@ NODES = range(1, 128)
 START, PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
 BOOT_UP, STOPPED, OPERATIONAL, PREOP = 0x00, 0x04, 0x05, 0x7F  # NMT states in a heartbeat
 NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational", PREOP: "pre-operational"}
+SETTLE = 0.02  # s for a node that says nothing of its state to become what it was told
 PRODUCE = 50  # ms between a node's heartbeats
 PATIENCE = 3.5  # heartbeats that may stay away
 TWICE = 5  # SYNCs in a row answered twice that are no accident
 INVALID = 1 << 31  # of a PDO's identifier: not in use
-NO_OBJECT = {0x06020000, 0x06090011}  # abort codes: no such object, no such sub-index
+UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
 MISSING = object()
+
+
+class Refused(NotReady):
+    """The node answered, with no. Other ways may lead there."""
 
 
 class Mapped(NamedTuple):
@@ -40,6 +46,7 @@ class Mapped(NamedTuple):
     at: int  # index
     sub: int
     bits: int
+    form: str = ""  # of its number, as struct writes it
 
 
 class _Answers(queue.Queue[bytes]):
@@ -70,8 +77,10 @@ class Node:
         self.bus = bus
         self.number = number
         self.who = f"{who} (node {number} on CAN bus '{bus.name}')"
+        self.remarks: list[str] = []  # what a person should know of it, one sentence each
         self.emergency = ""  # the first one since `forget`, in words
         self.rebooted = False  # since `forget`
+        self.beats = True  # it sends heartbeats
         self.state: int | None = None  # NMT state it last told
         self.heard = float("-inf")  # s on the loop's clock, last heartbeat
         self._sdo: Any = None
@@ -113,13 +122,15 @@ class Node:
         return Identity(model, str(serial or ""), version or f"{revision:#x}")
 
     def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
-        """An object's bytes; `default` where the node has no such object. Raises NotReady."""
+        """An object's bytes; `default` where the node will not tell, whatever code it says so with: nodes do not agree
+        on what "no such object" is. Raises NotReady.
+        """
         try:
             return bytes(self._sdo.upload(index, sub))
         except SdoAbortedError as why:
-            if why.code in NO_OBJECT and default is not MISSING:
+            if why.code not in UNSURE and default is not MISSING:
                 return default  # type: ignore[no-any-return]
-            raise NotReady(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
+            raise Refused(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
         except (SdoCommunicationError, can.CanError) as why:
             raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
 
@@ -141,7 +152,7 @@ class Node:
         self.put(index, sub, value)
         back = self.read(index, sub)
         if back[: len(value)] != value:
-            raise NotReady(
+            raise Refused(
                 f"{self.who}: wrote {value[::-1].hex()}h to {index:04X}h:{sub}, it reads back {back[::-1].hex()}h"
             )
 
@@ -150,19 +161,24 @@ class Node:
         try:
             self._sdo.upload(index, sub)
         except SdoAbortedError as why:
-            if why.code in NO_OBJECT:
+            if why.code not in UNSURE:
                 return False
         except (SdoCommunicationError, can.CanError):
             pass  # said by the write
         self.write(index, sub, value)
         return True
 
+    def restore(self, index: int, sub: int, value: bytes) -> None:
+        """Put back what was there, if the node lets us. Never raises."""
+        with contextlib.suppress(NotReady):
+            self.put(index, sub, value)
+
     def put(self, index: int, sub: int, value: bytes) -> None:
         """Write an object that is not to be read back. Raises NotReady."""
         try:
             self._sdo.download(index, sub, value)
         except SdoAbortedError as why:
-            raise NotReady(f"{self.who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
+            raise Refused(f"{self.who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
         except (SdoCommunicationError, can.CanError) as why:
             raise NotReady(f"{self.who} does not answer (writing {index:04X}h:{sub}: {why})") from None
 
@@ -175,7 +191,7 @@ class Node:
         self.put(communication, 1, struct.pack("<I", identifier | INVALID))
         self.write(communication, 2, bytes((kind,)))
         self.put(mapping, 0, b"\0")  # many drives refuse entries while the number is not zero
-        for place, (index, sub, bits) in enumerate(entries, 1):
+        for place, (index, sub, bits, _) in enumerate(entries, 1):
             self.write(mapping, place, struct.pack("<I", index << 16 | sub << 8 | bits))
         self.write(mapping, 0, bytes((len(entries),)))
         self.write(communication, 1, struct.pack("<I", identifier))
@@ -184,11 +200,16 @@ class Node:
         """A PDO not wanted on the bus; nothing when the node has none such. Raises NotReady."""
         present = self.read(communication, 1, b"")
         if present and not int.from_bytes(present, "little") & INVALID:
-            self.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))
+            with contextlib.suppress(Refused):  # then it is sent: unread, and told by the load of the bus
+                self.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))
 
     def produce_heartbeat(self) -> None:
-        """Have the node tell that it lives. Raises NotReady when it cannot: then nobody would notice its death."""
-        self.write(0x1017, 0, struct.pack("<H", PRODUCE))
+        """Have the node tell that it lives. One that cannot is told by the age of its PDOs alone. Raises NotReady."""
+        try:
+            self.write(0x1017, 0, struct.pack("<H", PRODUCE))
+        except Refused as why:
+            self.beats = False
+            self.remarks.append(f"{self.who} has no heartbeat ({why}): only the age of its PDOs shows that it lives")
 
     def start(self) -> None:
         """Operational, confirmed by its heartbeat. Raises NotReady."""
@@ -202,6 +223,9 @@ class Node:
     def _nmt(self, command: int, wanted: int) -> None:
         self.state = None
         self.bus.nmt(command, self.number)
+        if not self.beats:
+            self.bus.wait(SETTLE, lambda: False)
+            return
         if not self.bus.wait(PATIENCE * PRODUCE / 1000, lambda: self.state == wanted):
             told = "nothing" if self.state is None else NMT_NAMES.get(self.state, f"state {self.state:#x}")
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
@@ -222,6 +246,8 @@ class Node:
             return f"{self.who} rebooted: its configuration and position are lost"
         if self.emergency:
             return self.emergency
+        if not self.beats:
+            return ""
         if now - self.heard > PATIENCE * PRODUCE / 1000:
             return f"no heartbeat of {self.who} for {PATIENCE * PRODUCE:.0f} ms, expected one every {PRODUCE} ms"
         if self.state != OPERATIONAL:

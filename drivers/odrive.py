@@ -16,9 +16,9 @@ from drivers import cansimple as cs
 from drivers.axis import Axis
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
-from rig.core.devices import Drive, DriveReading, Identity
+from rig.core.devices import Drive, DriveReading, Identity, torque_only
 from rig.core.errors import NotReady
-from rig.core.sample import NAN, Setpoint
+from rig.core.sample import NAN, Mode, Setpoint
 
 TURN = 2 * math.pi
 NEVER = -1e9  # s, a reading time older than any
@@ -124,10 +124,11 @@ class ODrive(Drive):
         self._connected = False
         self.bus.close()
 
-    def enable(self) -> None:
+    def enable(self, mode: Mode = Mode.TORQUE) -> None:
         """Torque control with zero torque, closed loop. Raises NotReady: where it stuck, with its errors in words."""
         if not self._connected:
             raise NotReady("the drive is not connected")
+        torque_only(self.axis.who, mode)
         self.axis.fresh()
         if self.axis.error:
             raise NotReady(f"{self.axis.error}; reset it first")
@@ -208,7 +209,7 @@ class ODrive(Drive):
         if not self._enabled:
             return 0.0
         limit = self.place.torque_limit
-        asked = setpoint.tau if math.isfinite(setpoint.tau) else 0.0
+        asked = setpoint[0] if math.isfinite(setpoint[0]) else 0.0
         tau = min(max(asked, -limit), limit)
         self._saturated = int(Flag.SATURATED_DRIVE) if abs(asked) > limit else 0
         if self._looked - self._last.t > UNANSWERED * self.place.period:

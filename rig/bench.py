@@ -18,6 +18,7 @@ from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
 from rig.core.procedure import Setting
+from rig.core.sample import Mode
 from rig.guard import DEG, RPM, Limits
 from rig.instruments import Instruments
 
@@ -60,6 +61,11 @@ class Bench:
             twist=lim.twist_deg * DEG if devices.load_encoder else None,
             stale=lim.stale_s,
         )
+
+    @property
+    def mode(self) -> Mode:
+        """What the drive is given where a procedure has a reference; anything else is run in torques."""
+        return Mode(self.file.control.mode)
 
     def setting(self, note: Callable[[str], None]) -> Setting:
         """What a procedure is told about the rig; `note` receives its remarks."""

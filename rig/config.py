@@ -130,7 +130,9 @@ class LimitsSection(Strict):
 
 
 class ControlSection(Strict):
-    """[control]: gains of the host's position loop, motor side."""
+    """[control]: gains of the host's position loop, motor side; `mode` says which loop the drive closes by itself."""
+
+    mode: Literal["torque", "velocity", "position"] = "torque"
 
     Kp: Annotated[float, quantity("N·m/rad", **NotNegative)]
     Ki: Annotated[float, quantity("N·m/(rad·s)", **NotNegative)]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from rig.core.channels import Flag
 from rig.core.procedure import Envelope
-from rig.core.sample import Sample, Torque
+from rig.core.sample import NAN, Position, Sample, Setpoint, Torque, Velocity
 
 DEG = math.pi / 180
 RPM = math.pi / 30
@@ -52,12 +52,18 @@ class Guard:
         self.torque = min(limits.torque, envelope.torque)
         self.shaft_torque = None if limits.shaft_torque is None else min(limits.shaft_torque, envelope.shaft_torque)
         self.start: Sample | None = None
+        self._ranges = {  # middle, how far from it a setpoint may be, what stands in for one that is no number
+            Torque: (0.0, self.torque, 0.0),
+            Velocity: (0.0, limits.speed, 0.0),
+            Position: (NAN, self.travel, NAN),  # from where the run starts: nowhere before that is known
+        }
 
-    def check(self, sample: Sample, asked: Torque) -> Trip | None:
+    def check(self, sample: Sample, asked: Setpoint) -> Trip | None:
         """The first limit this sample breaks, in order of how soon it can do harm."""
         start = self.start
         if start is None:
             start = self.start = sample
+            self._ranges[Position] = (sample.theta_m, self.travel, NAN)
         lim = self.limits
         if (
             not sample.fault
@@ -68,21 +74,24 @@ class Guard:
             and (self.shaft_torque is None or -self.shaft_torque <= sample.tau_l <= self.shaft_torque)
             and (self.twist is None or abs(self.twist_of(sample)) <= self.twist)
             and (self.load_travel is None or abs(sample.theta_l - start.theta_l) <= self.load_travel)
-            and abs(asked.tau) < math.inf
+            and abs(asked[0]) < math.inf
             and not abs(asked.theta_ref - sample.theta_m)
             > lim.following + lim.following_time * abs(asked.omega_ref)  # NaN: no reference, nothing to follow
         ):
             return None
         return next(trip for rule in RULES if (trip := rule(self, sample, asked)) is not None)
 
-    def allowed(self, asked: Torque) -> Torque:
-        """The setpoint clipped to what bench and procedure allow: the one place every command passes. NaN becomes zero,
-        and the next check trips on it.
+    def allowed(self, asked: Setpoint) -> Setpoint:
+        """The setpoint clipped to what bench and procedure allow: the one place every command passes. What is no number
+        becomes no torque, rest, or no new angle, and the next check trips on it.
         """
-        tau, limit = asked.tau, self.torque
-        if -limit <= tau <= limit:
+        kind = type(asked)
+        middle, limit, nothing = self._ranges[kind]
+        away = asked[0] - middle
+        if -limit <= away <= limit:
             return asked
-        return asked._replace(tau=math.copysign(limit, tau) if tau == tau else 0.0)
+        clipped = middle + math.copysign(limit, away) if away == away else nothing
+        return kind(clipped, asked.theta_ref, asked.omega_ref)
 
     def twist_of(self, sample: Sample) -> float:
         """θ_m/N − θ_l since the start [rad at the output]: what the gear has twisted, slipped, or an encoder lost."""
@@ -94,12 +103,12 @@ LOAD_MARGIN = 2.0  # a wrong scale or sign is for the proof to find; a motor enc
 TORQUE_MARGIN = 1.1  # the drive's torque reading overshoots and is noisy; the command itself is clipped at the limit
 
 
-def drive_fault(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def drive_fault(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """The drive's own protection."""
     return Trip("drive", f"the drive reports a fault: {sample.fault}") if sample.fault else None
 
 
-def stale(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def stale(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """Data too old to act on, by the time stamps of the devices."""
     if sample.age <= guard.limits.stale:
         return None
@@ -110,14 +119,14 @@ def stale(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     )
 
 
-def speed(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def speed(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """Motor speed."""
     if -guard.limits.speed <= sample.omega_m <= guard.limits.speed:
         return None
     return Trip("speed", f"motor at {sample.omega_m / RPM:.0f} rpm, limit ±{guard.limits.speed / RPM:.0f} rpm")
 
 
-def torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def torque(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """Motor torque as the drive reports it."""
     limit = guard.limits.torque * TORQUE_MARGIN
     if -limit <= sample.tau_m <= limit:
@@ -125,7 +134,7 @@ def torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     return Trip("torque", f"motor torque {sample.tau_m:.2f} N·m, limit ±{limit:.2f} N·m")
 
 
-def shaft_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def shaft_torque(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """The torque sensor must not be overloaded."""
     limit = guard.shaft_torque
     if limit is None or -limit <= sample.tau_l <= limit:
@@ -134,7 +143,7 @@ def shaft_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     return Trip("shaft_torque", f"shaft torque {sample.tau_l:.2f} N·m{full}, limit ±{limit:.2f} N·m")
 
 
-def travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def travel(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """How far the motor may go from where the run started."""
     moved = sample.theta_m - guard.start.theta_m if guard.start else 0.0
     if -guard.travel <= moved <= guard.travel:
@@ -142,7 +151,7 @@ def travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     return Trip("travel", f"motor {moved / DEG:.1f}° from the start, limit ±{guard.travel / DEG:.1f}°")
 
 
-def twist(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def twist(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """Motor and load must agree to within what the gear can twist."""
     value = guard.twist_of(sample)
     if guard.twist is None or abs(value) <= guard.twist:
@@ -154,7 +163,7 @@ def twist(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     )
 
 
-def load_travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def load_travel(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """What the load encoder says of the travel, when the motor's may be dead."""
     limit = guard.load_travel
     moved = sample.theta_l - guard.start.theta_l if guard.start else 0.0
@@ -164,14 +173,15 @@ def load_travel(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     return Trip("load_travel", sentence)
 
 
-def asked_torque(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def asked_number(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """A procedure must ask for a number."""
-    if abs(asked.tau) < math.inf:
+    if abs(asked[0]) < math.inf:
         return None
-    return Trip("asked", f"the procedure asked for {asked.tau} N·m, expected a finite torque")
+    unit, what = {Torque: ("N·m", "torque"), Velocity: ("rad/s", "speed"), Position: ("rad", "angle")}[type(asked)]
+    return Trip("asked", f"the procedure asked for {asked[0]} {unit}, expected a finite {what}")
 
 
-def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
+def following(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """The motor must stay near its reference; the allowance grows with the reference's speed."""
     error = asked.theta_ref - sample.theta_m
     limit = guard.limits.following + guard.limits.following_time * abs(asked.omega_ref)
@@ -184,7 +194,7 @@ def following(guard: Guard, sample: Sample, asked: Torque) -> Trip | None:
     )
 
 
-Rule = Callable[[Guard, Sample, Torque], Trip | None]
+Rule = Callable[[Guard, Sample, Setpoint], Trip | None]
 RULES: tuple[Rule, ...] = (
     drive_fault,
     stale,
@@ -194,6 +204,6 @@ RULES: tuple[Rule, ...] = (
     travel,
     load_travel,
     twist,
-    asked_torque,
+    asked_number,
     following,
 )

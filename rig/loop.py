@@ -7,11 +7,11 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from rig.control.brake import brake
+from rig.control.setpoints import AsTorque, Setpoints
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
-from rig.core.sample import Sample, Torque
+from rig.core.sample import Sample, Setpoint
 from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
@@ -27,7 +27,7 @@ class Sink(Protocol):
     """Where rows go: the recorder, or a test's list."""
 
     def put(self, sample: Sample, tau_ask: float, tau_applied: float, theta_ref: float) -> None:
-        """Keep one row; raises RecorderError when it cannot."""
+        """Keep one row; raises RecorderError when it cannot. The pair is speeds or angles when those are commanded."""
 
     def check(self) -> None:
         """Raises RecorderError when rows are no longer safe."""
@@ -55,6 +55,7 @@ class Loop:
         interrupts: Interrupts,
         timing: LoopTiming,
         watch: Callable[[Sample], None] = lambda sample: None,
+        setpoints: Setpoints | None = None,
     ) -> None:
         self.instruments = instruments
         self.supervisor = supervisor
@@ -63,6 +64,7 @@ class Loop:
         self.interrupts = interrupts
         self.timing = timing
         self.watch = watch
+        self.setpoints = setpoints or AsTorque()
         self.running = False
         self.rows = 0  # handed to the sink so far
 
@@ -91,7 +93,7 @@ class Loop:
         try:
             self.instruments.start()
             self.supervisor.act(Act.ENABLE)
-            self.instruments.drive.enable()
+            self.instruments.drive.enable(self.setpoints.mode)
             self.supervisor.act(Act.RUN, procedure.name)
             self.running = True
             return self._tick(procedure, setting)
@@ -104,8 +106,8 @@ class Loop:
         latch = self.instruments.latch
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
         period, start, k, stopping = setting.period, clock.now(), 0, False
-        steps: Steps = procedure.steps(setting)
-        asked: Torque = next(steps)
+        steps: Steps = self.setpoints.steps(procedure, setting)
+        asked: Setpoint = next(steps)
         while True:
             k += 1
             deadline = start + k * period
@@ -126,7 +128,7 @@ class Loop:
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
             if self.interrupts.count and not stopping:
-                stopping, steps = True, procedure.to_rest(setting) or brake(setting)
+                stopping, steps = True, self.setpoints.to_rest(procedure, setting)
                 self.supervisor.act(Act.STOP, "asked by the operator")
                 next(steps)
             if self.interrupts.count > 1:
@@ -145,7 +147,7 @@ class Loop:
                 if stopping:
                     return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
                 return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
-            put(sample, asked.tau, write(allowed(asked)), asked.theta_ref)
+            put(sample, asked[0], write(allowed(asked)), asked.theta_ref)
             self.rows += 1
             if k % WATCH_TICKS == 0:
                 self.sink.check()
@@ -167,9 +169,9 @@ class Loop:
             woken = now
         return now
 
-    def _last_row(self, sample: Sample, asked: Torque) -> None:
+    def _last_row(self, sample: Sample, asked: Setpoint) -> None:
         """What was seen when the torque had just been taken off."""
-        self.sink.put(sample, 0.0, 0.0, asked.theta_ref)
+        self.sink.put(sample, self.setpoints.off, self.setpoints.off, asked.theta_ref)
         self.rows += 1
 
     def _leave(self, ending: Ending, confirmed: bool) -> Ending:

@@ -8,6 +8,7 @@ from rig.bench import Bench
 from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
+from rig.core.sample import Mode
 
 LONGEST = 31 * 86400.0  # s
 
@@ -31,6 +32,15 @@ def refuse_endless(bench: Bench, procedure: Procedure) -> None:
         finite = False
     if not finite or not 0 < envelope.duration < LONGEST:
         raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
+
+
+def refuse_mode(bench: Bench, procedure: Procedure) -> None:
+    """Raises NotReady when the drive is to close the loop itself, and the procedure has no reference to give it."""
+    if bench.mode is not Mode.TORQUE and not procedure.has_reference:
+        raise NotReady(
+            f"{procedure.title()} asks for torques and has no reference throughout: the drive cannot be given "
+            f'{bench.mode} setpoints; set control.mode = "torque"'
+        )
 
 
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:

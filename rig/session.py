@@ -25,10 +25,11 @@ from rig.changes import (
     wait_for_rest,
 )
 from rig.control.filter import SpeedFilter
+from rig.control.setpoints import setpoints_of
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble, Rigging
 from rig.core.procedure import Procedure
-from rig.core.sample import Sample
+from rig.core.sample import Mode, Sample
 from rig.guard import Guard
 from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
@@ -37,7 +38,7 @@ from rig.procedures.sign_and_scale import Proof, SignAndScale
 from rig.procedures.unwind import Unwind
 from rig.procedures.weigh import Weigh, Weighing
 from rig.recorder import Recorder
-from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_rigging
+from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refuse_rigging
 from rig.runfile.events import EventLog
 from rig.runfile.finalise import finalise
 from rig.runfile.folder import create
@@ -222,7 +223,12 @@ class Session:
         if self.unsure:
             raise NotReady(f"what the rig is like is not known: '{self.unsure}' was asked for and could not be shown")
         refuse_rigging(self.rigging, procedure)
+        refuse_mode(self.bench, procedure)
         return self._run(procedure, self.root, watch)
+
+    def _mode(self, procedure: Procedure) -> Mode:
+        """The bench's for a procedure that has a reference; proofs and checks ask for torques."""
+        return self.bench.mode if procedure.has_reference else Mode.TORQUE
 
     def _run(self, procedure: Procedure, root: Path, watch: Watch = lambda sample: None) -> Done:
         self.folder = None
@@ -247,7 +253,8 @@ class Session:
         recorder.start()
         setting = self.bench.setting(lambda text: self._event("note", text))
         guard = Guard(self.bench.limits, procedure.envelope(setting), setting.ratio)
-        loop = Loop(self.instruments, self.supervisor, guard, recorder, self.interrupts, timing, watch)
+        setpoints = setpoints_of(self._mode(procedure), setting)
+        loop = Loop(self.instruments, self.supervisor, guard, recorder, self.interrupts, timing, watch, setpoints)
         ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
         try:
             ending = loop.run(procedure, setting)
@@ -313,7 +320,7 @@ class Session:
             "label": procedure.label or None,
             "devices": {name: identity._asdict() for name, identity in self.identities.items()},
             "proof": self._proof._asdict() if self._proof else None,
-            "loop": {"rate": self.bench.file.loop.rate, "clock": self.clock},
+            "loop": {"rate": self.bench.file.loop.rate, "clock": self.clock, "mode": str(self._mode(procedure))},
             "software": software(),
             "host": platform.node(),
             "operator": operator(),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from rig.core.devices import Drive, DriveReading, Identity
+from rig.core.devices import Drive, DriveReading, Identity, torque_only
 from rig.core.errors import HdrigError, NotReady
-from rig.core.sample import Setpoint
+from rig.core.sample import Mode, Setpoint
 from sim.channel import DRIVE_SATURATED, FINEST, SIMULATED, UNREAD, Counter, new
 from sim.encoder import motor_scale
 from sim.faults import Fault
@@ -56,11 +56,12 @@ class TwinDrive(Drive):
         self.halt()
         self._connected, self._read_at = False, UNREAD
 
-    def enable(self) -> None:
+    def enable(self, mode: Mode = Mode.TORQUE) -> None:
         """Zero torque. Raises NotReady: not connected, or a fault is latched.
 
         The watchdog starts with the first command, as a CANopen heartbeat consumer does with the first heartbeat.
         """
+        torque_only("the twin's drive", mode)
         self._expect_connection()
         if self.trouble:
             raise NotReady(f"the drive does not enable: {self.trouble}; reset the fault first")
@@ -99,7 +100,7 @@ class TwinDrive(Drive):
         """Command a torque; gives the one that was carried. Raises HdrigError when it is no number."""
         if not self._enabled:
             return 0.0
-        tau = asked = setpoint.tau
+        tau = asked = setpoint[0]
         limit = self._limit
         if not -limit <= tau <= limit:
             if math.isnan(tau):

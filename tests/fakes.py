@@ -11,7 +11,7 @@ from rig.core.clock import Clock
 from rig.core.devices import AngleReading, Drive, DriveReading, Encoder, Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from rig.core.procedure import Setting
-from rig.core.sample import Sample, Setpoint
+from rig.core.sample import Mode, Sample, Setpoint
 from rig.guard import Limits
 from rig.instruments import Instruments
 
@@ -100,7 +100,7 @@ class FakeDrive(Drive):
     def close(self) -> None:
         self.world.history.append("close")
 
-    def enable(self) -> None:
+    def enable(self, mode: Mode = Mode.TORQUE) -> None:
         if self.world.fault:
             raise NotReady(f"the drive refuses to enable: {self.world.fault}")
         self.enabled = True
@@ -111,7 +111,7 @@ class FakeDrive(Drive):
         return DriveReading(w.clock.t, w.motor_sign * w.theta, 0, w.tau, 0, w.fault)
 
     def write(self, setpoint: Setpoint) -> float:
-        self.world.tau = setpoint.tau if self.enabled else 0.0
+        self.world.tau = setpoint[0] if self.enabled else 0.0
         return self.world.tau
 
     def halt(self) -> bool:

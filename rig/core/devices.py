@@ -7,9 +7,11 @@ made torque-free by `halt`, which works in any state, any number of times, and n
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from rig.core.sample import Setpoint
+from rig.core.errors import NotReady
+from rig.core.sample import Mode, Setpoint
 
 
 class Identity(NamedTuple):
@@ -57,6 +59,7 @@ class Device(ABC):
     """Anything the bench can open."""
 
     name: str
+    remarks: Sequence[str] = ()  # what a person should know of it once it is connected, one sentence each
     trouble: str = ""  # what is wrong with the device itself, in words, as of the last reading; a drive says it there
 
     @abstractmethod
@@ -88,8 +91,11 @@ class Drive(Device):
     """The servo drive with its motor encoder."""
 
     @abstractmethod
-    def enable(self) -> None:
-        """Energise with zero torque. Idempotent. Raises NotReady when the drive refuses."""
+    def enable(self, mode: Mode = Mode.TORQUE) -> None:
+        """Energise for setpoints of `mode`: with zero torque, at rest, or held where it is. Idempotent.
+
+        Raises NotReady when the drive refuses, or does not know the mode.
+        """
 
     @abstractmethod
     def read(self) -> DriveReading:
@@ -97,7 +103,9 @@ class Drive(Device):
 
     @abstractmethod
     def write(self, setpoint: Setpoint) -> float:
-        """Command it; returns the motor torque the frame could carry [N·m]. Zero unless enabled."""
+        """Command it; returns what the frame could carry, in the setpoint's unit. Without effect unless enabled: then
+        a torque or speed is 0, an angle NaN.
+        """
 
     @abstractmethod
     def halt(self) -> bool:
@@ -106,3 +114,9 @@ class Drive(Device):
     @abstractmethod
     def reset_fault(self) -> None:
         """Clear a fault of the drive. Never energises it."""
+
+
+def torque_only(who: str, mode: Mode) -> None:
+    """Raises NotReady for a mode other than torque, in a drive that has no other."""
+    if mode is not Mode.TORQUE:
+        raise NotReady(f'{who} takes torques only, not {mode} setpoints: control.mode = "torque" in the bench file')

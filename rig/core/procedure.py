@@ -44,6 +44,7 @@ class Procedure(ABC):
     needs: ClassVar[tuple[str, ...]]  # channels without which it is refused: a test against NaN is silently false
     output_locked: ClassVar[bool] = False  # what the output must be like
     closes_loop: ClassVar[bool] = True  # needs the sign-and-scale proof first
+    has_reference: ClassVar[bool] = False  # an angle throughout, which a drive that closes the loop itself can be given
     label: ClassVar[str] = ""  # what people call it where `name` is "other"
 
     @abstractmethod

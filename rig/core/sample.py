@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import NamedTuple
 
 NAN = float("nan")
@@ -31,5 +32,28 @@ class Torque(NamedTuple):
     omega_ref: float = 0.0  # rad/s
 
 
-# Velocity and position setpoints join this union when a drive can take them; the loop hands them on unread.
-Setpoint = Torque
+class Velocity(NamedTuple):
+    """Ask the drive, which closes the velocity loop itself, for a motor speed."""
+
+    omega: float  # rad/s
+    theta_ref: float = NAN  # rad
+    omega_ref: float = 0.0  # rad/s
+
+
+class Position(NamedTuple):
+    """Ask the drive, which closes the position loop itself, for a motor angle."""
+
+    theta: float  # rad
+    theta_ref: float = NAN  # rad
+    omega_ref: float = 0.0  # rad/s
+
+
+Setpoint = Torque | Velocity | Position  # the first field is what is asked for; the loop hands it on unread
+
+
+class Mode(StrEnum):
+    """Which loop the drive closes: what kind of setpoint it takes while it is enabled."""
+
+    TORQUE = "torque"
+    VELOCITY = "velocity"
+    POSITION = "position"

@@ -18,6 +18,7 @@ def check_devices(bench: Bench) -> list[Finding]:
         Finding(name, Health.GOOD, " ".join(part for part in (who.model, who.serial, who.firmware) if part))
         for name, who in identities.items()
     ]
+    found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]
     guarded = getattr(instruments.drive, "guarded", None)
     instruments.close()
     if guarded is not None:

@@ -28,6 +28,7 @@ class FullTurn(Procedure):
 
     name: ClassVar[str] = "full_turn"
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
+    has_reference: ClassVar[bool] = True
 
     turns: int = 1  # of the output
     speed_rpm: float = 9.6  # of the motor

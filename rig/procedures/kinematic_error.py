@@ -24,6 +24,7 @@ class KinematicError(Procedure):
 
     name: ClassVar[str] = "kinematic_error"
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
+    has_reference: ClassVar[bool] = True
 
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
     frequency: float = 0.01  # Hz

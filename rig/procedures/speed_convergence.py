@@ -32,6 +32,7 @@ class SpeedConvergence(Procedure):
 
     name: ClassVar[str] = "speed_convergence"
     needs: ClassVar[tuple[str, ...]] = ("t", "theta_m", "theta_l")
+    has_reference: ClassVar[bool] = True
 
     speeds_rpm: str = "60,40,30,20,15,9.6,4.8"  # of the motor, falling
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak

@@ -17,7 +17,7 @@ from rig.core.errors import HdrigError
 from rig.core.ring import Ring
 from rig.recorder.service import POLL, Service
 from rig.runfile import manifest
-from rig.runfile.columns import schema
+from rig.runfile.columns import schema_of
 from rig.runfile.journal import JournalWriter, rows_in_journal
 from rig.runfile.process import sole_writer, started
 
@@ -56,7 +56,7 @@ def _record(folder: Path, ring: Ring) -> None:
     about = manifest.read(folder)
     if about["status"] != "running":
         raise HdrigError(f"{folder} is {about['status']}: nothing more can be recorded into it")
-    layout = schema(about.get("backend", ""))
+    layout = schema_of(about)
     journal = JournalWriter(folder, layout, first=max(rows_in_journal(folder), ring.oldest))
     service = Service(ring, journal, layout, time.monotonic())
     ring.tell_reader(os.getpid(), started(os.getpid()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,27 @@ from rig.runfile.manifest import SCHEMA
 Array = np.ndarray[Any, Any]
 
 ANGLE_OF = {"counts_m": "theta_m", "counts_l": "theta_l"}  # a raw count without its angle was not measured
+COMMANDED = {  # by the drive's mode, what the columns of torques are in truth: name, unit, meaning
+    "velocity": {
+        "tau_ask": ("omega_ask", "rad/s", "motor speed that was asked for"),
+        "tau_applied": ("omega_applied", "rad/s", "motor speed the drive was really given"),
+    },
+    "position": {
+        "tau_ask": ("theta_ask", "rad", "motor angle that was asked for"),
+        "tau_applied": ("theta_applied", "rad", "motor angle the drive was really given"),
+    },
+}
 _TYPES = {"float64": pa.float64(), "int64": pa.int64(), "uint32": pa.uint32()}
+
+
+def schema_of(about: Mapping[str, Any]) -> pa.Schema:
+    """The schema of the run a manifest is about: what was commanded is called by what it was."""
+    called: Mapping[str, tuple[str, str, str]] = COMMANDED.get(about.get("loop", {}).get("mode", "torque"), {})
+    layout = schema(about.get("backend", ""))
+    for column, (name, unit, meaning) in called.items():
+        place = layout.get_field_index(column)
+        layout = layout.set(place, pa.field(name, pa.float64(), metadata={"unit": unit, "meaning": meaning}))
+    return layout
 
 
 def schema(backend: str, columns: dict[str, tuple[str, str]] | None = None) -> pa.Schema:

@@ -15,7 +15,7 @@ import pyarrow.parquet as pq
 from rig.core.errors import DataError, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
-from rig.runfile.columns import batch_of_rows, schema
+from rig.runfile.columns import batch_of_rows, schema_of
 from rig.runfile.journal import JournalReader, JournalWriter, journal_files, rows_in_journal
 from rig.runfile.process import sole_writer, this_process
 
@@ -95,7 +95,7 @@ def _close(
     step("archive")
     _refuse_fewer_rows(folder)
     reader = JournalReader(folder)
-    held = archive.write_archive(folder, archive.row_groups(reader), schema(about.get("backend", "")))
+    held = archive.write_archive(folder, archive.row_groups(reader), schema_of(about))
     lost = lost_rows(about, held.rows)
     if lost:
         status = "interrupted"
@@ -150,7 +150,7 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
     have = rows_in_journal(folder)
     left = ring.head - max(have, ring.oldest)
     if left > 0:
-        layout = schema(about.get("backend", ""))
+        layout = schema_of(about)
         journal = JournalWriter(folder, layout, first=max(have, ring.oldest))
         try:
             journal.append(batch_of_rows(ring.read(journal.rows, ring.head), layout))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from rig.control.setpoints import setpoints_of
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
@@ -19,7 +20,10 @@ SHORT = KinematicError(amplitude_deg=90.0, frequency=0.16, cycles=0.5)  # 9.6 rp
 
 
 def run(
-    w: Any, procedure: Procedure = SHORT, watch: Callable[[Sample], None] = lambda sample: None
+    w: Any,
+    procedure: Procedure = SHORT,
+    watch: Callable[[Sample], None] = lambda sample: None,
+    interrupts: Interrupts | None = None,
 ) -> tuple[Ending, ListSink]:
     """`w` has `bench` and connected `instruments`."""
     sink, supervisor = ListSink(), Supervisor()
@@ -28,4 +32,6 @@ def run(
     setting = w.bench.setting(lambda text: None)
     guard = Guard(w.bench.limits, procedure.envelope(setting), setting.ratio)
     timing = LoopTiming(0.001, virtual=True)
-    return Loop(w.instruments, supervisor, guard, sink, Interrupts(), timing, watch).run(procedure, setting), sink
+    setpoints = setpoints_of(w.bench.mode, setting)
+    loop = Loop(w.instruments, supervisor, guard, sink, interrupts or Interrupts(), timing, watch, setpoints)
+    return loop.run(procedure, setting), sink

@@ -10,33 +10,15 @@ import pytest
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Torque
-from rig.guard import Guard
-from rig.interrupts import Interrupts
-from rig.loop import Ending, Loop
-from rig.procedures.kinematic_error import KinematicError
-from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
 from sim.wire.states402 import DriveState
+from tests.drivers.running import run
 from tests.drivers.virtual import Wired, wired
-from tests.fakes import ListSink
-
-SHORT = KinematicError(amplitude_deg=90.0, frequency=0.16, cycles=0.5)  # 9.6 rpm
 
 
 def connected(*overrides: str) -> Wired:
     w = wired(*overrides)
     w.instruments.connect()
     return w
-
-
-def run(w: Wired, procedure=SHORT, watch=lambda sample: None) -> tuple[Ending, ListSink]:
-    sink, supervisor = ListSink(), Supervisor()
-    supervisor.act(Act.CONNECT)
-    supervisor.act(Act.CHECK)
-    setting = w.bench.setting(lambda text: None)
-    guard = Guard(w.bench.limits, procedure.envelope(setting), setting.ratio)
-    timing = LoopTiming(0.001, virtual=True)
-    return Loop(w.instruments, supervisor, guard, sink, Interrupts(), timing, watch).run(procedure, setting), sink
 
 
 def test_connecting_energises_nothing_and_says_who_is_there():

@@ -1,0 +1,210 @@
+"""Which PDOs of a node carry the objects we need: our own mapping where it can be set, the node's where it cannot.
+
+A node that refuses to be mapped, as small drives and sensors do, may well send all we need: its mapping is read and its
+frames are decoded by that. Numbers are unpacked by one precompiled format per PDO      [cia301, 7.5.2.35-38]
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from operator import attrgetter
+from typing import NamedTuple
+
+from drivers.bus import Frame
+from drivers.node import INVALID, Mapped, Node, Refused
+from rig.core.errors import NotReady
+
+NEVER = -1e9  # s, before all of its frames are there
+MOST = 8  # PDOs looked at each way
+EACH_SYNC, EVENTS = 1, (254, 255)  # transmission types
+AT_ONCE = 255  # of an RPDO: taken when it comes
+LATCHED: Callable[[Frame], float] = attrgetter("latched")
+ARRIVED: Callable[[Frame], float] = attrgetter("arrived")
+
+
+class Layout(NamedTuple):
+    """One PDO: its identifier, the format of its bytes, which of our objects its numbers are, what its time is."""
+
+    identifier: int
+    packing: struct.Struct
+    slots: tuple[int, ...]
+    time: Callable[[Frame], float] = LATCHED
+
+
+def layout(identifier: int, mapped: Sequence[Mapped], wanted: Sequence[Mapped]) -> Layout | None:
+    """None when none of `wanted` is in it, or when numbers in it do not fill bytes."""
+    places = {(o.at, o.sub, o.bits): n for n, o in enumerate(wanted)}
+    form, slots = "<", []
+    for o in mapped:
+        slot = places.get((o.at, o.sub, o.bits))
+        if o.bits % 8:
+            return None
+        form += f"{o.bits // 8}x" if slot is None else wanted[slot].form
+        if slot is not None:
+            slots.append(slot)
+    return Layout(identifier, struct.Struct(form), tuple(slots)) if slots else None
+
+
+def present(node: Node, first: int) -> Iterator[tuple[int, int, int, list[Mapped]]]:
+    """(communication object, identifier, transmission type, mapped objects) of the node's PDOs that are switched on."""
+    for communication in range(first, first + MOST):
+        identifier = node.read_uint(communication, 1, default=INVALID)
+        if identifier & INVALID:
+            continue
+        count = node.read_uint(communication + 0x200, 0, default=0)
+        entries = [node.read_uint(communication + 0x200, n + 1, default=0) for n in range(min(count, 64))]
+        mapped = [Mapped(e >> 16, e >> 8 & 0xFF, e & 0xFF) for e in entries]
+        yield communication, identifier & 0x7FF, node.read_uint(communication, 2, default=AT_ONCE), mapped
+
+
+def ours(node: Node, communication: int, identifier: int, kind: int, objects: Sequence[Mapped]) -> None:
+    """One PDO as we want it; as it was when the node refuses. Raises Refused, NotReady."""
+    before = node.read(communication, 1, b"")
+    try:
+        node.map_pdo(communication, identifier, kind, objects)
+    except Refused:
+        if before:
+            node.restore(communication, 1, before)
+        raise
+
+
+class Inputs:
+    """The objects a device tells, from whatever PDOs they come in. `values` are the newest, in the order asked for."""
+
+    def __init__(self, node: Node, base: Sequence[int] = (0x180, 0x280)) -> None:
+        self.node = node
+        self.values: list[float] = []
+        self.wrong = ""  # what is wrong with its frames, in words
+        self._identifiers = [b + node.number for b in base]
+        self._layouts: list[Layout] = []
+
+    def arrange(self, groups: Sequence[Sequence[Mapped]], optional: Sequence[Mapped] = ()) -> None:
+        """Have each group sent in a PDO of its own after every SYNC; where the node refuses, find the objects in what
+        it sends: `optional` ones that are not there read NaN. Raises NotReady, naming what is missing.
+        """
+        wanted = [o for group in groups for o in group]
+        self.values = [math.nan] * len(wanted)
+        try:
+            for n, group in enumerate(groups):
+                ours(self.node, 0x1800 + n, self._identifiers[n], EACH_SYNC, group)
+        except Refused as why:
+            self._layouts = self._as_they_are(wanted, optional, str(why))
+            return
+        for n in range(len(groups), 4):
+            self.node.switch_off_pdo(0x1800 + n)
+        made = [layout(self._identifiers[n], group, wanted) for n, group in enumerate(groups)]
+        self._layouts = [one for one in made if one is not None]
+
+    def _as_they_are(self, wanted: Sequence[Mapped], optional: Sequence[Mapped], why: str) -> list[Layout]:
+        found: list[Layout] = []
+        for communication, identifier, kind, mapped in present(self.node, 0x1800):
+            missing = set(range(len(wanted))).difference(*(one.slots for one in found))
+            one = layout(identifier, mapped, wanted)
+            if one is not None and missing & set(one.slots):
+                found.append(one._replace(time=self._timed(communication, kind)))
+        told = set().union(*(one.slots for one in found)) if found else set()
+        if lacking := [f"{o.at:04X}h" for n, o in enumerate(wanted) if n not in told and o not in optional]:
+            raise NotReady(f"{why}; and in the PDOs it sends of its own there is no {' and no '.join(lacking)}")
+        self.node.remarks.append(f"{self.node.who} keeps its own PDOs ({why}): they hold all that is needed")
+        return found
+
+    def _timed(self, communication: int, kind: int) -> Callable[[Frame], float]:
+        """When its readings are made, by its transmission type; after every SYNC if it can be had."""
+        if kind == EACH_SYNC:
+            return LATCHED
+        try:
+            self.node.write(communication, 2, bytes((EACH_SYNC,)))
+        except Refused as why:
+            if kind not in EVENTS:
+                raise NotReady(
+                    f"{why}: it sends on another count of SYNCs (type {kind}), expected after each"
+                ) from None
+            self.node.remarks.append(
+                f"{self.node.who} does not follow SYNC: its readings are stamped when they come, not when they are made"
+            )
+            return ARRIVED
+        return LATCHED
+
+    @property
+    def identifiers(self) -> tuple[int, ...]:
+        """Of the frames that carry them."""
+        return tuple(one.identifier for one in self._layouts)
+
+    @property
+    def there(self) -> bool:
+        """True when all of them have come."""
+        return all(one.identifier in self.node.bus.frames for one in self._layouts)
+
+    def first(self, seconds: float) -> None:
+        """Throw away what came before, ask by a SYNC, wait. Raises NotReady when nothing comes."""
+        for identifier in self.identifiers:
+            self.node.bus.frames.pop(identifier, None)
+        self.node.bus.sync()
+        if not self.node.bus.wait(seconds, lambda: self.there):
+            raise NotReady(f"{self.node.who} sent no PDOs after a SYNC: is anything else mapped or filtered?")
+
+    def take(self) -> float:
+        """The newest numbers into `values`; the time [s] of the oldest frame among them, NEVER before all are there.
+
+        A frame of another length than mapped is `wrong`, and changes nothing.
+        """
+        frame: Frame | None = None
+        frames, oldest = self.node.bus.frames, math.inf
+        for identifier, packing, slots, time in self._layouts:
+            frame = frames.get(identifier)
+            if frame is None:
+                return NEVER
+            if len(frame.data) != packing.size:
+                self.wrong = self.wrong or (
+                    f"{self.node.who} sends a PDO of {len(frame.data)} bytes, expected {packing.size}: mapped anew?"
+                )
+                return NEVER
+            for slot, number in zip(slots, packing.unpack(frame.data), strict=True):
+                self.values[slot] = number
+            oldest = min(oldest, time(frame))
+        if frame is not None:
+            self.node.answered(frame)
+        return oldest
+
+
+class Outputs:
+    """The objects a device is told, in one RPDO of ours or in those it has. Their order is that of `arrange`."""
+
+    def __init__(self, node: Node) -> None:
+        self.node = node
+        self._layouts: list[Layout] = []
+
+    def arrange(self, needed: Sequence[Mapped], known: Sequence[Mapped]) -> None:
+        """`needed` in one RPDO, taken at once; where the node refuses, in RPDOs it has, whose every object is `needed`
+        or among the `known` ones that follow them. Raises NotReady.
+        """
+        identifier = 0x200 + self.node.number
+        try:
+            ours(self.node, 0x1400, identifier, AT_ONCE, needed)
+        except Refused as why:
+            self._layouts = self._as_they_are(needed, [*needed, *known], str(why))
+            return
+        for n in range(1, 4):
+            self.node.switch_off_pdo(0x1400 + n)
+        made = layout(identifier, needed, needed)
+        self._layouts = [made] if made else []
+
+    def _as_they_are(self, needed: Sequence[Mapped], told: Sequence[Mapped], why: str) -> list[Layout]:
+        found: list[Layout] = []
+        for _, identifier, _, mapped in present(self.node, 0x1400):
+            one = layout(identifier, mapped, told)
+            if one is not None and len(one.slots) == len(mapped):  # nothing in it that we do not know
+                found.append(one)
+        have = {slot for one in found for slot in one.slots}
+        if lacking := [f"{o.at:04X}h" for n, o in enumerate(needed) if n not in have]:
+            raise NotReady(f"{why}; and in the PDOs it takes of its own there is no {' and no '.join(lacking)}")
+        return found
+
+    def send(self, *numbers: float) -> bool:
+        """All of them, `needed` and `known`; False when the bus is dead. Never raises."""
+        sent = True
+        for identifier, packing, slots, _ in self._layouts:
+            sent &= self.node.bus.send(identifier, packing.pack(*(numbers[slot] for slot in slots)))
+        return sent
