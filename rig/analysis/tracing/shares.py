@@ -12,6 +12,7 @@ from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.unknown import INDICES, Rest, folds, homes, score
 from rig.model.effect import Array
 
+SPAN: Final = 25  # rows either way, 0.2 s: the rate of a torque from row to row is mostly noise
 COARSE: Final = 8  # levels of the second coordinate: loads and speeds of a campaign are about as many
 RIDGE: Final = 1.0  # rows: a harmonic that no run shows stays zero
 ORDERS_OF: Final = {"motor_angle": 15, "load_angle": 8}  # the paper's series; runout, ovality, gravity
@@ -71,8 +72,13 @@ def levels(r: Rest, name: str) -> Array:
     """Bin of each row: loads and speeds evenly on the axis they are drawn on, lest long runs take them all."""
     if name == "memory":
         load = levels(r, "load")
-        return np.where(load >= 0, 2 * load + (r.at["torque_rate"] > 0), -1)
+        return np.where(load >= 0, 2 * load + (rising(r.at["load"]) > 0), -1)
     if name not in ("load", "speed", "time"):
         return INDICES[name](r)
     found = BINNED[name](r)
     return np.full(r.e.size, -1) if found is None else np.asarray(found[0])
+
+
+def rising(load: Array) -> Array:
+    """How much the torque is higher in the rows after than in those before, (n,), N·m."""
+    return np.convolve(load, np.repeat([1.0, -1.0], SPAN) / SPAN, mode="same")

@@ -14,7 +14,7 @@ from rig.analysis.tracing.judge import unseen
 from rig.analysis.tracing.model import extended, fit
 from rig.analysis.tracing.result import Candidate
 from rig.analysis.tracing.search import Scored
-from rig.analysis.tracing.thresholds import NAMED
+from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
@@ -52,21 +52,25 @@ def tried(p: Prepared, r: Scored, before: Mapping[Key, Array]) -> Tried:
     rms: dict[str, float] = {}
     shares: dict[str, float] = {}
     changes: dict[str, float] = {}
+    excess: dict[str, float] = {}
     for c in CHANNELS:
         keys = [k for k in after if k[1] == c]
         if not keys:
             continue
         rms[c] = float(np.sqrt(np.mean(np.concatenate([after[k] for k in keys]) ** 2)))
         (first, n), (left, _) = p.court.excess(before, keys), p.court.excess(after, keys)
-        changes[c] = abs(first - left)
+        changes[c], excess[c] = abs(first - left), first / n
         shares[c] = (first - left) / max(first - n, 0.02 * n)
-    channel = max(changes, key=lambda c: changes[c])
+    loud = {c: change for c, change in changes.items() if excess[c] > QUIET**2} or changes
+    channel = max(loud, key=lambda c: loud[c])
     return Tried(rms, float(shares[channel]), channel)
 
 
 def reason(found: Tried, name: str, named: Sequence[str]) -> str:
     """One sentence on what it does alone, and beside the effects that were named."""
     where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
+    if abs(found.share) < 0.005:
+        return f"alone it removes nothing {where}"
     if found.share < 0:
         return (
             f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-100 * found.share:.0f} % of its excess"

@@ -1,5 +1,7 @@
 """Arrays of the page: bins, shares and intervals find what was put in, and nothing where nothing was."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,6 +63,18 @@ def test_what_load_does_to_the_kinematic_error_shows_in_the_pair_alone() -> None
     assert found["load_angle"] < 0.1
 
 
+def test_a_loop_in_the_torque_shows_as_memory_though_the_torque_is_noisy() -> None:
+    base = made("nothing")
+    rng = np.random.default_rng(5)
+    torque = 50 * np.sin(2 * np.pi * np.arange(24000) / 6000)
+    way = np.sign(np.cos(2 * np.pi * np.arange(24000) / 6000))
+    e = 3 * way + rng.normal(0, 1, 24000)
+    loop = replace(base, e=e, at=base.at | {"load": torque + rng.normal(0, 0.1, 24000)})
+    found = dict(zip(COORDINATES, shares(loop, FLOORS, "A")["share.A"], strict=False))
+    assert found["memory"] > 0.9
+    assert found["load"] < 0.1
+
+
 def test_noise_alone_is_predicted_by_no_angle() -> None:
     gained = score_of_orders(made("nothing"), folds(made("nothing")), FLOORS, "A", "load_angle", 8)
     assert gained == pytest.approx(0.0, abs=0.01)
@@ -112,5 +126,6 @@ def test_the_reason_says_how_much_a_suspect_removes_and_what_would_be_asked_for(
         "alone it removes 5 % of the excess in the held-out kinematic error, 60 % would be asked for"
     )
     assert "beside cogging torque it is not needed" in reason(Tried({}, 0.7, "M"), "torque_ripple", ("cogging_torque",))
+    assert "removes nothing of the excess" in reason(Tried({}, -0.001, "A"), "quadratic_drag", ())
     assert "worse" in reason(Tried({}, -0.3, "L"), "quadratic_drag", ())
     assert "not needed" not in reason(Tried({}, 0.99, "M"), "cogging_torque", ("cogging_torque",))
