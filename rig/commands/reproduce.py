@@ -30,14 +30,10 @@ BENCH, PLAN = "twin-paper", "paper-short"
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig reproduce`."""
-    what = "folder of a campaign that was made; without one the plan is made first"
-    parser.add_argument("campaign", nargs="?", type=Path, metavar="CAMPAIGN", help=what)
+    what = "folder of a campaign that was made: --out is then where the page goes, default that folder; without it "
+    parser.add_argument("campaign", nargs="?", type=Path, metavar="CAMPAIGN", help=f"{what}the plan is made first")
     bench_arguments(parser)
     parser.add_argument("--plan", default=PLAN, metavar="PLAN", help=f"what to make without CAMPAIGN, default {PLAN}")
-    where = "where the page goes, default the campaign's folder; without CAMPAIGN where that folder goes, default runs"
-    for action in parser._actions:
-        if action.dest == "out":
-            action.help = where
     parser.set_defaults(bench=BENCH, out=None)
 
 

@@ -15,7 +15,7 @@ schema = "hdrig.plan/1"
 name = "short"
 [[step]]
 procedure = "kinematic-error"
-with = { cycles = 1 }
+with = { cycles = 1, amplitude_deg = 720, frequency = 0.02 }
 [[step]]
 procedure = "constant-torque"
 with = { speed_rpm = 300, revolutions = 20, settle = 2 }
@@ -24,7 +24,7 @@ procedure = "friction"
 with = { speeds_rpm = "60,200,450", breakaways = 1 }
 [[step]]
 procedure = "kinematic-error"
-with = { cycles = 1 }
+with = { cycles = 1, amplitude_deg = 720, frequency = 0.02 }
 weight = 7.5
 """
 

@@ -67,9 +67,8 @@ def render(exhibits: Sequence[Exhibit], about: About) -> str:
 
 def symbols(text: str) -> Markup:
     """`text` escaped, what follows an underscore set below the line, and numbers held together with their ±."""
-    return Markup(
-        SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))).replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
-    )
+    held = str(escape(text)).replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
+    return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", held))
 
 
 SCORE = {
