@@ -182,6 +182,12 @@ def refuse_other_campaign(journal: Journal, campaign: Campaign) -> None:
                 f"the {what} is not the one this campaign began with ({book[what]['source']} has changed, or other "
                 f"options were given): what it began with is {folder / (what + '.toml')}; or start a new campaign"
             )
+    refuse_other_runs(journal, campaign)
+
+
+def refuse_other_runs(journal: Journal, campaign: Campaign) -> None:
+    """Raises UsageError when the book's runs are not those of `campaign`."""
+    book, folder = journal.book, journal.folder
     # as JSON has it: a tuple comes back as a list
     planned = json.loads(json.dumps([item.record() for item in campaign.items]))
     begun = [{key: entry[key] for key in record} for entry, record in zip(book["runs"], planned, strict=False)]

@@ -58,8 +58,8 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     """
     exit, session.facts = Exit.INTERNAL, {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
     try:
-        _settle(session, journal, desk)
-        exit = _runs(session, campaign, journal, desk)
+        settle(session, journal, desk)
+        exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
         journal.close(status, _closing(journal))
     except HdrigError as error:
@@ -74,7 +74,7 @@ def _closing(journal: Journal) -> str:
     return ", ".join(f"{number} {status}" for status, number in count.items())
 
 
-def _settle(session: Session, journal: Journal, desk: Desk) -> None:
+def settle(session: Session, journal: Journal, desk: Desk) -> None:
     """From a rig as it was left to one with nothing on it, proven and tared."""
     session.restore(journal.made, journal.rigging)
     for change in to_bare(journal.rigging, journal.pending):
@@ -100,7 +100,8 @@ def to_bare(rigging: Rigging, pending: Change | None) -> list[Change]:
             return found
 
 
-def _runs(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
+def make_runs(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
+    """Every run of `journal` that is open, then weight and pin off; the first exit code that is none of a success."""
     worst = Exit.PASS
     for index in journal.open_runs():
         item = campaign.items[index]

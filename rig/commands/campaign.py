@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
 
 def begin(plan: Plan, args: argparse.Namespace) -> int:
     """A new campaign, or what it would do; `args` are those of `bench_arguments`, and dry_run."""
-    overrides = _overrides(args)
+    overrides = overrides_of(args)
     bench = read_bench(args.bench or DEFAULT, overrides)
     campaign = planned(plan, bench, secrets.randbelow(SEEDS) if args.seed is None else args.seed)
     if args.dry_run:
@@ -85,7 +85,7 @@ def _resume(args: argparse.Namespace) -> int:
     journal = read_journal(args.resume)
     book = journal.book
     plan = read_plan(args.plan or _plan_of(journal))
-    overrides = _overrides(args) if args.set or args.seed is not None else list(book["bench"]["overrides"])
+    overrides = overrides_of(args) if args.set or args.seed is not None else list(book["bench"]["overrides"])
     bench = read_bench(args.bench or book["bench"]["source"], overrides)
     campaign = planned(plan, bench, book["seed"] if args.seed is None else args.seed)
     refuse_other_campaign(journal, campaign)
@@ -162,7 +162,7 @@ def _plan_of(journal: Journal) -> str:
     return source if ships or Path(source).is_file() else str(journal.folder / "plan.toml")
 
 
-def _overrides(args: argparse.Namespace) -> list[str]:
+def overrides_of(args: argparse.Namespace) -> list[str]:
     """--set, and --seed where there is a twin to take it."""
     twin = args.seed is not None and read_bench(args.bench or DEFAULT).simulated
     return [*args.set, *([f"twin.seed={args.seed}"] if twin else [])]

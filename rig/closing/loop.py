@@ -1,0 +1,118 @@
+"""Round after round on one session: the open runs, a trace of all runs, the run it asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rig.analysis.tracing.result import NextRun, Status, Trace
+from rig.campaign.journal import Journal
+from rig.campaign.planner import Campaign
+from rig.campaign.run import Desk, make_runs
+from rig.closing.advice import Advice, advised, same
+from rig.closing.grow import grown
+from rig.closing.story import End, Round, Story, told_by, write_story
+from rig.core.errors import Exit, NotReady, UsageError
+from rig.session import Session
+
+Look = Callable[[Path], Trace]
+"""From the campaign's folder to what its runs say. Raises HdrigError."""
+SETTLED = {Status.EXPLAINED: End.EXPLAINED, Status.NOTHING: End.NOTHING}
+
+
+@dataclass
+class Closing:
+    """One loop in the making. `minutes` tells the rig time of the campaign so far."""
+
+    session: Session
+    campaign: Campaign
+    journal: Journal
+    desk: Desk
+    look: Look
+    minutes: Callable[[], float]
+    story: Story
+
+    def close(self) -> Story:
+        """Rounds until one of the ends. What was found is on disk after each of them.
+
+        Raises HdrigError when the runs cannot be traced or the campaign's book cannot be written.
+        """
+        while self.story.end is End.OPEN:
+            exit = make_runs(self.session, self.campaign, self.journal, self.desk)
+            if exit is not Exit.PASS:
+                return self._ended(End.STOPPED, "A run came to no end; --resume goes on with it.")
+            self._round()
+        return self.story
+
+    def _round(self) -> None:
+        self.desk.say("tracing all runs so far")
+        known = sum(len(r.made) for r in self.story.rounds)
+        made = [item.words() for item in self.campaign.items[known:]]
+        found = told_by(self.look(self.journal.folder), len(self.story.rounds) + 1, made, self.minutes())
+        self.desk.say(words(found))
+        if self.session.interrupts.count:
+            self._with(found)
+            self._ended(End.STOPPED, "Stopped by the operator; --resume goes on with it.")
+        elif found.status in SETTLED:
+            self._with(found)
+            self._ended(SETTLED[found.status], found.sentence)
+        else:
+            self._advise(found)
+
+    def _advise(self, found: Round) -> None:
+        """Put the run asked for behind the others, or end with the reason why not."""
+        before = self.story.rounds[-1].asked if self.story.rounds else None
+        asked = _asked(found)
+        if asked is None:
+            self._with(found)
+            what = "and no run is known that would say more"
+            self._ended(End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED, f"{found.sentence} {what}.")
+            return
+        if same(asked, before):
+            self._with(found)
+            self._ended(End.UNDECIDED, f"{found.sentence} The run that was to decide was made, and did not.")
+            return
+        try:
+            advice = advised(asked, self.campaign)
+        except (UsageError, NotReady) as error:
+            self._with(replace(found, refused=str(error)))
+            self._ended(End.UNDECIDED, f"{found.sentence} The run that would decide cannot be made: {error}.")
+            return
+        self._take(replace(found, plan=advice.text, words=advice.words), advice)
+
+    def _take(self, found: Round, advice: Advice) -> None:
+        left = self.story.budget_minutes - self.minutes()
+        if advice.rig_time / 60 > left:
+            why = f"it takes {advice.rig_time / 60:.1f} min of rig time, {max(left, 0.0):.1f} min are left"
+            self._with(replace(found, plan="", refused=why))
+            self._ended(End.BUDGET, f"{found.sentence} The run that would decide was not made: {why}.")
+            return
+        assert found.asked is not None
+        self._with(found)
+        self.campaign = grown(self.campaign, self.journal, advice.items, found.asked["because"])
+        self.desk.say(f"next: {advice.words}, {advice.rig_time / 60:.1f} min at most; {found.asked['because']}")
+
+    def _with(self, found: Round) -> None:
+        self.story = replace(self.story, rounds=(*self.story.rounds, found))
+        write_story(self.journal.folder, self.story)
+
+    def _ended(self, end: End, sentence: str) -> Story:
+        self.story = replace(self.story, end=end, sentence=sentence)
+        write_story(self.journal.folder, self.story)
+        return self.story
+
+
+def _asked(found: Round) -> NextRun | None:
+    return NextRun(**found.asked) if found.asked else None
+
+
+def words(found: Round) -> str:
+    """A round in a few lines."""
+    before, after = found.over_floor_before, found.over_floor_after
+    names = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
+    errors = ", ".join(f"{names[c]} {before[c]:.2f} → {after[c]:.2f}" for c in names if c in before and c in after)
+    return (
+        f"round {found.number}, {found.minutes:.1f} min of rig time, {found.fitted} runs fitted and {found.held_out} "
+        f"held out: {found.status.replace('_', ' ')}\n  {found.sentence}\n  held-out error over its floor: {errors}"
+    )

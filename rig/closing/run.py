@@ -1,0 +1,38 @@
+"""One loop from a connected rig to its end: the campaign's book and the story closed on every way out."""
+
+from __future__ import annotations
+
+from rig.campaign.journal import Journal
+from rig.campaign.run import settle
+from rig.closing.loop import Closing
+from rig.closing.story import End
+from rig.core.errors import Exit, HdrigError
+
+EXITS = {End.NOTHING: Exit.PASS, End.EXPLAINED: Exit.PASS, End.STOPPED: Exit.STOPPED}
+
+
+def conduct(closing: Closing) -> Exit:
+    """Proof and tare, then the rounds. Returns the exit code: PASS when the loop is closed, INCOMPLETE when it is not.
+
+    A rig that is told to stop, or an error, leaves both books so that --resume goes on.
+    """
+    session, journal = closing.session, closing.journal
+    session.facts = {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
+    exit, status, sentence = Exit.INTERNAL, "failed", "an internal error ended it"
+    try:
+        settle(session, journal, closing.desk)
+        story = closing.close()
+        exit, sentence = EXITS.get(story.end, Exit.INCOMPLETE), story.sentence
+        status = "stopped" if story.end is End.STOPPED else "completed"
+    except HdrigError as error:
+        exit, sentence = error.exit, str(error)
+        status = "stopped" if session.interrupts.count else "failed"
+        closing.desk.say(sentence)
+    finally:
+        _close(journal, status, sentence)
+    return exit
+
+
+def _close(journal: Journal, status: str, sentence: str) -> None:
+    count = ", ".join(f"{number} {what}" for what, number in journal.count().items())
+    journal.close(status, f"{count}; {sentence}")

@@ -1,0 +1,120 @@
+"""The story of the rounds: one value, written after each of them as close-loop.json, schema hdrig.close-loop/1."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from rig.analysis.tracing.record import document
+from rig.analysis.tracing.result import Status, Trace
+from rig.core.errors import NotReady, UsageError
+from rig.runfile.manifest import told, write_atomic
+
+NAME = "close-loop.json"
+SCHEMA = "hdrig.close-loop/1"
+
+
+class End(StrEnum):
+    """How a loop ended."""
+
+    NOTHING = "nothing_missing"
+    EXPLAINED = "explained"
+    UNKNOWN = "unknown"  # something is left, and no effect of the library is it
+    UNDECIDED = "undecided"  # rivals are left, and the run that would decide cannot be made, or did not
+    BUDGET = "budget"
+    STOPPED = "stopped"
+    OPEN = "open"  # it goes on
+
+
+@dataclass(frozen=True)
+class Round:
+    """Runs made, and what a trace of all runs so far said.
+
+    Errors are RMS on held-out runs, over the floor, by channel; `asked` is what the trace asked for next, `plan` the
+    text of the plan made of it, `refused` why there is none.
+    """
+
+    number: int
+    made: tuple[str, ...]
+    minutes: float  # of rig time, since the campaign began
+    status: Status
+    effects: tuple[str, ...]
+    rivals: tuple[str, ...]
+    sentence: str
+    fitted: int
+    held_out: int
+    over_floor_before: dict[str, float]
+    over_floor_after: dict[str, float]
+    pooled_before: dict[str, float | None]
+    pooled_after: dict[str, float | None]
+    parameters: dict[str, dict[str, Any]]
+    asked: dict[str, Any] | None = None
+    plan: str = ""
+    words: str = ""
+    refused: str = ""
+
+
+@dataclass(frozen=True)
+class Story:
+    """All rounds of one campaign."""
+
+    campaign: str
+    simulated: bool
+    budget_minutes: float
+    end: End = End.OPEN
+    sentence: str = ""
+    rounds: tuple[Round, ...] = field(default=())
+
+
+def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> Round:
+    """A round from its trace."""
+    said = document(found)
+    return Round(
+        number=number,
+        made=tuple(made),
+        minutes=round(minutes, 3),
+        status=found.verdict.status,
+        effects=found.verdict.effects,
+        rivals=found.verdict.rivals,
+        sentence=found.verdict.sentence,
+        fitted=len(found.fitted),
+        held_out=len(found.held_out),
+        over_floor_before=found.ratios_before,
+        over_floor_after=found.ratios_after,
+        pooled_before=said["before"]["pooled"],
+        pooled_after=said["after"]["pooled"],
+        parameters={name: effect["parameters"] for name, effect in said["effects"].items()},
+        asked=said["next_run"],
+    )
+
+
+def write_story(folder: Path, story: Story) -> Path:
+    """Replace close-loop.json. Raises NotReady when it cannot be written."""
+    path = folder / NAME
+    text = json.dumps({"schema": SCHEMA, **asdict(story)}, indent=1, ensure_ascii=False)
+    with told(NotReady, f"{path} cannot be written"):
+        write_atomic(path, text.encode() + b"\n")
+    return path
+
+
+def read_story(folder: Path) -> Story:
+    """The story so far. Raises UsageError when there is none."""
+    path = folder / NAME
+    try:
+        book = json.loads(path.read_bytes())
+        if book.pop("schema") != SCHEMA:
+            raise KeyError("schema")
+        rounds = tuple(Round(**_tuples(r) | {"status": Status(r["status"])}) for r in book.pop("rounds"))
+        return Story(**book | {"rounds": rounds, "end": End(book["end"])})
+    except FileNotFoundError:
+        raise UsageError(f"{folder} is no loop to go on with: it has no {NAME}") from None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UsageError(f"{path} is not of schema {SCHEMA}: {error}") from None
+
+
+def _tuples(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}

@@ -1,0 +1,126 @@
+"""hdrig close-loop: campaign, trace, the run the trace asks for, trace again, until nothing is missing."""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.bench import Bench, ClockName
+from rig.bench import read as read_bench
+from rig.campaign.journal import Journal, new_journal, read_journal
+from rig.campaign.plan import PLANS, read_plan
+from rig.campaign.planner import Campaign, planned
+from rig.campaign.resume import take_up
+from rig.campaign.run import open_session
+from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
+from rig.commands.options import bench_arguments
+from rig.commands.person import Person
+from rig.core.errors import Exit
+from rig.interrupts import Interrupts
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.result import Trace
+    from rig.closing.story import Story
+
+PLAN = "modest"
+BUDGET = 60.0  # min of rig time: the default plan takes 8, one run that decides 1 to 5
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig close-loop`."""
+    ships = ", ".join(sorted(p.stem for p in PLANS.glob("*.toml")))
+    parser.add_argument("--plan", default=PLAN, metavar="PLAN", help=f"what to begin with ({PLAN}); ships: {ships}")
+    bench_arguments(parser)
+    parser.set_defaults(bench=None)
+    parser.add_argument(
+        "--budget-minutes", type=float, default=BUDGET, metavar="M", help=f"of rig time, at most ({BUDGET:g})"
+    )
+    parser.add_argument("--resume", type=Path, metavar="FOLDER", help="go on with the loop in this folder")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Begin or go on, round after round; then the story as JSON and as a page."""
+    return _resume(args) if args.resume else _begin(args)
+
+
+def _begin(args: argparse.Namespace) -> int:
+    from rig.closing.story import Story, write_story
+
+    overrides = overrides_of(args)
+    bench = read_bench(args.bench or DEFAULT, overrides)
+    seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
+    campaign = planned(read_plan(args.plan), bench, seed)
+    refuse_nobody(campaign, range(len(campaign.items)))
+    clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
+    journal = new_journal(args.out, campaign, clock, overrides)
+    story = Story(journal.folder.name, bench.simulated, args.budget_minutes)
+    write_story(journal.folder, story)
+    return _make(campaign, journal, clock, args.note, story)
+
+
+def _resume(args: argparse.Namespace) -> int:
+    """Plan, bench, seed and clock are those it began with; the budget may be raised."""
+    from rig.closing.grow import regrown
+    from rig.closing.story import End, read_story
+
+    journal, story = read_journal(args.resume), read_story(args.resume)
+    book = journal.book
+    bench = read_bench(book["bench"]["source"], list(book["bench"]["overrides"]))
+    campaign = planned(read_plan(str(journal.folder / "plan.toml")), bench, book["seed"])
+    for told in take_up(journal):
+        print(told, file=sys.stderr)
+    campaign = regrown(campaign, journal, story)
+    refuse_nobody(campaign, journal.open_runs())
+    again = replace(story, end=End.OPEN, sentence="", budget_minutes=max(story.budget_minutes, args.budget_minutes))
+    return _make(campaign, journal, args.clock or book["clock"], args.note, again)
+
+
+def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, story: Story) -> int:
+    from rig.closing.loop import Closing
+    from rig.closing.run import conduct
+
+    bench = campaign.bench
+    if bench.simulated:
+        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
+    print(f"campaign folder {journal.folder}", file=sys.stderr)
+    before = float(journal.book["rig_time_s"])
+    with Interrupts() as interrupts:
+        person = Person(interrupts)
+        with open_session(campaign, journal, clock, interrupts, note, person) as session:
+            closing = Closing(
+                session, campaign, journal, Terminal(bench, person), look,
+                lambda: (before + session.instruments.clock.now()) / 60, story,
+            )  # fmt: skip
+            exit = conduct(closing)
+    _tell(journal.folder, closing.story, bench, exit)
+    return int(exit)
+
+
+def look(folder: Path) -> Trace:
+    """Trace all runs in `folder`, written there as trace.json."""
+    from rig.analysis.tracing.record import write_trace
+    from rig.analysis.tracing.trace import trace
+
+    found = trace(folder)
+    write_trace(folder / "trace.json", found)
+    return found
+
+
+def _tell(folder: Path, story: Story, bench: Bench, exit: Exit) -> None:
+    from rig.report.closing.page import write
+
+    page = write(folder)
+    simulated = "SIMULATED " if bench.simulated else ""
+    print(f"{simulated}loop {story.end.replace('_', ' ')} after {len(story.rounds)} rounds: {story.sentence}")
+    for r in story.rounds:
+        done = r.words or r.refused or "nothing"
+        print(
+            f"  round {r.number}, {r.minutes:.1f} min: {r.status.replace('_', ' ')} {', '.join(r.effects)}; then {done}"
+        )
+    print(f"report {page}")
+    if exit is Exit.STOPPED:
+        print(f"hdrig close-loop --resume {folder} goes on with it", file=sys.stderr)

@@ -1,0 +1,99 @@
+"""The story of a loop as one page: self-contained HTML, read without network or script, on paper as on a phone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import jinja2
+from markupsafe import Markup
+
+from rig.core.errors import NotReady, UsageError
+from rig.report import page as run_page
+from rig.report import words as run_words
+from rig.report.words import Ruling
+from rig.runfile.manifest import told, write_atomic
+
+HERE = Path(__file__).parent
+SOURCE: Final = "close-loop.json"
+NAME: Final = "close-loop.html"
+RULINGS: Final = {
+    "nothing_missing": Ruling("✓", "Nothing is missing", "good"),
+    "explained": Ruling("✓", "Explained", "good"),
+    "unknown": Ruling("?", "Something is left that nobody can name", "warn"),
+    "undecided": Ruling("?", "Not decided", "warn"),
+    "budget": Ruling("…", "The budget of rig time is spent", "warn"),
+    "stopped": Ruling("■", "Stopped", "plain"),
+    "open": Ruling("…", "Not finished", "plain"),
+}
+CHANNELS: Final = (("theta_l", "kinematic error"), ("tau_m", "motor torque"), ("tau_l", "shaft torque"))
+POOLED: Final = (
+    ("kinematic_error_rms_arcsec", "floor_kinematic_error_arcsec", "Kinematic error", "arcsec"),
+    ("tau_m_rms", "floor_tau_m", "Motor torque", "N·m"),
+    ("tau_l_rms", "floor_tau_l", "Shaft torque", "N·m"),
+)
+
+
+def write(folder: Path) -> Path:
+    """Write `folder`/close-loop.html from the close-loop.json there. Raises UsageError without one, NotReady."""
+    path = folder / SOURCE
+    try:
+        story = json.loads(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path} cannot be read: {error}") from None
+    with told(NotReady, f"{folder / NAME} cannot be written"):
+        write_atomic(folder / NAME, render(story).encode(errors="replace"))
+    return folder / NAME
+
+
+def render(story: Mapping[str, Any]) -> str:
+    """The page as text, from what close-loop.json says alone."""
+    origin = run_words.origin("sim" if story["simulated"] else "can")
+    rounds = story["rounds"]
+    view = {
+        "story": story,
+        "origin": origin,
+        "ruling": RULINGS[story["end"]],
+        "minutes": rounds[-1]["minutes"] if rounds else 0.0,
+        "rounds": [_round(r) for r in rounds],
+        "errors": _errors(rounds[-1]) if rounds else [],
+        "css": Markup(f"{run_page._css(story['campaign'], origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+    }
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html").render(view)
+
+
+def _round(r: Mapping[str, Any]) -> dict[str, Any]:
+    before, after = r["over_floor_before"], r["over_floor_after"]
+    ratios = [(word, before[c], after[c]) for c, word in CHANNELS if c in before and c in after]
+    asked = r["asked"]
+    return {
+        "number": r["number"],
+        "status": r["status"].replace("_", " "),
+        "minutes": r["minutes"],
+        "made": r["made"],
+        "runs": f"{r['fitted']} runs fitted, {r['held_out']} held out",
+        "sentence": r["sentence"],
+        "ratios": ratios,
+        "asked": f"{asked['procedure'].replace('_', ' ')}: {asked['because']}" if asked else "",
+        "next": r["words"],
+        "refused": r["refused"],
+    }
+
+
+def _errors(last: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """Channel, before, after, floor, each with its unit; RMS on held-out runs."""
+    before, after = last["pooled_before"], last["pooled_after"]
+    return [
+        (label, *(f"{values[key]:.3g} {unit}" for values, key in ((before, rms), (after, rms), (before, floor))))
+        for rms, floor, label, unit in POOLED
+        if before.get(rms) is not None and after.get(rms) is not None and before.get(floor) is not None
+    ]
