@@ -26,6 +26,7 @@ ROWS = (
 )
 FAINT = 0.1  # share of a fixed frequency below which it is not worth a line
 TELLING = 0.5  # share from which a coordinate is said to be where the residual lives
+RIVAL = 0.6  # of the best share from which the next coordinate is said as well
 STEP, LEFT, HEAD, FOOT, GAP = 21.0, 158.0, 30.0, 16.0, 46.0
 
 
@@ -89,12 +90,13 @@ def told(curves: Curves) -> list[str]:
         rows = [r for r in _rows(curves, channel) or [] if np.isfinite(r[1])]
         if not rows:
             continue
-        name, share = max(rows, key=lambda r: r[1])
+        (name, share), (other, less), *_ = sorted(rows, key=lambda r: -r[1])
         if share < TELLING:
             out.append(f"{channel.name}: no coordinate predicts half of the excess; {name} comes closest, {share:.0%}.")
         else:
+            also = f"; {other}: {less:.0%}" if less >= RIVAL * share else ""
             verb = "predict" if " and " in name else "predicts"
-            out.append(f"{channel.name}: {name} {verb} {share:.0%} of the excess over the floor.")
+            out.append(f"{channel.name}: {name} {verb} {share:.0%} of the excess over the floor{also}.")
     return [text.replace("%", "\u00a0%") for text in out]
 
 
