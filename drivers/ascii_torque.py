@@ -76,6 +76,10 @@ class AsciiTorque(TorqueSensor):
             self.garbled += 1
         return self._last
 
+    def clear(self) -> None:
+        """Look anew; a port that is gone stays gone until it is connected again."""
+        self.read()
+
     def close(self) -> None:
         """Let the port go."""
         self.port.close()

@@ -68,7 +68,6 @@ class Cia402(Drive):
         fastest = place.speed_limit * place.period / self._step
         self._angle = Unwrapped(1 << 32, max(int(LATE * fastest), 1))
         self._enabled = self._connected = False
-        self._trouble = ""
         self._last = DriveReading(NEVER, NAN, 0, NAN)
         self._scale = Scale(place)
         self._written = NEVER  # s, when
@@ -87,6 +86,8 @@ class Cia402(Drive):
         self._connected = True
         self.node.forget()
         self._first_reading()
+        if self.trouble:  # in fault already: with its code in words
+            self.trouble = f"{self.trouble}: {self._error()}"
         return identity
 
     def _compare_scales(self) -> None:
@@ -174,6 +175,9 @@ class Cia402(Drive):
         self._inputs.first(0.5)
         self.read()
 
+    def clear(self) -> None:
+        """Nothing: its fault goes by `reset_fault`."""
+
     def close(self) -> None:
         """Torque off, then off the bus."""
         if self._connected:
@@ -260,10 +264,10 @@ class Cia402(Drive):
             self._blame(told)
 
     def _told(self, reading: DriveReading) -> DriveReading:
-        return reading._replace(fault=self._trouble or self.bus.dead) if self._trouble or self.bus.dead else reading
+        return reading._replace(fault=self.trouble or self.bus.dead) if self.trouble or self.bus.dead else reading
 
     def _blame(self, why: str) -> None:
-        self._trouble = self._trouble or why  # the first cause stays
+        self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
         """What fits the frame, within the limits. Nothing is sent unless it is enabled for that kind of setpoint."""
@@ -315,8 +319,7 @@ class Cia402(Drive):
         state = state_of(self.node.read_uint(0x6041))
         if state.startswith("fault"):
             raise NotReady(f"{self.node.who} stays in {state} after a reset: {self._error()}")
-        if self.node.rebooted:
-            raise NotReady(f"{self.node.who} rebooted: disconnect and connect again, its configuration is lost")
-        self.node.forget()
-        self._trouble = self._inputs.wrong = ""
+        self.node.revive()
+        self._inputs.wrong = ""
+        self.trouble = ""
         self._first_reading()  # or the last statusword, still a fault, would be read again

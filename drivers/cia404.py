@@ -72,6 +72,13 @@ class Cia404(TorqueSensor):
         self._last = TorqueReading(latched, tau, int(Flag.SATURATED_TAU) if over else 0)
         return self._last
 
+    def clear(self) -> None:
+        """Forget emergencies, look anew. Raises NotReady: silent, or rebooted, its configuration lost."""
+        self.node.revive()
+        self._inputs.wrong = ""
+        self._inputs.first(0.5)
+        self.read()
+
     def close(self) -> None:
         """Off the bus."""
         self.bus.close()

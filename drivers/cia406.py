@@ -78,6 +78,13 @@ class Cia406(Encoder):
         self._last = AngleReading(latched, counts * self._step, counts, int(flags))
         return self._last
 
+    def clear(self) -> None:
+        """Forget emergencies, look anew. Raises NotReady: silent, or rebooted, its configuration lost."""
+        self.node.revive()
+        self._inputs.wrong = ""
+        self._inputs.first(0.5)
+        self.read()
+
     def close(self) -> None:
         """Off the bus."""
         self.bus.close()

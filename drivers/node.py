@@ -111,6 +111,12 @@ class Node:
         """Emergencies and reboots told so far are no longer news."""
         self.emergency, self.rebooted = "", False
 
+    def revive(self) -> None:
+        """Forget what it told. Raises NotReady when it has lost its configuration meanwhile."""
+        if self.rebooted:
+            raise NotReady(f"{self.who} rebooted: disconnect and connect again, its configuration is lost")
+        self.forget()
+
     def identify(self, profile: int) -> Identity:
         """Device type, name, serial number and version. Raises NotReady when it is no `profile` device."""
         kind = self.read_uint(0x1000) & 0xFFFF

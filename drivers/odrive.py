@@ -56,7 +56,6 @@ class ODrive(Drive):
         self._gain = 1.0  # N·m per unit of the effort's reading
         self._turns = NAN
         self._enabled = self._connected = False
-        self._trouble = ""
         self._saturated = 0
         self._looked = NEVER  # s, when readings were last looked for
         self._last = DriveReading(NEVER, NAN, 0, NAN)
@@ -101,6 +100,8 @@ class ODrive(Drive):
         if self._watchdog is None:
             return ""
         self.axis.forgives = self.axis.expired  # nobody talks to an idle axis: that is no fault
+        if self.axis.error:
+            return f"watchdog of the axis, {self._watchdog * 1e3:g} ms, declared; not tried, which proves nothing"
         self.axis.clear()
         seen = self.bus.wait(1.5 * self._watchdog + 2 * self.axis.interval, lambda: self.axis.expired_now)
         told = "seen to expire" if seen else "declared; it did not expire while idle, which proves nothing"
@@ -116,6 +117,9 @@ class ODrive(Drive):
             raise NotReady(f"{self.axis.who} does not tell {told}, neither unasked nor asked by a remote frame")
         self._turns = NAN
         self.read()
+
+    def clear(self) -> None:
+        """Nothing: its fault goes by `reset_fault`."""
 
     def close(self) -> None:
         """Torque off, then off the bus."""
@@ -139,7 +143,7 @@ class ODrive(Drive):
         self.axis.request(cs.CLOSED_LOOP)
         self._closed_loop()
         self.axis.forgives = 0
-        self._trouble = ""
+        self.trouble = ""
         self._first_reading()
         self._enabled = True
 
@@ -198,11 +202,11 @@ class ODrive(Drive):
             self._blame(self.axis.silence())
 
     def _told(self, reading: DriveReading) -> DriveReading:
-        trouble = self._trouble or self.bus.dead
+        trouble = self.trouble or self.bus.dead
         return reading._replace(fault=trouble) if trouble else reading
 
     def _blame(self, why: str) -> None:
-        self._trouble = self._trouble or why  # the first cause stays
+        self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
         """The torque within the limit, as f32 carries it [N·m]; zero unless enabled."""
@@ -251,5 +255,5 @@ class ODrive(Drive):
         self.axis.clear()
         if self.axis.error:
             raise NotReady(f"{self.axis.error}, also after a reset")
-        self._trouble = ""
+        self.trouble = ""
         self._first_reading()

@@ -98,6 +98,10 @@ class Qsb(Encoder):
         counts = self._direction * (self._angle.counts or 0)
         self._last = AngleReading(self._clock.now() - self._delay, counts * self._step, counts, int(flags))
 
+    def clear(self) -> None:
+        """Look anew; a port that is gone stays gone until it is connected again."""
+        self.read()
+
     def close(self) -> None:
         """Stop the stream, let the port go."""
         self.port.write(b"R%02X\r\n" % ENCODER)

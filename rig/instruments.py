@@ -62,6 +62,10 @@ class Instruments:
             self._mark = int(Flag.SIMULATED)  # the twin over a wire, whose drivers cannot know
         return found
 
+    def causes(self) -> str:
+        """What is wrong with the devices as of their last readings, the first of it; "" when nothing is."""
+        return next((device.trouble for device in self.devices if device.trouble), "")
+
     def start(self) -> None:
         """From here time counts from zero, and nothing read before is news."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock

@@ -1,4 +1,4 @@
-"""Ctrl-C once = stop, twice = halt, at any moment of a session; the loop looks once a tick."""
+"""Ctrl-C once = stop, twice = halt, at any moment of a session; a hold is asked for apart. Looked at every tick."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ class Interrupts:
 
     def __init__(self) -> None:
         self.count = 0
+        self.held = False  # somebody asked for the motor to be held; a stop asked for later goes before
         self._before: dict[signal.Signals, Any] = {}
 
     @property
@@ -26,6 +27,10 @@ class Interrupts:
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end; also what a button calls."""
         self.count += 1
+
+    def hold(self) -> None:
+        """Bring the motor to rest and hold it there, torque on; what a key calls."""
+        self.held = True
 
     def __enter__(self) -> Interrupts:
         for sig in self.SIGNALS:

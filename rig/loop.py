@@ -16,7 +16,7 @@ from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
 from rig.realtime import RealTime
-from rig.supervisor import Act, Supervisor
+from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
 
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
@@ -105,7 +105,7 @@ class Loop:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
         latch = self.instruments.latch
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
-        period, start, k, stopping = setting.period, clock.now(), 0, False
+        period, start, k = setting.period, clock.now(), 0
         steps: Steps = self.setpoints.steps(procedure, setting)
         asked: Setpoint = next(steps)
         while True:
@@ -127,10 +127,8 @@ class Loop:
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
-            if self.interrupts.count and not stopping:
-                stopping, steps = True, self.setpoints.to_rest(procedure, setting)
-                self.supervisor.act(Act.STOP, "asked by the operator")
-                next(steps)
+            if self.interrupts.count or self.interrupts.held:
+                steps = self._course(steps, procedure, setting)
             if self.interrupts.count > 1:
                 self.instruments.safe()
                 self._last_row(sample, asked)
@@ -144,7 +142,7 @@ class Loop:
             except StopIteration as end:
                 self.instruments.safe()
                 self._last_row(sample, asked)
-                if stopping:
+                if self.supervisor.state is State.STOPPING:
                     return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
                 return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
             put(sample, asked[0], write(allowed(asked)), asked.theta_ref)
@@ -152,6 +150,19 @@ class Loop:
             if k % WATCH_TICKS == 0:
                 self.sink.check()
                 self.watch(sample)
+
+    def _course(self, steps: Steps, procedure: Procedure, setting: Setting) -> Steps:
+        """What is stepped on with: something else once the operator has asked for a hold or a stop."""
+        state = self.supervisor.state
+        if self.interrupts.count and state is not State.STOPPING:
+            self.supervisor.act(Act.STOP, "asked by the operator")
+            steps = self.setpoints.to_rest(procedure, setting)
+            next(steps)
+        elif self.interrupts.held and state is State.RUNNING:
+            self.supervisor.act(Act.HOLD, "asked by the operator")
+            steps = self.setpoints.hold(setting)
+            next(steps)
+        return steps
 
     def _latched(self, latch: Callable[[], None], deadline: float, period: float) -> float:
         """Devices latch `lead` before the deadline; the time [s] when their answers are in.

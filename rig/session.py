@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import getpass
 import math
 import platform
 import sys
@@ -42,7 +41,7 @@ from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refu
 from rig.runfile.events import EventLog
 from rig.runfile.finalise import finalise
 from rig.runfile.folder import create
-from rig.software import software
+from rig.software import operator, software
 from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
 
@@ -80,9 +79,12 @@ class Session:
     _log: EventLog | None = None
 
     def __enter__(self) -> Session:
-        self.supervisor = Supervisor(self._announce)
         self.instruments = self.bench.open(self.clock)
+        self.supervisor = Supervisor(self._announce, self.instruments.causes)
         self.identities = self.instruments.connect()
+        for device in self.instruments.devices:
+            for remark in device.remarks:
+                self._event("note", remark)
         self.supervisor.act(Act.CONNECT)
         return self
 
@@ -156,7 +158,13 @@ class Session:
         operator = self._operator(change)
         wait_for_rest(self.instruments)
         operator.make(change)
+        self.reset()
+
+    def reset(self) -> None:
+        """The explicit act that leaves a fault: every device looks anew, nothing is energised. Raises NotReady."""
         self.instruments.drive.reset_fault()
+        for device in self.instruments.devices:
+            device.clear()
         self.supervisor.act(Act.RESET)
         self._proof = None
 
@@ -233,6 +241,11 @@ class Session:
     def _run(self, procedure: Procedure, root: Path, watch: Watch = lambda sample: None) -> Done:
         self.folder = None
         self.check(procedure)
+        if self.supervisor.state is State.FAULT:
+            raise NotReady(
+                f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
+                f"`hdrig reset --bench {self.bench.source}`"
+            )
         if self.interrupts.count:
             raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
         if self.supervisor.state is State.CONNECTED:
@@ -291,7 +304,7 @@ class Session:
             self._log = None
 
     def _announce(self, state: State, act: Act, why: str) -> None:
-        kind = {Act.TRIP: "trip", Act.STOP: "operator", Act.HALT: "operator"}.get(act, "state")
+        kind = {Act.TRIP: "trip", Act.HOLD: "operator", Act.STOP: "operator", Act.HALT: "operator"}.get(act, "state")
         self._event(kind, f"{state}: {why}" if why else str(state))
 
     def _event(self, kind: str, text: str) -> None:
@@ -333,10 +346,3 @@ class Ended(HdrigError):
     def __init__(self, sentence: str, exit: Exit) -> None:
         super().__init__(sentence)
         self.exit = exit
-
-
-def operator() -> str | None:
-    """Who is logged in."""
-    with contextlib.suppress(OSError, KeyError):
-        return getpass.getuser()
-    return None

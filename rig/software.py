@@ -1,8 +1,9 @@
-"""Which software made a run: version, commit, and whether the tree had changes."""
+"""Which software made a run, version, commit, whether the tree had changes; and who was at the keyboard."""
 
 from __future__ import annotations
 
 import contextlib
+import getpass
 import platform
 import subprocess
 from pathlib import Path
@@ -25,3 +26,10 @@ def software() -> dict[str, Any]:
     commit = git("rev-parse", "HEAD") if inside else None
     dirty = bool(git("status", "--porcelain", "--untracked-files=no")) if commit else None
     return {"version": __version__, "commit": commit, "dirty": dirty, "python": platform.python_version()}
+
+
+def operator() -> str | None:
+    """Who is logged in."""
+    with contextlib.suppress(OSError, KeyError):
+        return getpass.getuser()
+    return None

@@ -14,8 +14,9 @@ class State(StrEnum):
     DISCONNECTED = "disconnected"
     CONNECTED = "connected"  # readable, nothing energised
     READY = "ready"  # checks passed
-    ENABLED = "enabled"  # energised, torque zero or holding
+    ENABLED = "enabled"  # energised, torque zero
     RUNNING = "running"  # a procedure commands it
+    HOLDING = "holding"  # at rest, energised, held where it is; what ran is not gone on with
     STOPPING = "stopping"  # being brought to rest, then torque off
     FAULT = "fault"  # torque-free, latched
 
@@ -27,6 +28,7 @@ class Act(StrEnum):
     CHECK = "check"  # all checks passed
     ENABLE = "enable"
     RUN = "run"
+    HOLD = "hold"  # category 2: to rest, held, torque on
     STOP = "stop"  # category 1: to rest, then torque off
     HALT = "halt"  # category 0: torque off now
     FINISH = "finish"  # the procedure or the stop is over, torque off
@@ -42,13 +44,17 @@ TABLE: dict[tuple[State, Act], State] = {
     (_S.READY, _A.ENABLE): _S.ENABLED,
     (_S.ENABLED, _A.RUN): _S.RUNNING,
     (_S.ENABLED, _A.FINISH): _S.READY,
+    (_S.RUNNING, _A.HOLD): _S.HOLDING,
+    (_S.HOLDING, _A.HOLD): _S.HOLDING,
+    (_S.HOLDING, _A.STOP): _S.STOPPING,
+    (_S.HOLDING, _A.FINISH): _S.READY,
     (_S.RUNNING, _A.STOP): _S.STOPPING,
     (_S.RUNNING, _A.FINISH): _S.READY,
     (_S.STOPPING, _A.STOP): _S.STOPPING,
     (_S.STOPPING, _A.FINISH): _S.READY,
     (_S.FAULT, _A.RESET): _S.CONNECTED,  # checks have to be passed again: never straight back to running
     **{(s, _A.TRIP): _S.FAULT for s in State},
-    **{(s, _A.HALT): _S.READY for s in (_S.READY, _S.ENABLED, _S.RUNNING, _S.STOPPING)},
+    **{(s, _A.HALT): _S.READY for s in (_S.READY, _S.ENABLED, _S.RUNNING, _S.HOLDING, _S.STOPPING)},
     (_S.CONNECTED, _A.HALT): _S.CONNECTED,
     (_S.DISCONNECTED, _A.HALT): _S.DISCONNECTED,
     (_S.FAULT, _A.HALT): _S.FAULT,
@@ -58,19 +64,31 @@ TABLE: dict[tuple[State, Act], State] = {
 
 
 class Supervisor:
-    """Holds the state; every change goes through the table and is announced."""
+    """Holds the state; every change goes through the table and is announced.
 
-    def __init__(self, announce: Callable[[State, Act, str], None] = lambda state, act, why: None) -> None:
+    `causes` says, in words, what is still wrong with the devices: while anything is, a reset is refused.
+    """
+
+    def __init__(
+        self,
+        announce: Callable[[State, Act, str], None] = lambda state, act, why: None,
+        causes: Callable[[], str] = lambda: "",
+    ) -> None:
         self.state = State.DISCONNECTED
         self.fault = ""  # why it latched, in words
         self.announce = announce
+        self.causes = causes
 
     def act(self, act: Act, why: str = "") -> State:
-        """Make the change. Raises NotReady, and changes nothing, when the table has no such row."""
+        """Make the change. Raises NotReady, and changes nothing, when the table has no such row, or when the fault to
+        be reset is still there. A rig that is connected in fault is in FAULT from the start.
+        """
         following = TABLE.get((self.state, act))
         if following is None:
             possible = ", ".join(sorted(a for s, a in TABLE if s is self.state))
             raise NotReady(f"cannot {act} while {self.state}; possible now: {possible}")
+        if act is Act.RESET and (why_not := self.causes()):
+            raise NotReady(f"the fault stays: {why_not}")
         if act is Act.TRIP and self.state is not State.FAULT:
             self.fault = why  # the first cause stays; what follows from it does not replace it
         if act is Act.RESET:
@@ -78,4 +96,6 @@ class Supervisor:
         if following is not self.state:
             self.state = following
             self.announce(following, act, why)
+        if act is Act.CONNECT and (wrong := self.causes()):
+            return self.act(Act.TRIP, wrong)
         return self.state

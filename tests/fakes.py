@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from rig.control.filter import SpeedFilter
@@ -30,12 +31,13 @@ LIMITS = Limits(
 
 
 class FakeClock(Clock):
-    """Virtual time; `late` maps a tick to extra seconds it wakes late."""
+    """Virtual time; `late` maps a tick to extra seconds it wakes late, `at` one to what happens at it."""
 
     def __init__(self) -> None:
         self.t = 0.0
         self.tick = 0
         self.late: dict[int, float] = {}
+        self.at: dict[int, Callable[[], None]] = {}
         self.world: FakeWorld | None = None
 
     def now(self) -> float:
@@ -43,6 +45,7 @@ class FakeClock(Clock):
 
     def wait_until(self, t: float) -> float:
         self.tick += 1
+        self.at.get(self.tick, lambda: None)()
         target = max(t, self.t) + self.late.get(self.tick, 0.0)
         if self.world is not None:
             self.world.advance(target - self.t)

@@ -98,6 +98,29 @@ def test_one_interrupt_brings_the_motor_to_rest_before_the_torque_goes() -> None
     assert bench.torque_free()
 
 
+def test_a_hold_brings_the_motor_to_rest_and_keeps_it_there_until_a_stop() -> None:
+    bench = Bench()
+    bench.world.clock.at[2500] = bench.interrupts.request
+    ending = bench.run(bench.interrupts.hold, tau=0.35)
+    rows = [row[0] for row in bench.sink.rows]
+    assert (ending.status, ending.exit) == ("stopped", Exit.STOPPED)
+    assert len(rows) > 2400  # beyond the 2 s the procedure would have taken
+    resting = [s.theta_m for s in rows[-1000:]]
+    assert max(resting) - min(resting) < 0.01
+    assert bench.torque_free()
+
+
+def test_a_stop_asked_for_before_a_hold_goes_before_it() -> None:
+    bench = Bench()
+
+    def both() -> None:
+        bench.interrupts.request()
+        bench.interrupts.hold()
+
+    assert bench.run(both, tau=0.35).exit is Exit.STOPPED
+    assert len(bench.sink.rows) < 1500
+
+
 def test_two_interrupts_take_the_torque_off_at_once() -> None:
     bench = Bench()
 

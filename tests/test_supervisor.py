@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from rig.core.errors import NotReady
 from rig.supervisor import TABLE, Act, State, Supervisor
 
-ENERGISED = {State.ENABLED, State.RUNNING, State.STOPPING}
+ENERGISED = {State.ENABLED, State.RUNNING, State.HOLDING, State.STOPPING}
 
 
 @given(st.lists(st.sampled_from(list(Act)), max_size=60))
@@ -53,3 +53,48 @@ def test_every_change_is_announced_once() -> None:
     for act in (Act.CONNECT, Act.CHECK, Act.ENABLE, Act.RUN, Act.STOP, Act.STOP, Act.FINISH):
         supervisor.act(act)
     assert seen == [State.CONNECTED, State.READY, State.ENABLED, State.RUNNING, State.STOPPING, State.READY]
+
+
+HOLDS = [  # (from, act, to): a hold is left by a stop, a halt, a trip or its end; never back to what ran
+    (State.RUNNING, Act.HOLD, State.HOLDING),
+    (State.HOLDING, Act.HOLD, State.HOLDING),
+    (State.HOLDING, Act.STOP, State.STOPPING),
+    (State.HOLDING, Act.HALT, State.READY),
+    (State.HOLDING, Act.FINISH, State.READY),
+    (State.HOLDING, Act.TRIP, State.FAULT),
+    (State.HOLDING, Act.DISCONNECT, State.DISCONNECTED),
+]
+
+
+@pytest.mark.parametrize(("before", "act", "after"), HOLDS)
+def test_a_hold_is_an_act_beside_stop_and_halt(before: State, act: Act, after: State) -> None:
+    supervisor = Supervisor()
+    supervisor.state = before
+    assert supervisor.act(act) is after
+
+
+def test_the_table_has_no_other_way_into_or_out_of_a_hold() -> None:
+    rows = {(s, a, t) for (s, a), t in TABLE.items() if State.HOLDING in (s, t)}
+    assert rows == set(HOLDS)
+
+
+def test_a_rig_connected_in_fault_is_in_fault_from_the_start_and_says_why() -> None:
+    wrong = ["under-voltage"]
+    supervisor = Supervisor(causes=lambda: wrong[0])
+    assert supervisor.act(Act.CONNECT) is State.FAULT
+    assert supervisor.fault == "under-voltage"
+    for act in (Act.CHECK, Act.ENABLE, Act.RUN, Act.HOLD, Act.STOP, Act.FINISH, Act.CONNECT):
+        with pytest.raises(NotReady, match="possible now"):
+            supervisor.act(act)
+
+
+def test_a_fault_is_left_by_a_reset_once_its_causes_are_gone_and_not_by_their_going() -> None:
+    wrong = ["under-voltage"]
+    supervisor = Supervisor(causes=lambda: wrong[0])
+    supervisor.act(Act.CONNECT)
+    with pytest.raises(NotReady, match="the fault stays: under-voltage"):
+        supervisor.act(Act.RESET)
+    wrong[0] = ""
+    assert supervisor.state is State.FAULT
+    assert supervisor.act(Act.RESET) is State.CONNECTED
+    assert supervisor.fault == ""

@@ -15,6 +15,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "twin": ("rig.commands.twin", "the simulated rig in real time, reached over CAN and serial lines"),
     "devices": ("rig.commands.devices", "who is on the CAN bus and the serial ports; writes a first bench file"),
     "doctor": ("rig.commands.doctor", "is this machine, this bus and this bench fit for a run"),
+    "reset": ("rig.commands.reset", "clear a fault of the drive, once somebody has seen that the rig is whole"),
     "drill": ("rig.commands.drill", "every fault of bus and devices in every phase of a run, on virtual time"),
     "list": ("rig.commands.list_", "the runs in a folder"),
     "recover": ("rig.commands.recover", "make a readable run of what a dead program left"),

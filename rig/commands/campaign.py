@@ -25,7 +25,8 @@ from rig.commands.progress import Progress
 from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.interrupts import Interrupts
-from rig.session import Watch, operator
+from rig.session import Watch
+from rig.software import operator
 
 DEFAULT = "twin"
 STUMBLES = (

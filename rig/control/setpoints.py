@@ -8,11 +8,11 @@ from abc import ABC, abstractmethod
 from typing import ClassVar, final
 
 from rig.control.brake import brake
+from rig.control.hold import ACCELERATION, hold
 from rig.control.profile import Ramp
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import NAN, Mode, Position, Sample, Setpoint, Torque, Velocity
 
-ACCELERATION = 20.0  # rad/s², of a controlled stop: 600 rpm in 3 s
 REST = 0.1  # s the drive holds before its torque goes off
 
 
@@ -30,6 +30,10 @@ class Setpoints(ABC):
     def to_rest(self, procedure: Procedure, setting: Setting) -> Steps:
         """A controlled stop from wherever it is, in setpoints of this mode."""
 
+    @abstractmethod
+    def hold(self, setting: Setting) -> Steps:
+        """To rest, and held there without end, in setpoints of this mode."""
+
 
 @final
 class AsTorque(Setpoints):
@@ -45,6 +49,10 @@ class AsTorque(Setpoints):
         """The procedure's own way to end, else the brake."""
         return procedure.to_rest(setting) or brake(setting)
 
+    def hold(self, setting: Setting) -> Steps:
+        """Under the position loop."""
+        return hold(setting)
+
 
 class AsReference(Setpoints):
     """The reference a torque serves is asked for; the torque itself is not. Where there is none, the motor is held."""
@@ -55,7 +63,13 @@ class AsReference(Setpoints):
 
     def steps(self, procedure: Procedure, setting: Setting) -> Steps:
         """What the procedure returns is passed on."""
-        inner = procedure.steps(setting)
+        return (yield from self._follow(procedure.steps(setting)))
+
+    def hold(self, setting: Setting) -> Steps:
+        """The reference of the hold under the position loop."""
+        return self._follow(hold(setting))
+
+    def _follow(self, inner: Steps) -> Steps:
         next(inner)
         sample = yield Torque(0.0)  # asked of nobody: the first sample is not there yet
         theta_ref = sample.theta_m

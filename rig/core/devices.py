@@ -66,6 +66,12 @@ class Device(ABC):
     def connect(self) -> Identity:
         """Open and identify. Moves and energises nothing. Raises NotReady with the reason."""
 
+    def clear(self) -> None:
+        """Forget what was wrong, and look anew: what is still wrong is told again. Raises NotReady when that cannot be.
+        A drive's fault is another matter: `reset_fault`.
+        """
+        self.trouble = ""
+
     @abstractmethod
     def close(self) -> None:
         """Let go of the device. Idempotent; never raises."""

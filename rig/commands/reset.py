@@ -1,0 +1,36 @@
+"""hdrig reset: leave a fault, by an explicit act of somebody who has looked. Energises nothing."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from rig.core.errors import Exit, NotReady
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig reset`."""
+    parser.add_argument("--bench", required=True, metavar="FILE", help="bench file, or the name of one that ships")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Connect, say what is wrong, clear it, look again; exit 3 when it comes back."""
+    from rig.bench import read
+    from rig.interrupts import Interrupts
+    from rig.session import Session
+    from rig.supervisor import State
+
+    bench = read(args.bench, args.set)
+    with Session(bench, "virtual" if bench.simulated else "wall", Path("runs"), Interrupts()) as session:
+        if session.supervisor.state is not State.FAULT:
+            print(f"{bench.file.name}: nothing to reset, no device is in fault")
+            return Exit.PASS
+        why = session.supervisor.fault
+        print(f"{bench.file.name} is in fault: {why}")
+        try:
+            session.reset()
+        except NotReady as stays:
+            raise NotReady(f"{stays}; nothing was energised") from None
+        print(f"{bench.file.name}: reset, no device is in fault any more; nothing is energised")
+    return Exit.PASS
