@@ -105,7 +105,8 @@ def facts(campaign: Path, found: Sequence[Entry]) -> list[str]:
     gear = found[0].manifest.get("gear") or {}
     days = sorted({str(e.manifest.get("started_utc") or "")[:10] for e in found} - {""})
     said = [f"Gear {gear['serial']}"] if gear.get("serial") else []
-    said += [f"ratio {gear.get('ratio')}", f"{len(found)} runs"]
+    said += [f"ratio {gear['ratio']:g}"] if isinstance(gear.get("ratio"), int | float) else []
+    said.append(f"{len(found)} runs")
     said += [days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"] if days else []
     return [*said, *_planned(campaign), campaign.resolve().name]
 
