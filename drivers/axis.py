@@ -85,6 +85,7 @@ class Axis:
 
     def next_heartbeat(self, seconds: float) -> bool:
         """Wait for one that was not there yet; False when none came."""
+        self.bus.drain()  # what lay in the queue is old
         self.heard = NEVER
         return self.bus.wait(seconds, lambda: self.heard != NEVER)
 
