@@ -34,8 +34,8 @@ DECIDERS: Sequence[tuple[frozenset[str], str, dict[str, float | bool | str], str
         frozenset({"thermal_friction_drift", "quadratic_drag", "stribeck_friction"}),
         "friction",
         {"speeds_rpm": "15,30,60,120,200,310,400,500", "output_deg": 4.0, "breakaways": 1},
-        "every speed from creep to fast within three minutes, rising and falling: at two or three speeds, minutes apart, "
-        "falling friction, drag and warming bend the same curve",
+        "every speed from creep to fast within three minutes, rising and falling: at two or three speeds, minutes "
+        "apart, falling friction, drag and warming bend the same curve",
     ),
     (
         frozenset({"nonlinear_stiffness", "hysteretic_stiffness", "lost_motion"}),
