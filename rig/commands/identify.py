@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,6 +74,7 @@ def run(args: argparse.Namespace) -> int:
         str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
     )
     print("\n".join(comparison(predictions(recordings, file.gear(), args.terms))))
+    print("\n".join(coasting(runs, found)))
     print("\n".join(f"  cannot tell: {sentence}" for sentence in found.cannot))
     if args.out is not None:
         gearfile.write(args.out, file)
@@ -139,7 +141,7 @@ def series_lines(series: MeasuredSeries) -> list[str]:
     lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]
     for n, size, u in order_amplitudes(series):
         small = "" if size > 2.45 * u else "  (not told from zero)"
-        phase = float(series.series.phase[n - 1]) * 180.0 / 3.141592653589793
+        phase = float(series.series.phase[n - 1]) * 180.0 / math.pi
         lines.append(
             f"    C_{n:<3d} {quantity(size * ARCSEC, 1.96 * u * ARCSEC, 'arcsec'):28s} at {phase:+7.1f}°{small}"
         )
@@ -158,6 +160,30 @@ def comparison(rows: list[Prediction]) -> list[str]:
         lines.append(
             f"    {p.run:28.28s} {p.speed_rpm:+7.1f} rpm {measured:>18s} {p.predicted:9.1f} {p.pure:9.1f} {p.rms:9.2f}"
         )
+    return lines
+
+
+def coasting(runs: list[Run], found: Identified) -> list[str]:
+    """What coast-downs say of the inertia at the motor, which no fit here has used, against J_m + J_l/N²."""
+    from rig.analysis import analyse
+    from rig.report.numbers import estimate
+
+    p = found.parameters
+    lines: list[str] = []
+    if not {"J_m", "J_l"} <= p.keys():
+        return lines
+    N = p["N"].value
+    value, half = p["J_m"].value + p["J_l"].value / N**2, math.hypot(p["J_m"].half, p["J_l"].half / N**2)
+    for run in runs:
+        figures = analyse(run).estimates if run.procedure == "coast_down" else ()
+        for e in figures:
+            if e.name == "inertia_at_motor":
+                apart = abs(e.value - value) / math.hypot(0.5 * (e.ci95[1] - e.ci95[0]), half)
+                agree = "agree" if apart <= 1.0 else "do not agree: look at the friction between both"
+                lines.append(
+                    f"  {run.name} coasts with {estimate(e.value, e.ci95, e.unit)}, J_m + J_l/N² is "
+                    f"{estimate(value, (value - half, value + half), e.unit)}: they {agree}"
+                )
     return lines
 
 

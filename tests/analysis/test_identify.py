@@ -82,6 +82,7 @@ def test_without_noise_every_parameter_is_that_of_the_simulator(gear: Gear, camp
     assert found["B_l"].value == pytest.approx(gear.B_l, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_without_a_slow_run_the_pure_error_still_comes_out_of_the_runs_at_speed(
     gear: Gear, campaign: list[Recording]
 ) -> None:
@@ -90,6 +91,7 @@ def test_without_a_slow_run_the_pure_error_still_comes_out_of_the_runs_at_speed(
         assert size * ARCSEC == pytest.approx(float(gear.kinematic_error.amplitude[n - 1]) * ARCSEC, abs=0.05)
 
 
+@pytest.mark.slow
 def test_an_encoder_that_reads_late_is_found_and_does_not_pass_for_damping(
     gear: Gear, campaign: list[Recording]
 ) -> None:
@@ -109,6 +111,7 @@ def test_what_no_run_shows_is_declared_or_assumed_and_said(campaign: list[Record
         identified(fit(bare, 15), {}).gear_file("flexspline", "", True, "")
 
 
+@pytest.mark.slow
 def test_pairs_that_cannot_be_told_apart_are_named(campaign: list[Recording]) -> None:
     said = " ".join(identified(fit(campaign, 15), {}).cannot)
     for pair in ("B_m and B_ml", "K of the gear and of what lies in series", "B_sp and B_ml", "tau_s and omega_s"):

@@ -37,6 +37,7 @@ FAMILY = {
     "full-turn-lines": "turn.",
     "speed-convergence": "convergence.",
     "coast-down": "coast.",
+    "friction": "friction.",
     "time": "time.",
 }
 every_figure = pytest.mark.parametrize("drawing", CATALOGUE, ids=lambda d: d.name)
