@@ -99,7 +99,7 @@ class Node:
         remote.associate_network(network)
         self._sdo = remote.sdo
         self._sdo.responses = _Answers(self.bus)
-        self.bus.listeners[0x580 + self.number] = lambda data, t: self._sdo.responses.put(data)
+        self.bus.listeners[0x580 + self.number] = self._on_answer
         self.bus.listeners[0x080 + self.number] = self._on_emergency
         self.bus.listeners[HEARTBEAT + self.number] = self._on_heartbeat
 
@@ -260,6 +260,10 @@ class Node:
             told = NMT_NAMES.get(self.state or 0, f"NMT state {self.state}")
             return f"{self.who} is {told}, expected operational"
         return ""
+
+    def _on_answer(self, data: bytes, t: float) -> None:
+        if len(data) == 8:  # every SDO answer has; canopen breaks on others
+            self._sdo.responses.put(data)
 
     def _on_heartbeat(self, data: bytes, t: float) -> None:
         if len(data) != 1:
