@@ -44,6 +44,7 @@ STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 
 SHOWN = STATUS[1:2]
 MOTION = (Mapped(0x6064, 0, 32, "i"),)
 CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
+NOTHING = (0, 0)  # for the targets of other modes, in the fixed RPDOs of some drives
 KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
@@ -145,7 +146,8 @@ class Cia402(Drive):
             if unit is None:
                 raise NotReady(f"{self.node.who} tells speeds in a unit not known here (60A9h = {code:08X}h)")
             self._scale.speed_unit = unit
-        self._outputs.arrange(target.mapped, CHOSEN)
+        others = [other.object for other in TARGETS.values() if other is not target]
+        self._outputs.arrange(target.mapped, [*CHOSEN, *others])
         if mode is not Mode.POSITION:
             self.node.put(target.object.at, 0, bytes(target.object.bits // 8))
         self.node.write(0x6060, 0, struct.pack("<b", target.number))
@@ -209,7 +211,7 @@ class Cia402(Drive):
         self._enabled = True
 
     def _command(self, controlword: int, raw: int) -> bool:
-        return self._outputs.send(controlword, raw, TARGETS[self.mode].number)
+        return self._outputs.send(controlword, raw, TARGETS[self.mode].number, *NOTHING)
 
     def _hold(self, controlword: int) -> bool:
         """A controlword with nothing asked for: no torque, rest, the angle it has."""

@@ -11,6 +11,7 @@ from drivers.wiring import Place
 from rig.core.sample import Mode
 
 PERMILLE = 1000.0
+EXACT = 1.0 + 1e-12  # 0.6 N·m of 3 N·m are 200 per mille, and 199.99999999999997 in binary
 MISSED = 10.0  # periods: a position may move on by as many, when cycles were missed
 
 
@@ -58,7 +59,7 @@ class Scale:
         match mode:
             case Mode.TORQUE:
                 tau = self._clip(asked if math.isfinite(asked) else 0.0, 0.0, place.torque_limit)
-                permille = int(tau / place.torque_rated * PERMILLE)  # towards zero: never more than was asked
+                permille = int(tau / place.torque_rated * PERMILLE * EXACT)  # towards zero: never more than was asked
                 return self._direction * permille, permille / PERMILLE * place.torque_rated
             case Mode.VELOCITY:
                 omega = self._clip(asked if math.isfinite(asked) else 0.0, 0.0, place.speed_limit)

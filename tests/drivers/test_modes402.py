@@ -32,6 +32,7 @@ def connected(*overrides: str) -> Wired:
     return w
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["velocity", "position"])
 def test_a_slow_run_turns_the_motor_along_its_reference(mode: str):
     w = connected(f'control.mode="{mode}"')
@@ -43,6 +44,7 @@ def test_a_slow_run_turns_the_motor_along_its_reference(mode: str):
     assert w.twin.drive.drive_state is DriveState.SWITCH_ON_DISABLED
 
 
+@pytest.mark.slow
 def test_position_rows_hold_the_angles_asked_for_and_given_to_a_count():
     w = connected('control.mode="position"')
     _, sink = run(w)

@@ -50,6 +50,7 @@ def test_connecting_energises_nothing_and_says_who_is_there():
     assert w.axis.state is State.IDLE
 
 
+@pytest.mark.slow
 def test_a_slow_run_follows_its_reference_and_every_motor_row_is_fresh():
     w = connected()
     ending, sink = run(w)
@@ -60,6 +61,7 @@ def test_a_slow_run_follows_its_reference_and_every_motor_row_is_fresh():
     assert w.axis.state is State.IDLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("estimates", [0.01, 0.001], ids=["asked", "unasked"])
 def test_readings_are_stamped_when_they_were_made_to_two_tenths_of_a_millisecond(estimates: float):
     w = connected(Settings(heartbeat=0.02, watchdog=0.15, estimates=estimates))
@@ -195,6 +197,7 @@ def test_it_shares_no_bus_with_canopen_devices():
         odriven(None, 'devices.drive.bus="rig"')
 
 
+@pytest.mark.slow
 def test_no_sync_and_no_heartbeat_of_ours_is_sent_on_its_bus():
     w = connected()
     seen = []
