@@ -57,6 +57,11 @@ class Mark:
         return self.status == "ambiguous" and bool(offered & set(self.expected))
 
     @property
+    def decent(self) -> bool:
+        """Undecidable, and yet no harm done: the truth is named or offered and nothing false is claimed."""
+        return bool({*self.names, *self.rivals} & set(self.expected)) and not self.wrong
+
+    @property
     def answer(self) -> str:
         parts = [self.status, *self.names]
         if self.rivals:

@@ -91,11 +91,11 @@ def marks(suite: Path) -> list[Mark]:
     return out
 
 
-def heading() -> str:
-    """Date and commit of the tracer under test."""
+def head_commit() -> str:
+    """Commit of the tree this file lies in, in short."""
     asked = ["git", "-C", str(Path(__file__).parent), "rev-parse", "--short", "HEAD"]
     done = subprocess.run(asked, capture_output=True, text=True, check=False)
-    return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}, commit {done.stdout.strip() or 'unknown'}"
+    return done.stdout.strip() or "unknown"
 
 
 def main(arguments: list[str]) -> int:
@@ -103,13 +103,15 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="tests.blind.score", description=__doc__)
     parser.add_argument("suite", type=Path)
     parser.add_argument("--table", type=Path, help="also write the table to this file")
+    parser.add_argument("--commit", default="", help="commit that was traced, where it is not this tree's")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a trace may take")
     parser.add_argument("--jobs", type=int, default=1, help="traces at a time")
     options = parser.parse_args(arguments)
     try:
         check_hashes(options.suite)
         trace_all(options.suite, options.limit, options.jobs)
-        page = markdown(marks(options.suite), heading())
+        today = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"
+        page = markdown(marks(options.suite), f"{today}, commit {options.commit or head_commit()}")
     except (Tampered, FileNotFoundError) as refusal:
         print(refusal, file=sys.stderr)
         return 2

@@ -43,6 +43,10 @@ def rows(marks: list[Mark]) -> list[Row]:
         ("held-out error over floor, after", spread([m.after for m in worth(marks, *NAMED)])),
         ("parameters: relative error", percent([c.relative_error for m in marks for c in m.compared])),
         ("parameters: inside their 95 % interval", str(rate([c.covered for m in marks for c in m.compared]))),
+        (
+            "undecidable: truth named or among the rivals, nothing wrong claimed",
+            str(rate([m.decent for m in ambiguous])),
+        ),
         ("undecidable: called ambiguous, truth among the rivals", str(rate([m.handled for m in ambiguous]))),
         ("undecidable: a wrong name claimed", str(rate([bool(m.wrong) for m in ambiguous]))),
         ("cases without an answer", str(rate([m.status == "no answer" for m in marks]))),
@@ -85,7 +89,7 @@ def is_miss(m: Mark) -> bool:
     if m.kind == "outside":
         return not m.refused or m.coordinate not in m.coordinates
     if m.kind == "ambiguous":
-        return not m.handled
+        return not m.decent
     if m.kind == "pair":
         return not m.exact
     return not m.first_right or bool(m.wrong)

@@ -76,7 +76,10 @@ def test_an_undecidable_case_wants_the_truth_among_the_rivals() -> None:
     asked = truth("ambiguous", hidden("quadratic_drag"))
     assert judged(asked, said("ambiguous", rivals=["thermal_friction_drift", "quadratic_drag"])).handled
     assert not judged(asked, said("ambiguous", rivals=["thermal_friction_drift"])).handled
-    assert not judged(asked, said("explained", "thermal_friction_drift")).handled
+    assert not judged(asked, said("explained", "thermal_friction_drift")).decent
+    named = judged(asked, said("explained", "quadratic_drag"))
+    assert named.decent
+    assert not named.handled
 
 
 def test_an_effect_below_one_and_a_half_floors_does_not_count() -> None:
