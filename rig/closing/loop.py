@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from rig.analysis.tracing.result import NextRun, Status, Trace
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
-from rig.closing.advice import Advice, advised, same
+from rig.closing.advice import Advice, advised, elsewhere, same
 from rig.closing.grow import grown
 from rig.closing.story import End, Round, Story, told_by, write_story
 from rig.core.errors import Exit, NotReady, UsageError
@@ -63,15 +63,17 @@ class Closing:
     def _advise(self, found: Round) -> None:
         """Put the run asked for behind the others, or end with the reason why not."""
         before = self.story.rounds[-1].asked if self.story.rounds else None
-        asked = _asked(found)
+        asked = _asked(found) or (elsewhere(found.coordinate) if found.status is Status.UNKNOWN else None)
         if asked is None:
             self._with(found)
-            what = "and no run is known that would say more"
-            self._ended(End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED, f"{found.sentence} {what}.")
+            end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
+            self._ended(end, f"{found.sentence} No run is known that would say more.")
             return
+        found = replace(found, asked=asdict(asked))
         if same(asked, before):
             self._with(found)
-            self._ended(End.UNDECIDED, f"{found.sentence} The run that was to decide was made, and did not.")
+            end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
+            self._ended(end, f"{found.sentence} The run that was to decide was made, and did not.")
             return
         try:
             advice = advised(asked, self.campaign)

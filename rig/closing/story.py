@@ -44,6 +44,7 @@ class Round:
     status: Status
     effects: tuple[str, ...]
     rivals: tuple[str, ...]
+    coordinate: str | None
     sentence: str
     fitted: int
     held_out: int
@@ -80,6 +81,7 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
         status=found.verdict.status,
         effects=found.verdict.effects,
         rivals=found.verdict.rivals,
+        coordinate=found.verdict.coordinate,
         sentence=found.verdict.sentence,
         fitted=len(found.fitted),
         held_out=len(found.held_out),

@@ -23,6 +23,7 @@ CATALOGUE: dict[str, str] = {
     "standstill": "rig.procedures.standstill:Standstill",
     "held-standstill": "rig.procedures.held_standstill:HeldStandstill",
     "stiffness-lock": "rig.procedures.stiffness_lock:StiffnessLock",
+    "compensated": "rig.procedures.compensated:Compensated",
 }
 
 

@@ -86,6 +86,15 @@ def test_a_run_that_did_not_decide_is_not_made_for_ever(tmp_path: Path) -> None:
     assert "did not" in closing.story.sentence
 
 
+def test_what_is_unknown_is_looked_for_along_the_coordinate_it_lives_in(tmp_path: Path) -> None:
+    unknown = saying(Status.UNKNOWN)
+    unknown = replace(unknown, verdict=replace(unknown.verdict, coordinate="load_angle"))
+    _, closing = loop(tmp_path, iter([unknown]), budget=1.0)
+    assert closing.story.rounds[0].asked is not None
+    assert closing.story.rounds[0].asked["procedure"] == "full_turn"
+    assert closing.story.end is End.BUDGET
+
+
 def test_what_is_unknown_with_nothing_to_ask_for_ends_as_unknown(tmp_path: Path) -> None:
     exit, closing = loop(tmp_path, iter([saying(Status.UNKNOWN)]))
     assert (exit, closing.story.end) == (Exit.INCOMPLETE, End.UNKNOWN)

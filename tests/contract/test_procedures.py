@@ -28,6 +28,7 @@ SHORTER: dict[str, dict[str, Any]] = {
     "constant-torque": {"revolutions": 10, "settle": 1.0},
     "full-turn": {"speed_rpm": 120.0},
     "speed-convergence": {"amplitude_deg": 360.0, "speeds_rpm": "60,40,30"},
+    "compensated": {"revolutions": 2, "speed_rpm": 60.0, "a": (2e-5, 1e-4), "b": (0.0, -1e-4)},
     "coast-down": {"repeats": 1, "speed_rpm": 200.0},
     "friction": {"speeds_rpm": "60,200", "seconds": 1.0, "breakaways": 1},
     "sentinel": {"revolutions": 10, "settle": 1.0},

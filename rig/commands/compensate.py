@@ -1,0 +1,123 @@
+"""hdrig compensate: the identified kinematic error fed forward, and how much better the load follows, measured."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rig.commands.options import bench_arguments, open_bench
+from rig.commands.person import Person
+from rig.core.errors import Exit, NotReady, UsageError
+from rig.interrupts import Interrupts
+from rig.runfile.manifest import told, utc_now, write_atomic
+from rig.session import Session
+
+if TYPE_CHECKING:
+    from rig.analysis.align import Alignment
+    from rig.closing.compensate import Compared
+    from rig.model.gearfile import GearFile
+
+SLOW = 9.6  # rpm, of the slow measurement      [ghorbel2001]
+REVOLUTIONS = 8  # each way: intervals from 14 turns
+TERMS = 15  # orders of the paper's series
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig compensate`."""
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--campaign", type=Path, metavar="FOLDER", help="identify the error from the runs in there")
+    source.add_argument("--gear", metavar="GEAR", help="gear file of hdrig identify")
+    parser.add_argument("--speed", type=float, nargs="+", default=[SLOW], metavar="RPM", help=f"default {SLOW}")
+    parser.add_argument("--revolutions", type=int, default=REVOLUTIONS, metavar="N", help="of the motor, each way")
+    bench_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Gear, then the runs, then compensation.json and compensation.html beside them."""
+    from rig.closing.compensate import compensate
+    from rig.report.closing.compensation import write
+
+    bench, clock = open_bench(args)
+    gear = _gear(args)
+    folder = args.out / f"{utc_now()[:10]}-{utc_now()[11:13]}{utc_now()[14:16]}{utc_now()[17:19]}-compensation"
+    with told(NotReady, f"{folder} cannot be made"):
+        folder.mkdir(parents=True)
+    if bench.simulated:
+        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
+    from rig.runfile.folder import create_in
+
+    with (
+        Interrupts() as interrupts,
+        Session(
+            bench, clock, folder, interrupts, args.note, Person(interrupts), create=create_in, checks="checks"
+        ) as session,
+    ):
+        found, where = compensate(session, gear, args.speed, args.revolutions, say)
+    with told(NotReady, f"{folder} cannot be written"):
+        text = json.dumps(document(found, where, gear, bench.simulated), ensure_ascii=False, indent=1)
+        write_atomic(folder / "compensation.json", text.encode() + b"\n")
+    from rig.closing.compensate import sentence
+
+    for one in found:
+        print(f"{'SIMULATED ' if bench.simulated else ''}{sentence(one)}")
+    print(f"report {write(folder)}")
+    return int(Exit.PASS if all(one.improvement > 1.0 for one in found) else Exit.OUT_OF_LIMITS)
+
+
+def say(text: str) -> None:
+    """Progress, on stderr."""
+    print(text, file=sys.stderr)
+
+
+def _gear(args: argparse.Namespace) -> GearFile:
+    """Raises UsageError: no gear file, or one without a kinematic error; DataError when nothing can be identified."""
+    from rig.model import gearfile
+
+    if args.gear:
+        found = gearfile.read(Path(args.gear))
+    else:
+        from rig.analysis.identify import fit, identified
+        from rig.commands.identify import made_with, open_runs
+
+        runs, recordings = open_runs([args.campaign])
+        about = runs[0].manifest.get("gear") or {}
+        found = identified(fit(recordings, TERMS, say), runs[0].manifest).gear_file(
+            str(about.get("output") or "flexspline"),
+            str(about.get("serial") or ""),
+            any(r.simulated for r in runs),
+            made_with(runs),
+        )
+    if not found.kinematic_error.series.a:
+        raise UsageError("the gear file holds no kinematic error; identify the gear from slow runs first")
+    return found
+
+
+def document(found: list[Compared], where: Alignment, gear: GearFile, simulated: bool) -> dict[str, Any]:
+    """compensation.json, schema hdrig.compensation/1; errors in arcsec, curves over the motor turn."""
+    arcsec = 206264.80624709636
+    return {
+        "schema": "hdrig.compensation/1",
+        "simulated": simulated,
+        "gear": {"serial": gear.serial, "made": gear.made},
+        "zero": {"shift_rad": where.shift, "fitted_rad": where.fitted, "u_fitted_rad": where.u_fitted,
+                 "sentence": where.sentence},
+        "speeds": [
+            {
+                "speed_rpm": one.speed_rpm,
+                "runs": list(one.runs),
+                "measured": {
+                    name: {"rms": asdict(f.rms), "peak_to_peak": asdict(f.peak_to_peak), "turns": f.turns,
+                           "forth_arcsec": (f.error[0] * arcsec).round(3).tolist(),
+                           "back_arcsec": (f.error[1] * arcsec).round(3).tolist()}
+                    for name, f in (("without", one.without), ("with", one.with_it))
+                },
+                "predicted": {"without": asdict(one.expected_without), "with": asdict(one.expected_with)},
+                "improvement": {"measured": one.improvement, "predicted": one.expected_improvement},
+            }
+            for one in found
+        ],
+    }  # fmt: skip

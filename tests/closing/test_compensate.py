@@ -1,0 +1,74 @@
+"""The twin's load follows better with its own kinematic error fed forward, by as much as the model says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.compensation import turned
+from rig.bench import read, twin_parameters
+from rig.closing.compensate import Compared, compensate
+from rig.core.errors import NotReady
+from rig.interrupts import Interrupts
+from rig.model.fourier import FourierSeries
+from rig.model.gearfile import GearFile, declared
+from rig.session import Session
+
+
+def gear() -> GearFile:
+    return declared(twin_parameters(read("twin").file).gear, simulated=True)
+
+
+def turned_gear(shift: float) -> GearFile:
+    """As it was identified before the encoder's zero moved by `shift` rad."""
+    known = gear()
+    series = turned(known.kinematic_error.series, -shift)
+    return replace(known, kinematic_error=replace(known.kinematic_error, series=series))
+
+
+def made(root: Path, known: GearFile, speed: float) -> tuple[Compared, float]:
+    with Session(read("twin"), "virtual", root, Interrupts()) as session:
+        found, where = compensate(session, known, [speed], 3, lambda text: None)
+    return found[0], where.shift
+
+
+def test_turning_a_series_moves_it_along_the_angle() -> None:
+    series, theta = FourierSeries((1.0, 0.3), (0.2, -0.5)), np.linspace(0, 6, 50)
+    assert turned(series, 0.7).value(theta) == pytest.approx(series.value(theta - 0.7))
+
+
+@pytest.fixture(scope="module")
+def slow(tmp_path_factory: pytest.TempPathFactory) -> tuple[Compared, float]:
+    return made(tmp_path_factory.mktemp("slow"), gear(), 9.6)
+
+
+@pytest.mark.slow
+def test_at_the_slow_speed_most_of_the_error_goes_and_the_model_says_how_much(slow: tuple[Compared, float]) -> None:
+    found, _ = slow
+    assert found.without.rms.value == pytest.approx(found.expected_without.rms, rel=0.03)
+    assert found.improvement > 8.0
+    assert found.improvement == pytest.approx(found.expected_improvement, rel=0.3)
+    assert found.with_it.rms.low < found.with_it.rms.value < found.with_it.rms.high
+
+
+@pytest.mark.slow
+def test_a_zero_of_the_encoder_that_has_moved_is_found_and_one_that_has_not_is_kept(
+    slow: tuple[Compared, float], tmp_path: Path
+) -> None:
+    # the bench declares the error by the shaft's angle; the encoder counts from where it was mounted
+    assert abs(slow[1]) > 1.0
+    found, shift = made(tmp_path, turned_gear(-slow[1]), 60.0)
+    assert shift == 0.0
+    assert found.improvement > 5.0
+
+
+@pytest.mark.slow
+def test_the_series_of_another_gear_is_refused_before_it_is_fed_forward(tmp_path: Path) -> None:
+    known = gear()
+    other = FourierSeries((4e-4, 0.0, 0.0), (0.0, 0.0, 1e-4))
+    strange = replace(known, kinematic_error=replace(known.kinematic_error, series=other))
+    with pytest.raises(NotReady, match="another gear"):
+        made(tmp_path, strange, 60.0)
