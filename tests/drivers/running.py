@@ -24,6 +24,7 @@ def run(
     procedure: Procedure = SHORT,
     watch: Callable[[Sample], None] = lambda sample: None,
     interrupts: Interrupts | None = None,
+    timing: LoopTiming | None = None,
 ) -> tuple[Ending, ListSink]:
     """`w` has `bench` and connected `instruments`."""
     sink, supervisor = ListSink(), Supervisor()
@@ -31,7 +32,7 @@ def run(
     supervisor.act(Act.CHECK)
     setting = w.bench.setting(lambda text: None)
     guard = Guard(w.bench.limits, procedure.envelope(setting), setting.ratio)
-    timing = LoopTiming(0.001, virtual=True)
+    timing = timing or LoopTiming(setting.period, virtual=True)
     setpoints = setpoints_of(w.bench.mode, setting)
     loop = Loop(w.instruments, supervisor, guard, sink, interrupts or Interrupts(), timing, watch, setpoints)
     return loop.run(procedure, setting), sink
