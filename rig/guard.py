@@ -79,7 +79,7 @@ class Guard:
             > lim.following + lim.following_time * abs(asked.omega_ref)  # NaN: no reference, nothing to follow
         ):
             return None
-        return next(trip for rule in RULES if (trip := rule(self, sample, asked)) is not None)
+        return next((trip for rule in RULES if (trip := rule(self, sample, asked)) is not None), None)
 
     def allowed(self, asked: Setpoint) -> Setpoint:
         """The setpoint clipped to what bench and procedure allow: the one place every command passes. What is no number
@@ -152,9 +152,12 @@ def travel(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
 
 
 def twist(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
-    """Motor and load must agree to within what the gear can twist."""
+    """Motor and load must agree to within what the gear can twist; when one reading is older than the other, as after a
+    stall of the host, by what the motor turns in that time more. How old it may be is the business of `stale`.
+    """
     value = guard.twist_of(sample)
-    if guard.twist is None or abs(value) <= guard.twist:
+    apart = sample.age if sample.flags & (Flag.STALE_M | Flag.STALE_L) else 0.0
+    if guard.twist is None or abs(value) <= guard.twist + apart * abs(sample.omega_m) / guard.ratio:
         return None
     return Trip(
         "twist",
