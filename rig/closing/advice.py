@@ -25,7 +25,7 @@ TWICE: Final = 2  # every run: the floor is what two of a kind differ by
 OTHER_NAMES: Final = {"constant-speed": "constant-torque"}  # what other rigs call it
 OF_THE_RIG: Final = ("output_locked", "assembly", "note", "settle_s")  # conditions that are no wish of their own
 LOCK_STEPS: Final = (5.0, 20.0)  # N·m: nested amplitudes, one within what soft wind-up and gaps fill, one far beyond
-BRISK: Final = (3.0,)  # of the lock test's usual rate: 27 s to 20 N·m and back twice
+ONCE: Final = (1.0,)  # of the lock test's usual rate: it sticks and slips, and every stay is one reading
 ALONG: Final[Sequence[tuple[frozenset[str], str, Mapping[str, float | bool | str], str]]] = (
     (
         frozenset({"speed", "time", "temperature", "direction"}),
@@ -71,7 +71,7 @@ def sections(asked: NextRun) -> list[dict[str, Any]]:
     if odd:
         raise UsageError(f"the trace asks for {name} with {odd[0]} = {wanted[odd[0]]}, which {name} does not know")
     if name == "stiffness-lock" and "tau_max" not in wanted:
-        return [step | {"with": {"tau_max": tau, "cycles": 1, "rates": list(BRISK)} | wanted} for tau in LOCK_STEPS]
+        return [step | {"with": {"tau_max": tau, "cycles": 1, "rates": list(ONCE)} | wanted} for tau in LOCK_STEPS]
     return [step | {"with": wanted}]
 
 

@@ -14,6 +14,7 @@ from rig.analysis.tracing.recording import Recording
 from rig.model.effect import Array, Effect, Known, Shape
 
 Key = tuple[int, str]  # run, channel
+FEWEST = 12  # rows of a run in a channel: a brisk lock test that sticks and slips is two dozen readings, and good ones
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def equations(runs: Sequence[Recording], noise: Noise) -> Equations:
 
     def of(i: int) -> dict[Key, Rows]:
         made = {(i, c): rows(runs[i], c) for c in CHANNELS if is_measured(runs[i], c)}
-        return {key: r for key, r in made.items() if r.y.size > 30}
+        return {key: r for key, r in made.items() if r.y.size >= FEWEST}
 
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(of, range(len(runs))))
