@@ -18,6 +18,7 @@ OPERATIONAL = 0x05
 CANOPEN = "CANopen"
 MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
 NEVER = -1e9  # s, before any SYNC
+LATE_ANSWER = 0.002  # s before the newest SYNC: who answered then answered an older one, and was held up on the way
 OLDEST = 0.1  # s: a time stamp farther back is on another clock than ours
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
 GONE = (can.CanError, OSError)
@@ -27,7 +28,7 @@ class Frame(NamedTuple):
     """The newest frame of one identifier."""
 
     arrived: float  # s on the clock of the loop: by the adapter's time stamp, else when it was taken from the queue
-    latched: float  # s, when the last SYNC before it was sent
+    latched: float  # s, when the SYNC it answers was sent; of an answer held up on its way, when it passed on the bus
     data: bytes
     number: int  # frames of this identifier so far
 
@@ -171,8 +172,9 @@ class Bus:
         waited = self._stamps() - stamp
         if 0.0 < waited < OLDEST:
             now -= waited  # it lay in a queue for that long
+        latched = self.synced if self.synced - now < LATE_ANSWER else now
         last = self.frames.get(identifier)
-        self.frames[identifier] = Frame(now, self.synced, data, last.number + 1 if last else 1)
+        self.frames[identifier] = Frame(now, latched, data, last.number + 1 if last else 1)
         listener = self.listeners.get(identifier)
         if listener is not None:
             listener(data, now)

@@ -1,0 +1,76 @@
+"""Which SYNC a frame answers, by the adapter's time stamps where it has them."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import can
+import pytest
+
+from drivers.bus import Bus
+from tests.fakes import FakeClock
+
+EPOCH = 1.7e9  # s, what the adapter's time stamps begin at
+
+
+class Adapter:
+    """What waits is handed over at once."""
+
+    def __init__(self) -> None:
+        self.waiting: deque[can.Message] = deque()
+
+    def send(self, message: can.Message) -> None:
+        pass
+
+    def recv(self, timeout: float) -> can.Message | None:
+        return self.waiting.popleft() if self.waiting else None
+
+    def shutdown(self) -> None:
+        pass
+
+
+@pytest.fixture
+def made() -> tuple[Bus, Adapter, FakeClock]:
+    clock, adapter = FakeClock(), Adapter()
+    bus = Bus("rig", "", "", clock, {}, lambda **_: adapter, lambda: EPOCH + clock.t)
+    bus.open()
+    return bus, adapter, clock
+
+
+def answer(adapter: Adapter, stamp: float) -> None:
+    adapter.waiting.append(can.Message(arbitration_id=0x181, data=b"\0" * 5, timestamp=stamp, is_extended_id=False))
+
+
+def test_an_answer_belongs_to_the_sync_before_it(made: tuple[Bus, Any, FakeClock]):
+    bus, adapter, clock = made
+    clock.t = 1.0
+    bus.sync()
+    clock.t = 1.0006
+    answer(adapter, EPOCH + 1.0002)
+    bus.drain()
+    assert bus.frames[0x181].latched == 1.0
+    assert bus.frames[0x181].arrived == pytest.approx(1.0002, abs=1e-6)
+
+
+def test_an_answer_held_up_on_its_way_does_not_pass_for_one_to_the_sync_that_came_after(made):
+    bus, adapter, clock = made
+    clock.t = 1.0
+    bus.sync()
+    clock.t = 1.022  # both sides stalled
+    bus.sync()
+    answer(adapter, EPOCH + 1.0004)
+    bus.drain()
+    assert bus.frames[0x181].latched == pytest.approx(1.0004, abs=1e-6)
+
+
+@pytest.mark.parametrize("stamp", [0.0, 12.5, EPOCH + 5000.0])
+def test_time_stamps_of_another_clock_are_not_looked_at(made, stamp: float):
+    bus, adapter, clock = made
+    clock.t = 1.0
+    bus.sync()
+    clock.t = 1.0006
+    answer(adapter, stamp)
+    bus.drain()
+    assert bus.frames[0x181].latched == 1.0
+    assert bus.frames[0x181].arrived == 1.0006
