@@ -7,7 +7,8 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
-tenth of a millisecond stands above the noise of L. c_0 and the torque sensor's zero z belong to the run. B_ml shows in
+tenth of a millisecond stands above the noise of L. The torque sensor's zero z wanders from run to run, and c_0 may: how
+far is read from repeats. B_ml shows in
 A only when the torque sensor sits behind the mesh's own drag; it is known to be small. Without a torque sensor T comes
 from L with what is declared, and L is no equation any more.
 """
@@ -35,6 +36,7 @@ BASELINE: Final = (
     "damping",
     "damping_2",
     "mesh",
+    "c_0",
     "J_m",
     "B_m",
     "tau_c",
@@ -112,7 +114,7 @@ def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
     y = f(s.theta_m / s.ratio - s.theta_l)
     columns = dict(zip(SERIES, f(series(s.theta_m)).T, strict=True))
     columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "damping_2": f(s.tau_l, 2)}
-    columns |= {"mesh": f(s.theta_m, 1)}
+    columns |= {"mesh": f(s.theta_m, 1), "c_0": np.ones_like(y)}
     return y, columns
 
 

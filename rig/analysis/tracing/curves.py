@@ -45,7 +45,7 @@ def _runs(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) 
     for key in (k for k in before if k[1] == "A"):
         run, r = p.eq.runs[key[0]], p.eq.rows[key]
         thin = slice(None, None, max(1, r.y.size // SHOWN))
-        measured = p.eq.bare(key, r.y) * ARCSEC
+        measured = (r.y - r.y.mean()) * ARCSEC
         torque = np.concatenate([q.torque[run.smoother.centres(q.t.size)] for q in run.pieces])[r.keep]
         name = f"loop.{run.name}" if run.locked else f"run.{run.name}"
         first = {"windup_arcsec": measured, "torque_Nm": torque} if run.locked else {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -54,12 +55,12 @@ class Term:
 
 @dataclass(frozen=True)
 class Equations:
-    """`rows` of every run and channel as they are; `local` are columns (n, q), orthonormal, each run has to itself."""
+    """`rows` of every run and channel as they are; `own` are columns (n, q) each run has to itself."""
 
     runs: tuple[Recording, ...]
     rows: dict[Key, Rows]
     noise: Noise
-    local: dict[Key, Array] = field(default_factory=dict)
+    own: dict[Key, Array] = field(default_factory=dict)
     noisy: dict[int, Recording] = field(default_factory=dict)  # a few runs with their own sensor noise once more
     stands_for: dict[Key, float] = field(default_factory=dict)  # rows all fitted runs have like it, over its own
 
@@ -67,11 +68,22 @@ class Equations:
         """Keys of those runs, in order."""
         return [(i, c) for i in runs for c in CHANNELS if (i, c) in self.rows]
 
+    @cached_property
+    def local(self) -> dict[Key, Array]:
+        """`own` without the run's offset, orthonormal (n, q)."""
+        return {key: orthonormal(self.without_offset(key, x)) for key, x in self.own.items()}
+
+    def without_offset(self, key: Key, x: Array) -> Array:
+        """`x` (n,) or (n, k) with as much of its mean gone as the run's offset is its own; all of it in A of a locked
+        run, whose clamp turns the output a little."""
+        free = key[1] == "A" and self.runs[key[0]].locked
+        return np.asarray(x - (1.0 if free else self.noise.pull(key[1], x.shape[0])) * x.mean(0))
+
     def bare(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) without what the run has to itself."""
-        x = x - self.noise.pull(key[1], x.shape[0]) * x.mean(0)
-        own = self.local.get(key)
-        return x if own is None else np.asarray(x - own @ (own.T @ x))
+        x = self.without_offset(key, x)
+        local = self.local.get(key)
+        return x if local is None else np.asarray(x - local @ (local.T @ x))
 
     def kept(self, run: int) -> dict[str, Rows]:
         """Rows of a run by channel."""
@@ -98,6 +110,12 @@ class Equations:
         """With what is known of the gear by now."""
         noisy = {i: run.knowing(known) for i, run in self.noisy.items()}
         return replace(self, runs=tuple(run.knowing(known) for run in self.runs), noisy=noisy)
+
+
+def orthonormal(x: Array) -> Array:
+    """An orthonormal basis (n, q) of the columns of `x`."""
+    q, r = np.linalg.qr(x)
+    return np.asarray(q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()])
 
 
 def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.equations import Equations, Key, orthonormal
 from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STEP, STEP_AGAIN, STEP_ALIKE
 from rig.model.effect import Array, Parameter, parameter
 
@@ -215,18 +215,12 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
 
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:
     """Share of the excess over the floor that columns of their own take, in the blocks of `e` that have some."""
-    own = orthonormal(eq, [columns])
+    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items()}
     keys = [key for key in own if key in e]
     excess = sum(float(e[k] @ e[k]) - e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
     return sum(float(np.sum((own[k].T @ e[k]) ** 2)) for k in keys) / max(excess, 1e-300)
 
 
-def orthonormal(eq: Equations, made: Sequence[Mapping[Key, Array]]) -> dict[Key, Array]:
-    """Local columns of all kinds together, without the run's offset, orthonormal (n, q)."""
-    out = {}
-    for key in {k for m in made for k in m}:
-        x = np.hstack([m[key] for m in made if key in m])
-        x = x - eq.noise.pull(key[1], x.shape[0]) * x.mean(0)
-        q, r = np.linalg.qr(x)
-        out[key] = q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()]
-    return out
+def joined(made: Sequence[Mapping[Key, Array]]) -> dict[Key, Array]:
+    """Columns of all kinds side by side, (n, q)."""
+    return {key: np.hstack([m[key] for m in made if key in m]) for key in {k for m in made for k in m}}

@@ -12,9 +12,12 @@ import numpy.typing as npt
 from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import BASELINE, INDEX
 from rig.analysis.tracing.equations import Equations, Key, Term
-from rig.analysis.tracing.thresholds import LAG, MESH, SECOND
+from rig.analysis.tracing.thresholds import LAG, LATEST, MESH, SECOND
 from rig.model.effect import Array
 
+STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle
+BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
+PINNED = 1e6  # times what the data know of it
 PIECES = 4  # of a run and channel: the clusters of the sandwich, each many correlation times long
 
 
@@ -91,8 +94,9 @@ class Solution:
 
     @property
     def gain(self) -> float:
-        """How much of the weighted sum of squares of the responses the fit explains."""
-        return float(self.right @ self.x)
+        """How much of the weighted sum of squares of the responses the fit explains, less what its prior takes."""
+        gram = self.design.gram + np.diag(prior(self.design.size))
+        return float(2 * self.design.right @ self.x - self.x @ gram @ self.x)
 
     @property
     def values(self) -> dict[str, float]:
@@ -164,7 +168,7 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
     return gram, right
 
 
-def prior(size: int, stiffness: float = 7160.0) -> Array:
+def prior(size: int, stiffness: float = STIFFNESS) -> Array:
     """Information (size,) known beforehand: the three columns that may only be small."""
     out = np.zeros(size)
     out[INDEX["mesh"]] = (stiffness / MESH) ** 2
@@ -177,8 +181,9 @@ def without(s: Solution, terms: Sequence[int]) -> Solution:
     """The fit when those terms are not there: their coefficients are zero, the others find their best."""
     gone = np.concatenate([np.arange(s.design.size)[s.design.place(i)] for i in terms]) if terms else np.zeros(0, int)
     stay = np.setdiff1d(np.arange(s.design.size), gone)
+    gram = s.design.gram + np.diag(prior(s.design.size))
     x = np.zeros(s.design.size)
-    x[stay] = solve(s.gram[np.ix_(stay, stay)], s.right[stay])
+    x[stay], _, _ = bounded(gram[np.ix_(stay, stay)], s.design.right[stay])
     return Solution(x, s.gram, s.right, s.design, s.keys)
 
 
@@ -193,8 +198,26 @@ def solve(gram: Array, right: Array) -> Array:
 
 def fit(d: Design) -> Solution:
     """Fit all columns of the design to its blocks."""
-    gram = d.gram + np.diag(prior(d.size))
-    return Solution(solve(gram, d.right), gram, d.right, d, tuple(d.y))
+    x, gram, right = bounded(d.gram + np.diag(prior(d.size)), d.right)
+    return Solution(x, gram, right, d, tuple(d.y))
+
+
+def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
+    """Least squares whose baseline keeps to BOUNDS: coefficients, and normal equations that pin those at a bound.
+
+    Unbound, a drag of the mesh ten times any gear's would take the place of an encoder read late.
+    """
+    x = solve(gram, right)
+    for name, (low, high) in BOUNDS.items():
+        i = INDEX[name]
+        at = float(np.clip(x[i], low, high))
+        if at != x[i]:
+            pin = PINNED * max(gram[i, i], 1e-300)
+            gram, right = gram.copy(), right.copy()
+            gram[i, i] += pin
+            right[i] += pin * at
+            x = solve(gram, right)
+    return x, gram, right
 
 
 def covariance(s: Solution) -> Array:

@@ -19,19 +19,24 @@ from rig.analysis.tracing.floor import (
     scatter,
     strokes,
 )
+from rig.analysis.tracing.model import Solution
 from rig.analysis.tracing.thresholds import FLOOR_LEAST, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
+ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
+LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 STAYS = 0.1  # of the rows of a locked run: fewer are left where it was read stay by stay
 
 
 @dataclass(frozen=True)
 class Measured:
-    """The noise to weight with, and what it was measured on: RMS by run (a repeated one) and channel."""
+    """The noise to weight with, and what it was measured on: RMS by run (a repeated one) and channel. `white` is the
+    part that sensors make, in the few runs it is known of."""
 
     noise: Noise
     by_run: dict[Key, float]
+    white: dict[Key, float]
     how: dict[str, str]
 
 
@@ -45,8 +50,9 @@ def guess(eq: Equations) -> Noise:
     return Noise(sigma, dict.fromkeys(CHANNELS, 4.0), {"A": np.inf, "M": np.inf, "L": np.inf})
 
 
-def measure(eq: Equations, e: Mapping[Key, Array], among: Sequence[int]) -> Measured:
-    """Floor of every channel from the runs `among`; `e` are residuals of any model that repeats share."""
+def measure(solution: Solution, among: Sequence[int]) -> Measured:
+    """Floor of every channel from the runs `among`, from the residuals of a model that repeats share."""
+    eq, e = solution.design.eq, {key: solution.residual(key) for key in solution.keys}
     pairs = repeats(eq.runs, among)
     sigma, kappa, local = dict(eq.noise.sigma), dict(eq.noise.kappa), dict(eq.noise.local)
     by_run: dict[Key, float] = {}
@@ -67,7 +73,10 @@ def measure(eq: Equations, e: Mapping[Key, Array], among: Sequence[int]) -> Meas
         kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
         by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
         local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
-    return Measured(Noise(sigma, kappa, local), by_run, how)
+    local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
+    design = solution.design
+    white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
+    return Measured(Noise(sigma, kappa, local), by_run, white, how)
 
 
 def _alone(
@@ -90,6 +99,26 @@ def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: f
         return least
     excess = float(np.mean([s.offset**2 / 2 - variance / s.rows for s in found]))
     return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
+
+
+def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> float:
+    """How far c_0 of a run lies from the others' [rad], read from repeats; infinite where fewer than three show it.
+
+    Where both encoders are homed once and for all, runs at any speed and load share it, and what shifts it from one
+    speed to another is an effect.
+    """
+    gaps = [offset(s, a) - offset(s, b) for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys]
+    if len(gaps) < ENOUGH:
+        return np.inf
+    return max(float(np.sqrt(np.mean(np.square(gaps)) / 2)), least)
+
+
+def offset(s: Solution, run: int) -> float:
+    """What the baseline leaves in A of one run [rad] before any step of its own; repeats share what effects add."""
+    eq = s.design.eq
+    r, own = eq.rows[run, "A"], eq.own.get((run, "A"), np.zeros((eq.rows[run, "A"].y.size, 0)))
+    z = np.hstack([np.ones((r.y.size, 1)), own])
+    return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
 
 
 def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
@@ -133,8 +162,24 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     same = [
         v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure
     ]
-    pool = said or same
-    return float(np.sqrt(np.mean(np.square(pool)))) if pool else measured.noise.sigma[channel]
+    if said or same:
+        return float(np.sqrt(np.mean(np.square(said or same))))
+    return _elsewhere(measured, eq, key)
+
+
+def _elsewhere(measured: Measured, eq: Equations, key: Key) -> float:
+    """From runs of other procedures, with this one's share of sensor noise in the place of theirs: a file of a quarter
+    of the rate averages it less.
+    """
+    run, channel = key
+    own = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure]
+    compared = {eq.runs[i].procedure for i, c in measured.by_run if c == channel}
+    theirs = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure in compared]
+    usual = measured.noise.sigma[channel]
+    if not own or not theirs:
+        return usual
+    mine = float(np.mean(np.square(own)))
+    return max(usual**2 + mine - float(np.mean(np.square(theirs))), mine) ** 0.5
 
 
 def pairs_of(measured: Measured) -> int:

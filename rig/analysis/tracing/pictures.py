@@ -124,7 +124,7 @@ def close_up(p: Prepared, key: Key, before: Array, after: Array) -> dict[str, Ar
     start = np.floor((turns.min() + turns.max() - SHOWN_TURNS) / 2)  # at a whole turn: order 2 is then seen to repeat
     shown = (turns >= start) & (turns <= start + SHOWN_TURNS)
     unit = UNITS[key[1]]
-    measured = p.eq.bare(key, rows.y)
+    measured = rows.y - rows.y.mean()
     values = {"measured": measured, "before": measured - before, "after": measured - after}
     stem = f"close.{run.name}.{key[1]}"
     out = {f"{stem}.{name}": (v[stroke][shown]) * unit for name, v in values.items()}

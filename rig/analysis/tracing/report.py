@@ -35,13 +35,13 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
     empty = p.baseline
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
-    shares = {w.name: w.share for w in worths} | own_shares(p, s, after)
+    shares = {w.name: w.share for w in worths} | own_shares(p, s)
     ruling = decide(p, s, tuple(shares), before, after, floors, found)
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
-    words = p.own | (parameters.effects(s, p.split.fitted) if s.design.terms else {})
+    words = p.own.parameters | (parameters.effects(s, p.split.fitted) if s.design.terms else {})
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -89,16 +89,17 @@ WITHOUT = {
 }
 
 
-def own_shares(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> dict[str, float]:
-    """Share of the held-out excess that goes when every run gets its own phase or steps."""
-    if not p.own:
-        return {}
-    without = design(replace(s.design.eq, noisy={}, local={}), s.design.terms, p.court.runs)
-    bare = p.court.residuals(s, without)
-    keys = [k for k in after if k in p.eq.local]
-    before, n = p.court.excess(bare, keys)
-    left, _ = p.court.excess(after, keys)
-    return dict.fromkeys(p.own, float((before - left) / max(before - n, 0.02 * n)))
+def own_shares(p: Prepared, s: Solution) -> dict[str, float]:
+    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect."""
+    out = {}
+    after = p.court.residuals(s, unseen(s, p.court))
+    for name, mine in p.own.made.items():
+        others = replace(s.design.eq, noisy={}, own=p.own.without([name]).columns())
+        bare = p.court.residuals(s, design(others, s.design.terms, p.court.runs))
+        keys = [k for k in after if k in mine]
+        (before, n), (left, _) = p.court.excess(bare, keys), p.court.excess(after, keys)
+        out[name] = float((before - left) / max(before - n, 0.02 * n))
+    return out
 
 
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
@@ -116,7 +117,7 @@ def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     out = {}
     for c in CHANNELS:
         keys = [k for k in e if k[1] == c]
-        total = sum(float(np.sum((y := p.eq.bare(k, p.eq.rows[k].y)) @ y)) for k in keys)
+        total = sum(float(np.var(p.eq.rows[k].y) * p.eq.rows[k].y.size) for k in keys)
         left = sum(float(e[k] @ e[k]) - p.court.floors[k] ** 2 * e[k].size for k in keys)
         if total > 0:
             out[SENSORS[c][0]] = float(np.clip(left / total, 0.0, 1.0))

@@ -6,40 +6,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
-from rig.analysis.tracing.bank import fill, reach
+from rig.analysis.tracing.bank import Bank, fill, reach
 from rig.analysis.tracing.campaign import Campaign, read_campaign
 from rig.analysis.tracing.channels import known_of
 from rig.analysis.tracing.equations import Equations, Key, Noise, equations, spoiling
-from rig.analysis.tracing.floor import repeats
 from rig.analysis.tracing.holdout import Split, split
 from rig.analysis.tracing.judge import Court, convicted, court
-from rig.analysis.tracing.local import (
-    Vibration,
-    explained,
-    find_steps,
-    find_vibration,
-    lost_counts,
-    orthonormal,
-    step_columns,
-    vibration_columns,
-)
 from rig.analysis.tracing.model import Solution, design, fit
 from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
-from rig.analysis.tracing.report import report
+from rig.analysis.tracing.own import Own, find
+from rig.analysis.tracing.report import own_shares, report
 from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.search import Found, polished, search, still
-from rig.analysis.tracing.thresholds import OWN
+from rig.analysis.tracing.thresholds import NAMED
 from rig.core.errors import UsageError
-from rig.model.effect import Array, Parameter
+from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """The baseline fitted, the floor measured, nothing added yet. `bare` has no local columns, `eq` has those of the
-    effects in `own`, which every run shows in its own way."""
+    """The baseline fitted and the floor measured. `eq` has the columns of the effects in `own`, which every run shows
+    in its own way; `bare` has none."""
 
     campaign: Campaign
     split: Split
@@ -48,25 +36,26 @@ class Prepared:
     measured: Measured
     baseline: Solution
     court: Court
-    own: dict[str, tuple[Parameter, ...]]
-    line: Vibration | None  # a line at a fixed frequency that is no torque on the load
+    own: Own
 
 
 def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     """Trace the campaign in `folder`. Raises UsageError when it cannot be read or has too little to fit and test."""
     p = prepare(read_campaign(folder), hold_out)
-    keys = p.eq.of(p.split.fitted)
-    floors = {key: floor_of(p.measured, p.eq, key) for key in keys}
-    start = fit(design(p.eq, (), p.split.fitted))
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    start = fit(design(p.eq, (), runs))
     found = Found(start, ())
-    covered = reach([p.eq.runs[i] for i in p.split.fitted])
-    if not still(start, floors):
-        bank = fill(p.eq, list(CATALOGUE.values()), p.split.fitted, covered)
-        found = search(start.design, bank, p.split.fitted, keys, covered, floors)
+    if not still(start, _floors(p)):
+        bank = fill(p.eq, list(CATALOGUE.values()), runs, covered)
+        found = search(start.design, bank, runs, start.keys, covered, _floors(p))
+        p, found = _looked_again(p, found, bank, covered)
     solution, held, worths = convicted(found.solution, p.court)
     if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
-        solution = polished(solution, p.split.fitted, covered)
+        solution = polished(solution, runs, covered)
         solution, held, worths = convicted(solution, p.court)
+    p, solution = _own_convicted(p, solution)
+    solution, held, worths = convicted(solution, p.court)
     return report(p, found, solution, held, worths)
 
 
@@ -80,35 +69,53 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
         )
     eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
     s = fit(design(eq, (), parts.fitted))
-    measured = measure(eq, {key: s.residual(key) for key in s.keys}, parts.fitted)
+    measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
     if s.value("compliance") > 0:
         eq = eq.knowing(known_of(s.values))
-    local, own, line = _local(eq, parts)
-    with_own = replace(eq, local=local)
+    own = find(fit(design(eq, (), parts.fitted)), parts)
+    with_own = replace(eq, own=own.columns())
     s = fit(design(with_own, (), parts.fitted))
-    measured = measure(with_own, {key: s.residual(key) for key in s.keys}, parts.fitted)
-    eq, with_own = replace(eq, noise=measured.noise), replace(with_own, noise=measured.noise)
-    s = fit(design(eq, (), parts.fitted))
-    return Prepared(campaign, parts, eq, with_own, measured, s, court(with_own, measured, parts.held_out), own, line)
+    return _built(campaign, parts, eq, measure(s, parts.fitted), own)
 
 
-def _local(eq: Equations, parts: Split) -> tuple[dict[Key, Array], dict[str, tuple[Parameter, ...]], Vibration | None]:
-    """Columns each run has to itself, and the effects they stand for; found on fitted runs, given to all."""
-    s = fit(design(eq, (), parts.fitted))
-    e = {key: s.residual(key) for key in s.keys}
-    made: list[dict[Key, Array]] = []
-    own: dict[str, tuple[Parameter, ...]] = {}
-    line = find_vibration(eq, e)
-    if line is not None and line.of_the_load(1 / s.value("compliance") if s.value("compliance") > 0 else np.inf):
-        made.append(vibration_columns(eq, line.frequency_hz))
-        own["external_vibration"] = line.parameters()
-        line = None
-    if lost_counts(eq, find_steps(eq, e), repeats(eq.runs, parts.fitted)):
-        held = design(replace(eq, noisy={}), (), parts.held_out)
-        everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y})
-        columns = step_columns(eq, everywhere)
-        if explained(eq, e, columns) > OWN:
-            made.append(columns)
-            own["missed_counts"] = everywhere.parameters()
-    return orthonormal(eq, made), own, line
+def _built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured, own: Own) -> Prepared:
+    bare = replace(bare, noise=measured.noise, own={})
+    eq = replace(bare, own=own.columns())
+    baseline = fit(design(bare, (), parts.fitted))
+    return Prepared(campaign, parts, bare, eq, measured, baseline, court(eq, measured, parts.held_out), own)
+
+
+def _floors(p: Prepared) -> dict[Key, float]:
+    return {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
+
+
+def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
+    """What each run has to itself and the floor, looked for beside the effects that were found, and what they uncover.
+
+    A large effect in the model's want hides lost counts, looks like them, and makes repeats differ.
+    """
+    runs, s = p.split.fitted, found.solution
+    if not s.design.terms:
+        return p, found
+    eq = s.design.eq
+    free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
+    own = find(free, p.split)
+    with_own = fit(design(replace(eq, own=own.columns()), s.design.terms, runs))
+    again = _built(p.campaign, p.split, eq, measure(with_own, runs), own)
+    s = fit(design(again.eq, s.design.terms, runs))
+    more = search(s.design, bank, runs, s.keys, covered, _floors(again))
+    return again, Found(more.solution, found.ranking)
+
+
+def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
+    """Without effects of each run's own that take too little of the held-out excess to be named."""
+    shares = own_shares(p, s)
+    failing = [name for name, share in shares.items() if share < NAMED]
+    if not failing:
+        return p, s
+    left = p.own.without(failing)
+    again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
+    eq = replace(s.design.eq, own=left.columns())
+    again = replace(again, court=court(again.eq, again.measured, p.split.held_out))
+    return again, fit(design(eq, s.design.terms, p.split.fitted))

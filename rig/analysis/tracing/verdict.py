@@ -55,8 +55,8 @@ def decide(
     if names and done > MOSTLY and total < 2 * EXPLAINED:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
-    if p.line is not None:
-        where = [Home("time_periodic", "L", 1.0, frequency_hz=p.line.frequency_hz), *where]
+    if p.own.line is not None:
+        where = [Home("time_periodic", "L", 1.0, frequency_hz=p.own.line.frequency_hz), *where]
     best = where[0]
     sentence = (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "

@@ -9,37 +9,46 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
+LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the angle that is late
+
 
 class ChannelTimeSkew(Effect):
-    """The load angle read at t belongs to t − δ: it reads θ_l(t − δ) − θ_l(t) too much.
+    """An angle read at t belongs to t − δ: it reads θ(t − δ) − θ(t) too much.
 
-    From the reading θ: −[θ(t + δ) − θ(t)] = −δ·(ω + δ·α/2 + δ²·j/6) with speed, acceleration and jerk as read.
-    Other channels late by δ are this one early by δ, but for the torque, which is slow.
+    From the reading θ: −[θ(t + δ) − θ(t)] = −δ·(ω + δ·α/2 + δ²·j/6) with speed, acceleration and jerk as read; the
+    motor's jerk is left out, most of it is noise. In A a late motor angle is an early load angle; what tells them apart
+    is which inertia's torque comes late.
     """
 
     name: ClassVar[str] = "channel_time_skew"
     in_short: ClassVar[str] = "one channel read later than another"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("about",)  # s, the skew the expansion is made at
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "about")  # about: s, the skew the expansion is made at
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
     LARGEST: Final = 7e-3  # s, a quarter of a period at 36 Hz
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Expansion points."""
-        return tuple((step,) for step in self.STEPS)
+        return tuple((side, step) for side in (LOAD, MOTOR) for step in self.STEPS)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column; its coefficient is δ."""
-        delta = shape[0]
+        side, delta = shape
+        if side == MOTOR:
+            return {Port.READS_THETA_M: -(signals.omega_m + delta / 2 * signals.alpha_m)[:, None]}
         late = signals.omega_l + delta / 2 * signals.alpha_l + delta**2 / 6 * signals.jerk_l
         return {Port.READS_THETA_L: -late[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """δ of the load angle."""
+        """δ of the load angle, or of the motor angle."""
         along = np.zeros(fit.covariance.shape[0])
         along[0] = 1.0
-        return (parameter("skew_theta_l", fit.coefficients[0], fit.half_width(along), "s"),)
+        return (
+            parameter(
+                f"skew_theta_{'m' if fit.shape[0] == MOTOR else 'l'}", fit.coefficients[0], fit.half_width(along), "s"
+            ),
+        )
 
     def expands(self, shape: Shape) -> bool:
         """About the skew itself."""
@@ -47,4 +56,4 @@ class ChannelTimeSkew(Effect):
 
     def about(self, shape: Shape, coefficients: Array) -> Shape:
         """The skew as found, within a quarter of a period of what the low-pass lets through."""
-        return (float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST)),)
+        return (shape[0], float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST)))

@@ -20,7 +20,7 @@ class LostMotion(Effect):
     in_short: ClassVar[str] = "dead zone at zero torque (Oldham backlash)"
     source: ClassVar[str] = "harmonicdrive"
     shape_names: ClassVar[tuple[str, ...]] = ("epsilon",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    loose: ClassVar[tuple[bool, ...]] = (True,)
     WIDTHS: Final = (0.05, 0.15, 0.4)  # N·m: noise of a torque sensor to the least that counts as soft wind-up
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

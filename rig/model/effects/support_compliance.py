@@ -49,3 +49,7 @@ class SupportCompliance(Effect):
             parameter("frequency", fit.shape[0], fit.half_width(frequency), "Hz"),
             parameter("zeta", fit.shape[1], fit.half_width(zeta), "1"),
         )
+
+    def plausible(self, fit: Fit) -> bool:
+        """It gives way to a torque."""
+        return bool(fit.coefficients[0] > 0)
