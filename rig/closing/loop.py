@@ -41,7 +41,7 @@ class Closing:
         while self.story.end is End.OPEN:
             exit = make_runs(self.session, self.campaign, self.journal, self.desk)
             if exit is not Exit.PASS:
-                return self._ended(End.STOPPED, "A run came to no end; --resume goes on with it.")
+                return self.ended(End.STOPPED, "A run came to no end; --resume goes on with it.")
             self._round()
         return self.story
 
@@ -53,10 +53,10 @@ class Closing:
         self.desk.say(words(found))
         if self.session.interrupts.count:
             self._with(found)
-            self._ended(End.STOPPED, "Stopped by the operator; --resume goes on with it.")
+            self.ended(End.STOPPED, "Stopped by the operator; --resume goes on with it.")
         elif found.status in SETTLED:
             self._with(found)
-            self._ended(SETTLED[found.status], found.sentence)
+            self.ended(SETTLED[found.status], found.sentence)
         else:
             self._advise(found)
 
@@ -67,19 +67,19 @@ class Closing:
         if asked is None:
             self._with(found)
             end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
-            self._ended(end, f"{found.sentence} No run is known that would say more.")
+            self.ended(end, f"{found.sentence} No run is known that would say more.")
             return
         found = replace(found, asked=asdict(asked))
         if same(asked, before):
             self._with(found)
             end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
-            self._ended(end, f"{found.sentence} The run that was to decide was made, and did not.")
+            self.ended(end, f"{found.sentence} The run that was to decide was made, and did not.")
             return
         try:
             advice = advised(asked, self.campaign)
         except (UsageError, NotReady) as error:
             self._with(replace(found, refused=str(error)))
-            self._ended(End.UNDECIDED, f"{found.sentence} The run that would decide cannot be made: {error}.")
+            self.ended(End.UNDECIDED, f"{found.sentence} The run that would decide cannot be made: {error}.")
             return
         self._take(replace(found, plan=advice.text, words=advice.words), advice)
 
@@ -88,7 +88,7 @@ class Closing:
         if advice.rig_time / 60 > left:
             why = f"it takes {advice.rig_time / 60:.1f} min of rig time, {max(left, 0.0):.1f} min are left"
             self._with(replace(found, plan="", refused=why))
-            self._ended(End.BUDGET, f"{found.sentence} The run that would decide was not made: {why}.")
+            self.ended(End.BUDGET, f"{found.sentence} The run that would decide was not made: {why}.")
             return
         assert found.asked is not None
         self._with(found)
@@ -99,7 +99,8 @@ class Closing:
         self.story = replace(self.story, rounds=(*self.story.rounds, found))
         write_story(self.journal.folder, self.story)
 
-    def _ended(self, end: End, sentence: str) -> Story:
+    def ended(self, end: End, sentence: str) -> Story:
+        """The loop has come to that end; written down."""
         self.story = replace(self.story, end=end, sentence=sentence)
         write_story(self.journal.folder, self.story)
         return self.story

@@ -28,6 +28,7 @@ def conduct(closing: Closing) -> Exit:
         exit, sentence = error.exit, str(error)
         status = "stopped" if session.interrupts.count else "failed"
         closing.desk.say(sentence)
+        closing.ended(End.STOPPED, sentence)
     finally:
         _close(journal, status, sentence)
     return exit

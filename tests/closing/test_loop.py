@@ -19,7 +19,7 @@ from rig.closing.grow import regrown
 from rig.closing.loop import Closing
 from rig.closing.run import conduct
 from rig.closing.story import End, Story, read_story
-from rig.core.errors import Exit
+from rig.core.errors import Exit, UsageError
 from rig.interrupts import Interrupts
 from rig.report.closing.page import write
 from tests.campaign.rigs import Quiet
@@ -98,6 +98,18 @@ def test_what_is_unknown_is_looked_for_along_the_coordinate_it_lives_in(tmp_path
 def test_what_is_unknown_with_nothing_to_ask_for_ends_as_unknown(tmp_path: Path) -> None:
     exit, closing = loop(tmp_path, iter([saying(Status.UNKNOWN)]))
     assert (exit, closing.story.end) == (Exit.INCOMPLETE, End.UNKNOWN)
+
+
+def test_a_trace_that_breaks_off_is_told_and_can_be_taken_up(tmp_path: Path) -> None:
+    def broken(folder: Path) -> Trace:
+        raise UsageError("no run to fit")
+
+    campaign = planned(parse_plan(PLAN, "small.toml"), read("twin"), 1)
+    journal = new_journal(tmp_path, campaign, "virtual", [])
+    exit, closing = go(campaign, journal, Story(journal.folder.name, True, 60.0), broken)
+    assert (exit, closing.story.end) == (Exit.USAGE, End.STOPPED)
+    assert read_story(journal.folder).sentence == "no run to fit"
+    assert runs(journal) == ["standstill done"]
 
 
 def test_a_run_that_cannot_be_made_is_refused_in_words(tmp_path: Path) -> None:
