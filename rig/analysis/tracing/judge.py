@@ -11,7 +11,7 @@ from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
 from rig.analysis.tracing.search import reduced
-from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST
+from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST, UNREAL
 from rig.model.effect import Array
 
 
@@ -54,7 +54,7 @@ class Worth:
     @property
     def named(self) -> bool:
         """Whether it may be named."""
-        real = self.size > SMALLEST and self.true > REAL
+        real = self.size > SMALLEST and REAL < self.true < UNREAL
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
 

@@ -31,6 +31,7 @@ MOST: Final = 10  # terms: a rig with more effects than that is not explained by
 SMALLEST: Final = 0.35  # of the floor, RMS where it matters most: smaller ones move no error by 6 %
 QUIET: Final = 1.1  # RMS over floor: a floor from a dozen repeats is not known better
 REAL: Final = 0.6  # of its own sum of squares an effect must take away on unseen runs; 1 when it is what it says
+UNREAL: Final = 1.4  # the same from above: unseen runs want it a fifth larger than the seen ones did, so it is not that
 PLAIN_ENOUGH: Final = 0.9  # of the best coordinate's share: a simpler one that does nearly as well is said instead
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand

@@ -11,26 +11,32 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 
 class AngleDependentStiffness(Effect):
-    """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4: φ gains T/K·κ·cos …
+    """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4: the wind-up gains T·κ/K·cos …, the motor is resisted by ½·φ²·dK/dθ_m
 
-    The reaction ½·φ²·dK/dθ_m on the motor is left out: 0.01 N·m with κ = 5 % at 40 N·m.
+    That reaction, −½·T²·d(1/K)/dθ_m, is 0.01 N·m with κ = 5 % at 40 N·m. Where the angle at which the stiffness changes
+    is not that of the spring's own energy it is absent: the data choose.
     """
 
     name: ClassVar[str] = "angle_dependent_stiffness"
     in_short: ClassVar[str] = "stiffness modulated by angle"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("order",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the wave generator."""
-        return tuple((k,) for k in self.ORDERS)
+        return tuple((k, reaction) for k in self.ORDERS for reaction in (1.0, 0.0))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """T times cosine and sine."""
-        x = shape[0] * signals.theta_m
-        return {Port.WIND_UP: np.stack([np.cos(x), np.sin(x)], 1) * signals.torque[:, None]}
+        """T times cosine and sine, and what they do to the motor."""
+        k, reaction = shape
+        x, torque = k * signals.theta_m, signals.torque[:, None]
+        back = reaction * k / 2 * torque**2
+        return {
+            Port.WIND_UP: np.stack([np.cos(x), np.sin(x)], 1) * torque,
+            Port.MOTOR_TORQUE: np.stack([np.sin(x), -np.cos(x)], 1) * back,
+        }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Relative amplitude of the compliance, and phase."""
