@@ -13,7 +13,16 @@ from tests.blind.forms import EFFECTS, LIBRARY, OUTSIDE, Form, form_of, forms_of
 from tests.blind.plans import PLANS
 from tests.blind.residual import residuals, rms
 from tests.blind.sensors import draw_noise
-from tests.blind.strength import Stage, calibrate, excess_of, over_floor, shape_rng, short, size
+from tests.blind.strength import (
+    Stage,
+    calibrate,
+    excess_of,
+    over_floor,
+    over_floor_with_own_zeros,
+    shape_rng,
+    short,
+    size,
+)
 from tests.blind.taken import Taken
 
 Truth = dict[str, object]
@@ -165,7 +174,7 @@ def assemble(request: Request, stage: Stage, parts: list[Part], clean: list[Take
         parameters = part.form.build(builder, shape_rng(stage.seed, place), part.strength)
         described.append(part.described() | {"parameters": {k: float(v) for k, v in parameters.items()}})
     runs = clean if not parts else simulate(builder, stage.plan, stage.noise, stage.seed)
-    excess = over_floor(runs, clean)
+    excess = over_floor(runs, clean) | {"theta_l_own_zeros": over_floor_with_own_zeros(runs, clean)}
     floor = {channel: {name: rms(e) for name, e in by.items()} for channel, by in residuals(clean)[0].items()}
     inside = [d["effect"] for d in described if d["role"] == "main" and not d["coordinates"]]
     truth: Truth = {

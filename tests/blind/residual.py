@@ -188,5 +188,14 @@ def residuals(runs: list[Taken]) -> tuple[Residuals, Baseline]:
     return left_over(done, baseline), baseline
 
 
+def angle_with_own_zeros(runs: list[Taken], ratio: float = 50.0) -> dict[str, np.ndarray]:
+    """The angle's residual by run name when every run has an encoder zero of its own, as after homing."""
+    done = usable(runs)
+    columns = [centred(angle_columns(s)) for s in done]
+    values = [centred(angle_value(s, ratio)) for s in done]
+    beta = fit(columns, values)
+    return {s.name: y - x @ beta for s, x, y in zip(done, columns, values, strict=True)}
+
+
 def rms(x: np.ndarray) -> float:
     return float(np.sqrt(np.mean(x**2)))

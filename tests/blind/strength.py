@@ -12,7 +12,7 @@ from tests.blind.builder import Builder
 from tests.blind.campaign import simulate
 from tests.blind.forms import Form
 from tests.blind.plans import Plan
-from tests.blind.residual import AROUND, AT_REST, residuals, rms
+from tests.blind.residual import AROUND, AT_REST, angle_with_own_zeros, residuals, rms
 from tests.blind.rig import Rig
 from tests.blind.sensors import Noise
 from tests.blind.taken import Taken
@@ -41,6 +41,12 @@ def over_floor(runs: list[Taken], clean: list[Taken]) -> Excess:
         out[channel] = float(np.sqrt(np.mean(squares)))
         out[f"{channel}_worst_run"] = float(np.sqrt(np.max(squares)))
     return out | {"reversal": at_reversals(runs, clean)}
+
+
+def over_floor_with_own_zeros(runs: list[Taken], clean: list[Taken]) -> float:
+    """The angle's ratio for an analysis that gives every run its own zero: what a delay shows to it is far less."""
+    seen, floor = angle_with_own_zeros(runs), angle_with_own_zeros(clean)
+    return float(np.sqrt(np.mean([(rms(seen[name]) / rms(e)) ** 2 for name, e in floor.items()])))
 
 
 def at_reversals(runs: list[Taken], clean: list[Taken]) -> float:
