@@ -78,6 +78,11 @@ class Signals:
         """dθ̃_p/dθ_m along the run, as far as it is known, (n,)."""
         return self.gear.kinematic_error.slope(self.theta_m)
 
+    @cached_property
+    def series_value(self) -> Array:
+        """θ̃_p along the run, as far as it is known, (n,)."""
+        return self.gear.kinematic_error.value(self.theta_m)
+
     def part(self, rows: slice) -> Signals:
         """Some rows of it."""
         arrays: dict[str, Any] = {

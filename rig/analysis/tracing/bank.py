@@ -59,35 +59,49 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     """Columns of all shapes of `effects` for those runs."""
     terms = tuple(Term(effect, shape) for effect in effects for shape in effect.shapes(covered))
 
-    def of(run: int) -> tuple[int, list[dict[str, Single]], list[dict[str, Single]]]:
-        made = [eq.term(run, term) for term in terms]
-        bare = [{c: eq.bare((run, c), m).astype(np.float32) for c, m in cols.items()} for cols in made]
-        if run not in eq.noisy:
-            return run, bare, []
-        spoilt = [eq.spoilt_term(run, term, clean) for term, clean in zip(terms, made, strict=True)]
-        return run, bare, [{c: m.astype(np.float32) for c, m in cols.items()} for cols in spoilt]
+    def of(run: int) -> _Filled:
+        return _filled(eq, run, terms)
 
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(of, runs))
-    places = {c: _places(c, [made for _, made, _ in found], len(terms)) for c in CHANNELS}
-    return Bank(
-        terms,
-        {key: m for run, made, _ in found for key, m in _joined(run, made).items()},
-        places,
-        {key: m for run, _, spoilt in found if spoilt for key, m in _joined(run, spoilt).items()},
-    )
+    places = {c: _places(c, [f.widths for f in found], len(terms)) for c in CHANNELS}
+    columns = {key: m for f in found for key, m in f.columns.items()}
+    return Bank(terms, columns, places, {key: m for f in found for key, m in f.spoilt.items()})
+
+
+@dataclass(frozen=True)
+class _Filled:
+    """One run's part of the bank; columns of each term by channel."""
+
+    columns: dict[Key, Single]
+    spoilt: dict[Key, Single]
+    widths: list[dict[str, int]]
+
+
+def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> _Filled:
+    """Term by term, so that no run's columns are held in double precision together."""
+    bare: list[dict[str, Single]] = []
+    spoilt: list[dict[str, Single]] = []
+    for term in terms:
+        made = eq.term(run, term)
+        bare.append({c: eq.bare((run, c), m).astype(np.float32) for c, m in made.items()})
+        if run in eq.noisy:
+            shaken = eq.spoilt_term(run, term, made)
+            spoilt.append({c: m.astype(np.float32) for c, m in shaken.items()})
+    widths = [{c: m.shape[1] for c, m in columns.items()} for columns in bare]
+    return _Filled(_joined(run, bare), _joined(run, spoilt), widths)
 
 
 def _joined(run: int, made: Sequence[dict[str, Single]]) -> dict[Key, Single]:
     return {(run, c): np.hstack([m[c] for m in made if c in m]) for c in CHANNELS if any(c in m for m in made)}
 
 
-def _places(channel: str, found: Sequence[list[dict[str, Single]]], terms: int) -> tuple[slice | None, ...]:
-    for made in found:
-        if any(channel in m for m in made):
+def _places(channel: str, found: Sequence[list[dict[str, int]]], terms: int) -> tuple[slice | None, ...]:
+    for widths in found:
+        if any(channel in w for w in widths):
             edges, out = 0, []
-            for m in made:
-                wide = m[channel].shape[1] if channel in m else 0
+            for w in widths:
+                wide = w.get(channel, 0)
                 out.append(slice(edges, edges + wide) if wide else None)
                 edges += wide
             return tuple(out)

@@ -44,10 +44,10 @@ def own(bank: Bank, d: Design, keys: Sequence[Key]) -> Own:
 def _own(bank: Bank, blocks: Mapping[Key, tuple[Single, float]]) -> tuple[Array, ...]:
     out: list[Array] = [np.zeros((0, 0))] * len(bank.terms)
     for (_, channel), (columns, w) in blocks.items():
-        c = columns.astype(np.float64)
         for i, place in enumerate(bank.places[channel]):
             if place is not None:
-                part = w * (c[:, place].T @ c[:, place])
+                c = columns[:, place].astype(np.float64)
+                part = w * (c.T @ c)
                 out[i] = out[i] + part if out[i].size else part
     return tuple(out)
 
@@ -60,10 +60,10 @@ def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, A
             continue
         for part in (p for p in d.parts[key] if p.at[0] >= first):
             w = d.eq.noise.weight(key[1])
-            out[key[1]][part.at] += w * (part.z.T @ bank.columns[key].astype(np.float64))
+            out[key[1]][part.at] += w * (part.z.T.astype(np.float32) @ bank.columns[key])
             if key in bank.spoilt and part.spoilt is not None:
                 w *= d.eq.stands_for[key]
-                out[key[1]][part.at] -= w * (part.spoilt.T @ bank.spoilt[key].astype(np.float64))
+                out[key[1]][part.at] -= w * (part.spoilt.T.astype(np.float32) @ bank.spoilt[key])
     return {c: m[first:] for c, m in out.items()}
 
 

@@ -81,14 +81,20 @@ class Search:
 
 
 def search(
-    d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach, floors: Mapping[Key, float]
+    d: Design,
+    bank: Bank,
+    runs: Sequence[int],
+    keys: Sequence[Key],
+    covered: Reach,
+    floors: Mapping[Key, float],
+    ranking: tuple[Scored, ...] = (),
 ) -> Found:
-    """Add the best term again and again, then drop and swap what the later ones made needless."""
+    """Add the best term again and again, then drop what the later ones made needless. `ranking` is that of the first
+    round when this is no first search."""
     s = fit(d)
     fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered)
     u = cross(bank, d, keys, 0)
-    ranking: tuple[Scored, ...] = ()
-    for _ in range(MOST):
+    for _ in range(MOST - len(d.terms)):
         if still(s, floors):
             break
         ranked = fixed.ranked(s, u)

@@ -104,8 +104,7 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     with_own = fit(design(replace(eq, own=own.columns()), s.design.terms, runs))
     again = _built(p.campaign, p.split, eq, measure(with_own, runs), own)
     s = fit(design(again.eq, s.design.terms, runs))
-    more = search(s.design, bank, runs, s.keys, covered, _floors(again))
-    return again, Found(more.solution, found.ranking)
+    return again, search(s.design, bank, runs, s.keys, covered, _floors(again), found.ranking)
 
 
 def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:

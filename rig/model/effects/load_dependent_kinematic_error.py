@@ -39,10 +39,9 @@ class LoadDependentKinematicError(Effect):
         of, t_c, lag = shape
         torque = np.abs(signals.torque) if of == SIZE else signals.torque
         decay = np.exp(-np.abs(lagged(torque, lag, signals.dt)) / t_c)
-        series = signals.gear.kinematic_error
         return {
-            Port.KINEMATIC_ERROR: (series.value(signals.theta_m) * decay)[:, None],
-            Port.LEVER: (series.slope(signals.theta_m) * decay)[:, None],
+            Port.KINEMATIC_ERROR: (signals.series_value * decay)[:, None],
+            Port.LEVER: (signals.series_slope * decay)[:, None],
         }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
