@@ -98,7 +98,7 @@ def own_shares(p: Prepared, s: Solution) -> dict[str, float]:
         bare = p.court.residuals(s, design(others, s.design.terms, p.court.runs))
         keys = [k for k in after if k in mine]
         (before, n), (left, _) = p.court.excess(bare, keys), p.court.excess(after, keys)
-        out[name] = float((before - left) / max(before - n, 0.02 * n))
+        out[name] = float((before - left) / max(before - n, 0.02 * n)) if keys else 0.0  # no held-out run has any
     return out
 
 
