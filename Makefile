@@ -5,22 +5,25 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner blind lint install lock clean
+.PHONY: demo test inner long blind lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
 
 test: .venv/ready-dev lint
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not long"
 
 inner: .venv/ready-dev  ## the fast part of the tests, under 60 s
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(BIN)/python -m pytest -n 2 -m "not slow and not long"
 
 blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to tests/blind/TABLE.md
 	rm -rf build/blind
 	$(BIN)/python -m tests.blind.generate --suite 30 --seed $(or $(SEED),1) --jobs 2 --out build/blind
 	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table tests/blind/TABLE.md
 	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
+
+long: .venv/ready-dev  ## real time over the wire, whole loops: a quarter of an hour on a quiet machine
+	$(BIN)/python -m pytest -m long
 
 lint: .venv/ready-dev
 	$(BIN)/ruff check .

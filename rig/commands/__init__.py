@@ -24,7 +24,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "export": ("rig.commands.export", "write a run as CSV, MDF4, MCAP or HDF5"),
     "identify": ("rig.commands.identify", "all runs of a gear to its parameters with intervals, and a gear file"),
     "simulate": ("rig.commands.simulate", "the kinematic error at speed that the model predicts for a gear"),
-    "reproduce": ("rig.commands.reproduce", "the paper's figures and tables from a campaign, its claims ruled by the data"),
+    "reproduce": ("rig.commands.reproduce", "the paper's figures and tables, its claims ruled by the data"),
     "close-loop": ("rig.commands.close_loop", "campaign, trace, the run it asks for, until nothing is missing"),
     "compensate": ("rig.commands.compensate", "the kinematic error fed forward, and how much better the load follows"),
 }

@@ -45,6 +45,7 @@ def slow(tmp_path_factory: pytest.TempPathFactory) -> tuple[Compared, float]:
     return made(tmp_path_factory.mktemp("slow"), gear(), 9.6)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_at_the_slow_speed_most_of_the_error_goes_and_the_model_says_how_much(slow: tuple[Compared, float]) -> None:
     found, _ = slow
@@ -54,6 +55,7 @@ def test_at_the_slow_speed_most_of_the_error_goes_and_the_model_says_how_much(sl
     assert found.with_it.rms.low < found.with_it.rms.value < found.with_it.rms.high
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_zero_of_the_encoder_that_has_moved_is_found_and_one_that_has_not_is_kept(
     slow: tuple[Compared, float], tmp_path: Path
@@ -65,6 +67,7 @@ def test_a_zero_of_the_encoder_that_has_moved_is_found_and_one_that_has_not_is_k
     assert found.improvement > 5.0
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_series_of_another_gear_is_refused_before_it_is_fed_forward(tmp_path: Path) -> None:
     known = gear()

@@ -24,7 +24,7 @@ from rig.interrupts import Interrupts
 from rig.report.closing.page import write
 from tests.campaign.rigs import Quiet
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.long]
 PLAN = """schema = "hdrig.plan/1"
 name = "small"
 [[step]]

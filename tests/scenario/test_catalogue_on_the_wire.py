@@ -15,7 +15,7 @@ from tests.contract.test_procedures import made
 from tests.drivers.running import run
 from tests.drivers.virtual import Driven, Wired, odriven, wired
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.long]
 SHORTEST = {"speed-convergence": SpeedConvergence(amplitude_deg=360.0, speeds_rpm="120,80,60", least=4.0)}
 STALE = Flag.STALE_M | Flag.STALE_L | Flag.STALE_TAU
 AGAIN = [name for name in CATALOGUE if name in ("sign-and-scale", "stiffness-lock", "coast-down")]

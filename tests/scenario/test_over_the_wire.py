@@ -22,7 +22,11 @@ import pytest
 
 from rig.bench import BENCHES
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("real time")]  # one at a time: they share two processors
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.long,
+    pytest.mark.xdist_group("real time"),
+]  # one at a time: they share two processors
 HDRIG = [sys.executable, "-m", "rig.cli"]
 STALLED = re.compile(
     r"no new .* sample for|did not answer|does not answer|sent no PDOs|did not become|watchdog|heartbeat"

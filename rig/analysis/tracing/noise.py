@@ -179,7 +179,7 @@ def _elsewhere(measured: Measured, eq: Equations, key: Key) -> float:
     if not own or not theirs:
         return usual
     mine = float(np.mean(np.square(own)))
-    return max(usual**2 + mine - float(np.mean(np.square(theirs))), mine) ** 0.5
+    return float(np.sqrt(max(usual**2 + mine - float(np.mean(np.square(theirs))), mine)))
 
 
 def pairs_of(measured: Measured) -> int:

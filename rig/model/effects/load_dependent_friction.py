@@ -38,9 +38,7 @@ class LoadDependentFriction(Effect):
         """μ_L, one or two."""
         names = ("mu_L_driving", "mu_L_driven") if fit.shape[0] else ("mu_L",)
         unit = np.eye(fit.covariance.shape[0])
-        return tuple(
-            parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "1") for i, name in enumerate(names)
-        )
+        return tuple(parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "1") for i, name in enumerate(names))
 
     def plausible(self, fit: Fit) -> bool:
         """Losses grow."""
