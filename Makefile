@@ -1,5 +1,6 @@
 # Two commands, each alone from a clean clone: `make demo` and `make test`. Both build .venv from the pinned lock files.
 PYTHON ?= python3
+UV ?= uv
 BIN := .venv/bin
 # Packages with compiled loops keep their cache beside the code; one BLAS thread: the matrices here are small.
 export OPENBLAS_NUM_THREADS := 1
@@ -47,8 +48,8 @@ install: .venv/ready
 	touch $@
 
 lock:  ## renew the pinned versions (needs uv)
-	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q pyproject.toml .lock/build.in -o .lock/run.txt
-	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q --extra dev pyproject.toml .lock/build.in -c .lock/run.txt -o .lock/test.txt
+	$(UV) pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q pyproject.toml .lock/build.in -o .lock/run.txt
+	$(UV) pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q --extra dev pyproject.toml .lock/build.in -c .lock/run.txt -o .lock/test.txt
 
 clean:
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
