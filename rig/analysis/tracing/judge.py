@@ -11,8 +11,10 @@ from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
 from rig.analysis.tracing.search import reduced
-from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST, UNREAL
+from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
 from rig.model.effect import Array
+
+FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,7 @@ class Court:
 
     runs: tuple[int, ...]
     floors: dict[Key, float]
+    seen: dict[Key, float]  # floors of the fitted blocks
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`."""
@@ -42,7 +45,8 @@ class Court:
 @dataclass(frozen=True)
 class Worth:
     """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
-    ratio that remains there. `true` is what it takes away over what it would if it were all real."""
+    ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
+    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes)."""
 
     name: str
     share: float
@@ -50,17 +54,21 @@ class Worth:
     left: float
     true: float
     ground: tuple[Key, ...]
+    unsteady: float = 0.0
 
     @property
     def named(self) -> bool:
         """Whether it may be named."""
-        real = self.size > SMALLEST and REAL < self.true < UNREAL
+        real = self.size > SMALLEST and REAL < self.true < UNREAL and self.unsteady < UNSTEADY
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
 
 def court(eq: Equations, measured: Measured, held_out: Sequence[int]) -> Court:
     """The held-out blocks, each with the floor of its condition."""
-    return Court(tuple(held_out), {key: floor_of(measured, eq, key) for key in eq.of(held_out)})
+    floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
+    held = set(eq.of(held_out))
+    seen = {key: floor for key, floor in floors.items() if key not in held}
+    return Court(tuple(held_out), {key: floors[key] for key in eq.of(held_out)}, seen)
 
 
 def unseen(s: Solution, at: Court) -> Design:
@@ -77,7 +85,8 @@ def worths(s: Solution, d: Design, at: Court) -> list[Worth]:
 def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: str) -> Worth:
     """One effect: the others are fitted again without it."""
     mine = [i for i, t in enumerate(d.terms) if t.name == name]
-    bare = at.residuals(without(s, mine), d)
+    rest = without(s, mine)
+    bare = at.residuals(rest, d)
     places = {int(d.place(i).start) for i in mine}
     size: dict[Key, float] = {}
     for key in d.y:
@@ -92,7 +101,27 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     after, _ = at.excess(whole, ground)
     share = (before - after) / max(before - n, 0.02 * n)
     own = sum(size[key] ** 2 * whole[key].size for key in ground)
-    return Worth(name, float(share), most, float(np.sqrt(after / n)), float((before - after) / own), ground)
+    true = float((before - after) / own)
+    unsteady = max(unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen))
+    return Worth(name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady)
+
+
+def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> float:
+    """How much an effect's size differs from run to run and channel to channel: RMS, relative, weighted by what it does
+    there, what noise makes of it taken off. `rest` is the fit without the effect.
+
+    A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks like
+    an effect has its size from a compromise between runs; a real one has the same in each.
+    """
+    spread, total = 0.0, 0.0
+    for key in d.y:
+        e = d.residual(key, s.x) / floors[key]
+        f = d.residual(key, rest.x) / floors[key] - e
+        own = float(f @ f)
+        if own > FAINT:
+            spread += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
+            total += own
+    return float(np.sqrt(max(spread, 0.0) / total)) if total else 0.0
 
 
 def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:

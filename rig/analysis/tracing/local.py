@@ -64,7 +64,7 @@ class Steps:
         )
 
 
-def _clock(eq: Equations, key: Key) -> Array:
+def clock(eq: Equations, key: Key) -> Array:
     """Time of each row, s."""
     run = eq.runs[key[0]]
     return np.asarray(np.concatenate([p.t[run.smoother.centres(p.t.size)] for p in run.pieces])[eq.rows[key].keep])
@@ -78,7 +78,7 @@ def find_vibration(eq: Equations, e: Mapping[Key, Array]) -> Vibration | None:
         return None
     top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
     grid = np.arange(LOWEST, 0.98 * top, 0.02)
-    heights = np.array([_heights(_clock(eq, k), e[k], grid) for k in keys])
+    heights = np.array([_heights(clock(eq, k), e[k], grid) for k in keys])
     speed = np.array([eq.runs[k[0]].turning for k in keys])
     hits = heights > LINE
     score = np.where(hits.mean(0) > LINE_RUNS, np.median(heights, axis=0), 0.0)
@@ -119,7 +119,7 @@ def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about
         fine = best + np.linspace(-half, half, 61)
         total = np.zeros(fine.size)
         for key in keys:
-            t = _clock(eq, key)
+            t = clock(eq, key)
             wave = np.exp(-2j * np.pi * np.multiply.outer(fine, t - t.mean()))
             total += np.abs(wave @ e[key]) ** 2 / e[key].size
         best = float(fine[int(np.argmax(total))])
@@ -131,7 +131,7 @@ def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict
     for channel in "AML":
         sizes = []
         for key in (k for k in e if k[1] == channel):
-            t = _clock(eq, key)
+            t = clock(eq, key)
             sizes.append(2 * abs(np.exp(-2j * np.pi * frequency * t) @ e[key]) / e[key].size)
         if sizes:
             sigma = 36.0 if not eq.runs else eq.runs[0].smoother.sigma_hz
@@ -145,7 +145,7 @@ def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
     """Cosine and sine in every block, (n, 2)."""
     out = {}
     for key in eq.rows:
-        x = 2 * np.pi * frequency * _clock(eq, key)
+        x = 2 * np.pi * frequency * clock(eq, key)
         out[key] = np.stack([np.cos(x), np.sin(x)], 1)
     return out
 

@@ -10,8 +10,8 @@ import numpy as np
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.floor import repeats
 from rig.analysis.tracing.holdout import Split
+from rig.analysis.tracing.interference import Interference, find_interference
 from rig.analysis.tracing.local import (
-    Vibration,
     explained,
     find_steps,
     find_vibration,
@@ -27,16 +27,16 @@ from rig.model.effect import Array, Parameter
 
 @dataclass(frozen=True)
 class Own:
-    """Columns (n, q) by effect and block, the effects' parameters, and a line at a fixed frequency that is no torque on
-    the load."""
+    """Columns (n, q) by effect and block, the effects' parameters, and a line beside the motion that is no effect of
+    the library."""
 
     made: dict[str, dict[Key, Array]]
     parameters: dict[str, tuple[Parameter, ...]]
-    line: Vibration | None
+    line: Interference | None
 
     def columns(self) -> dict[Key, Array]:
-        """Of all effects together."""
-        return joined(list(self.made.values()))
+        """Of all effects together, and of the line."""
+        return joined([*self.made.values(), *([self.line.columns] if self.line else [])])
 
     def without(self, names: Sequence[str]) -> Own:
         """The others."""
@@ -49,11 +49,14 @@ def find(s: Solution, parts: Split) -> Own:
     eq, e = s.design.eq, {key: s.residual(key) for key in s.keys}
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
-    line = find_vibration(eq, e)
-    if line is not None and line.of_the_load(1 / s.value("compliance") if s.value("compliance") > 0 else np.inf):
-        made["external_vibration"] = vibration_columns(eq, line.frequency_hz)
-        words["external_vibration"] = line.parameters()
-        line = None
+    shaken = find_vibration(eq, e)
+    line = None
+    if shaken is not None and shaken.of_the_load(1 / s.value("compliance") if s.value("compliance") > 0 else np.inf):
+        made["external_vibration"] = vibration_columns(eq, shaken.frequency_hz)
+        words["external_vibration"] = shaken.parameters()
+    else:
+        held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
+        line = find_interference(eq, e, {key: held.residual(key, s.x) for key in held.y})
     if lost_counts(eq, find_steps(eq, e), repeats(eq.runs, parts.fitted)):
         held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
         everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y})

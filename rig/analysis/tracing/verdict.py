@@ -37,28 +37,37 @@ def decide(
     p: Prepared,
     s: Solution,
     weighed: Sequence[str],
+    unsure: Sequence[str],
     before: Mapping[Key, Array],
     after: Mapping[Key, Array],
     floors: Mapping[Key, float],
     found: Found,
 ) -> Ruling:
-    """From held-out ratios and the effects that may be named."""
+    """From held-out ratios and the effects that may be named, `unsure` not where something unknown is left."""
     order = {r.term.name: i for i, r in enumerate(found.ranking)}
     names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
     total, single = worst(p, after)
     first, _ = worst(p, before)
-    loud = total > EXPLAINED or single > MISSING
+    line = p.own.line
+    loud = total > EXPLAINED or single > MISSING or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         return _settled(p, names, found, first, total)
     where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
-    if names and done > MOSTLY and total < 2 * EXPLAINED:
+    if line is None and names and done > MOSTLY and total < 2 * EXPLAINED:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
-    if p.own.line is not None:
-        where = [Home("time_periodic", "L", 1.0, frequency_hz=p.own.line.frequency_hz), *where]
+    if line is not None:
+        where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
-    sentence = (
+    names = tuple(name for name in names if name not in unsure)
+    sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
+    verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
+    return Ruling(verdict, best, _lives(where), None)
+
+
+def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
+    return (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
         f"{best.coordinate.replace('_', ' ')} ({best.share:.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
@@ -66,8 +75,6 @@ def decide(
         + (f"; beside it stand {', '.join(names)}" if names else "")
         + "."
     )
-    verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
-    return Ruling(verdict, best, _lives(where), None)
 
 
 def _in_short(name: str) -> str:
