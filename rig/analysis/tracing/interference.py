@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
@@ -39,9 +40,9 @@ class Interference:
         """What it is and is not."""
         wanders = f", from run to run {100 * (self.apart - 1):.0f} % apart" if self.apart > STEADY else ""
         return (
-            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, {self.share:.0%} of "
-            "what the model leaves there, and no torque on the load makes it: a pick-up in a sensor is likely. It makes "
-            "repeats differ, so the floors were measured without it."
+            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, {self.share:.0%} "
+            "of what the model leaves there, and no torque on the load makes it: a pick-up in a sensor is likely. It "
+            "makes repeats differ, so the floors were measured without it."
         )
 
 
@@ -49,7 +50,6 @@ class Interference:
 class _Track:
     """One run: frequency and height over its surroundings, window by window."""
 
-    start: Array  # rows on the even grid
     hz: Array
     height: Array
 
@@ -87,7 +87,7 @@ def _in_channel(
     return Interference(channel, usual, apart, share, {k: x[:, None] for k, x in lines.items()})
 
 
-def _even(eq: Equations, key: Key, e: Array) -> tuple[Array, float, Array]:
+def _even(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
     """The residual on an even grid (zero where a row is left out), its step [s], and the place of each row."""
     t = clock(eq, key)
     dt = float(np.median(np.diff(t)))
@@ -97,7 +97,7 @@ def _even(eq: Equations, key: Key, e: Array) -> tuple[Array, float, Array]:
     return even, dt, place
 
 
-def _track(even: Array, dt: float, place: Array) -> _Track | None:
+def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | None:
     n = min(int(WINDOW / dt), 2 * even.size // (FEWEST + 1))
     if n * dt < SHORTEST:
         return None
@@ -107,10 +107,10 @@ def _track(even: Array, dt: float, place: Array) -> _Track | None:
     power = _power(even, start, n)[:, band]
     top = np.argmax(power, axis=1)
     usual = np.maximum(np.median(power, axis=1), 1e-300)
-    return _Track(start, hz[band][top], power[np.arange(start.size), top] / usual)
+    return _Track(hz[band][top], power[np.arange(start.size), top] / usual)
 
 
-def _power(even: Array, start: Array, n: int) -> Array:
+def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:
     """Of every window, (windows, bins)."""
     stretches = even[start[:, None] + np.arange(n)] * np.hanning(n)
     return np.asarray(np.abs(np.fft.rfft(stretches, PADDED * n, axis=1)) ** 2)

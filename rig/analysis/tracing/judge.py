@@ -12,7 +12,7 @@ from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
 from rig.analysis.tracing.search import reduced
 from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
-from rig.model.effect import Array
+from rig.model.effect import Array, Parameter
 
 FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
 
@@ -110,8 +110,8 @@ def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, fl
     """How much an effect's size differs from run to run and channel to channel: RMS, relative, weighted by what it does
     there, what noise makes of it taken off. `rest` is the fit without the effect.
 
-    A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks like
-    an effect has its size from a compromise between runs; a real one has the same in each.
+    A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
+    like an effect has its size from a compromise between runs; a real one has the same in each.
     """
     spread, total = 0.0, 0.0
     for key in d.y:
@@ -135,3 +135,16 @@ def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:
         worst = min(failing, key=lambda w: min(w.share, 1.0) * w.size)
         gone = [i for i, t in enumerate(d.terms) if t.name == worst.name]
         s, d = fit(reduced(s.design, gone)), reduced(d, gone)
+
+
+def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]]) -> list[str]:
+    """Effects of whose law the data say nothing: the interval of the number that scales it (a Stribeck speed, a torque,
+    a time) contains zero. What is left of them is a difference between some runs and others, which many laws make.
+    """
+    out = []
+    for term in s.design.terms:
+        loose = [n for n, free in zip(term.effect.shape_names, term.effect.loose, strict=True) if free]
+        scale = [p for p in words.get(term.name, ()) if p.name in loose[:1]]
+        if any(p.ci95[0] <= 0 <= p.ci95[1] for p in scale):
+            out.append(term.name)
+    return list(dict.fromkeys(out))

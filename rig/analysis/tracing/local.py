@@ -21,6 +21,7 @@ IN_SHORT = {
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 ZOOM = 4  # finer than a run's own resolution
 WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
+APART = 5.0  # usual steps between two rows: something was left out there
 EDGE = 3  # rows over which the low-pass spreads a step
 
 
@@ -153,23 +154,44 @@ def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
 def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
     """Sharp permanent jumps of A in each run of `e`."""
     keys = [k for k in e if k[1] == "A"]
-    sure = [abs(size) for key in keys for _, size in _jumps(e[key], STEP, (0.0, np.inf))]
+    onward = {key: _onward(eq, key) for key in keys}
+    sure = [abs(size) for key in keys for _, size in _jumps(e[key], onward[key], STEP, (0.0, np.inf))]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
     rows: dict[int, tuple[int, ...]] = {}
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
-        found = _jumps(e[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        found = _jumps(e[key], onward[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
         if found:
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
     return Steps(rows, sizes)
 
 
-def _jumps(e: Array, least: float, between: tuple[float, float]) -> list[tuple[int, float]]:
+def _onward(eq: Equations, key: Key) -> Array:
+    """True for rows with a window on both sides in which the motor neither turned back nor was left out, (n,).
+
+    At a reversal everything with memory or play goes over to its other branch: that looks like a step and is none.
+    """
+    way = np.sign(np.diff(eq.rows[key].theta_m, prepend=eq.rows[key].theta_m[0]))
+    t = clock(eq, key)
+    gap = np.diff(t, prepend=t[0]) > APART * float(np.median(np.diff(t)))
+    turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(gap[1:])])
+    reach = WINDOW + EDGE
+    first, last = np.maximum(np.arange(t.size) - reach, 0), np.minimum(np.arange(t.size) + reach, t.size - 1)
+    return np.asarray(turned[first] == turned[last])
+
+
+def _filled(way: Array) -> Array:
+    """Zeros replaced by the way before them: two rows on one count are no turning back."""
+    at = np.maximum.accumulate(np.where(way != 0, np.arange(way.size), 0))
+    return np.asarray(way[at])
+
+
+def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) -> list[tuple[int, float]]:
     """Row and size of every jump: the means of the windows on both sides differ, and nearly all of it at once.
 
-    `least` in usual differences of such windows, size `between` two bounds [rad].
+    `least` in usual differences of such windows, size `between` two bounds [rad]; only where the motor goes `onward`.
     """
     if e.size < 6 * WINDOW:
         return []
@@ -186,7 +208,7 @@ def _jumps(e: Array, least: float, between: tuple[float, float]) -> list[tuple[i
         row = int(at[top])
         near = e[row + EDGE : row + 4 * EDGE].mean() - e[row - 4 * EDGE : row - EDGE].mean()
         sharp = abs(near - jump[top]) < 0.5 * abs(jump[top])
-        if sharp and between[0] <= abs(jump[top]) <= between[1]:
+        if sharp and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
             out.append((row, float(jump[top])))
         strength[max(0, top - WINDOW) : top + WINDOW] = 0.0
     return out

@@ -23,7 +23,7 @@ from rig.analysis.tracing.suspects import candidates
 from rig.analysis.tracing.thresholds import MISSING
 from rig.analysis.tracing.unknown import smooth_term
 from rig.analysis.tracing.verdict import decide
-from rig.model.effect import Array
+from rig.model.effect import Array, Parameter
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
@@ -31,8 +31,15 @@ if TYPE_CHECKING:
 SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
 
 
-def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequence[Worth]) -> Trace:
-    """All of it as one value."""
+def report(
+    p: Prepared,
+    found: Searched,
+    s: Solution,
+    held: Design,
+    worths: Sequence[Worth],
+    fitted: Mapping[str, tuple[Parameter, ...]],
+) -> Trace:
+    """All of it as one value; `fitted` are the parameters of the effects in `s`."""
     empty = p.baseline
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
@@ -43,7 +50,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
-    words = p.own.parameters | (parameters.effects(s, p.split.fitted) if s.design.terms else {})
+    words = p.own.parameters | dict(fitted)
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,

@@ -11,16 +11,17 @@ from rig.analysis.tracing.campaign import Campaign, read_campaign
 from rig.analysis.tracing.channels import known_of
 from rig.analysis.tracing.equations import Equations, Key, Noise, equations, spoiling
 from rig.analysis.tracing.holdout import Split, split
-from rig.analysis.tracing.judge import Court, convicted, court
+from rig.analysis.tracing.judge import Court, convicted, court, unresolved
 from rig.analysis.tracing.model import Solution, design, fit
 from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
 from rig.analysis.tracing.own import Own, find
+from rig.analysis.tracing.parameters import effects
 from rig.analysis.tracing.report import own_shares, report
 from rig.analysis.tracing.result import Trace
-from rig.analysis.tracing.search import Found, polished, search, still
+from rig.analysis.tracing.search import Found, polished, reduced, search, still
 from rig.analysis.tracing.thresholds import NAMED
 from rig.core.errors import UsageError
-from rig.model.effect import Reach
+from rig.model.effect import Parameter, Reach
 from rig.model.effects import CATALOGUE
 
 
@@ -56,7 +57,16 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
         solution, held, worths = convicted(solution, p.court)
     p, solution = _own_convicted(p, solution)
     solution, held, worths = convicted(solution, p.court)
-    return report(p, found, solution, held, worths)
+    words = _in_words(solution, runs)
+    if vague := unresolved(solution, words):
+        gone = [i for i, term in enumerate(solution.design.terms) if term.name in vague]
+        solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
+        words = _in_words(solution, runs)
+    return report(p, found, solution, held, worths, words)
+
+
+def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
+    return effects(s, runs) if s.design.terms else {}
 
 
 def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:

@@ -15,6 +15,7 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 BINS = 60  # of a turn: 6°, a few teeth
 LEVELS = 24  # of a range
+PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Home:
     share: float
     order: float | None = None  # cycles per turn
     frequency_hz: float | None = None
+    index: Callable[[Rest], Array] | None = None  # bins it was read in; none for a line
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,9 @@ def homes(r: Rest, channel: str) -> list[Home]:
     """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
     fold = folds(r)
     total = float(np.mean(r.e**2)) - 1.0
-    out = [Home(name, channel, score(r, fold, index(r)) / max(total, 0.05)) for name, index in INDICES.items()]
+    ways = [(name, index) for name, index in INDICES.items()]
+    ways += [(name, index) for name, several in JOINT.items() for index in several]
+    out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), index=of) for name, of in ways]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
     out += [h for h in orders if h is not None]
     line = _line(r, channel)
@@ -121,10 +125,33 @@ INDICES: Mapping[str, Callable[[Rest], Array]] = {
     "speed": lambda r: _levels(np.abs(r.at["speed"])),
     "load": lambda r: _levels(r.at["load"]),
     "direction": lambda r: (r.at["direction"] + 1).astype(int),
-    "time": lambda r: _levels(r.at["time"], 80),
+    "time": lambda r: _levels(r.at["time"], PERIODS),
     "temperature": lambda r: _levels(r.at["temperature"]),
-    "memory": lambda r: _levels(r.at["load"]) * 2 + (r.at["torque_rate"] > 0),
+    "memory": lambda r: _both(_levels(r.at["load"]), _both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
+JOINT: Mapping[str, Sequence[Callable[[Rest], Array]]] = {
+    "time": (
+        lambda r: _both(_turn(r.at["motor_angle"], BINS), INDICES["time"](r)),
+        lambda r: _both(_levels(r.at["load"]), INDICES["time"](r)),
+        lambda r: _both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
+    ),
+    "temperature": (lambda r: _both(_levels(r.at["load"]), INDICES["temperature"](r)),),
+    "motor_angle": (lambda r: _both(_turn(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "speed": (lambda r: _both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
+    "load": (lambda r: _both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
+}
+"""Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is
+said of them."""
+
+
+def _branch(r: Rest) -> Array:
+    """1 where the torque rises, else 0."""
+    return (r.at["torque_rate"] > 0).astype(int)
+
+
+def _both(a: Array, b: Array) -> Array:
+    """One index of two; −1 where either has none."""
+    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
 
 
 def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
@@ -225,9 +252,9 @@ def _guess(both: Rest, n: int, found: Home) -> Array:
         x = np.nan_to_num(both.at[found.coordinate])
         z = np.stack([np.cos(found.order * x), np.sin(found.order * x)], 1)
         return np.asarray(z[n:] @ np.linalg.lstsq(z[:n], both.e[:n], rcond=None)[0])
-    if found.coordinate not in INDICES:
+    if found.index is None:
         return np.zeros(both.e.size - n)
-    index = INDICES[found.coordinate](both)
+    index = found.index(both)
     inside = index[:n] >= 0
     size = int(index.max()) + 1
     count = np.bincount(index[:n][inside], minlength=size)
