@@ -169,6 +169,7 @@ class Effect(ABC):
     in_short: ClassVar[str]  # one line for people
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
+    remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
 
     @abstractmethod

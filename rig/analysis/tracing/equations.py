@@ -31,6 +31,10 @@ class Noise:
         """1/variance of one row when all are taken as independent."""
         return 1.0 / (self.sigma[channel] ** 2 * self.kappa[channel])
 
+    def free(self, channel: str) -> Noise:
+        """With offsets of that channel that are every run's own."""
+        return replace(self, local={**self.local, channel: np.inf})
+
     def pull(self, channel: str, n: int) -> float:
         """How much of its mean a run of `n` rows loses: all when its offset is free."""
         own = self.local[channel]

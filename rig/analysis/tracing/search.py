@@ -161,6 +161,25 @@ def polished(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     return settled(s, runs, covered) if s.design.terms else s
 
 
+def relawed(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Every effect that remembers, tried in its other laws too: which law it is shows only beside free offsets."""
+    for term in [t for t in s.design.terms if t.effect.remembers]:
+        bare = reduced(s.design, [i for i, t in enumerate(s.design.terms) if t.name == term.name])
+        fixed = {_chosen(t) for t in s.design.terms if t.name == term.name}
+        others = [Term(term.effect, shape) for shape in term.effect.shapes(covered)]
+        others = [other for other in others if _chosen(other) not in fixed]
+        if others:
+            best = max(others, key=lambda other: fit(extended(bare, other, runs)).gain)
+            other = refine(bare, best, runs, covered)[1]
+            s = other if other.gain > s.gain else s
+    return s
+
+
+def _chosen(term: Term) -> tuple[float, ...]:
+    """The part of the shape that a refit does not move."""
+    return tuple(v for v, loose in zip(term.shape, term.effect.loose, strict=True) if not loose)
+
+
 def _change(before: Known, now: Known) -> float:
     """Relative, of what effects lean on."""
     a, b = before.kinematic_error, now.kinematic_error

@@ -18,7 +18,7 @@ from rig.analysis.tracing.own import Own, find
 from rig.analysis.tracing.parameters import effects
 from rig.analysis.tracing.report import own_shares, report
 from rig.analysis.tracing.result import Trace
-from rig.analysis.tracing.search import Found, polished, reduced, search, still
+from rig.analysis.tracing.search import Found, polished, reduced, relawed, search, still
 from rig.analysis.tracing.thresholds import NAMED
 from rig.core.errors import UsageError
 from rig.model.effect import Parameter, Reach
@@ -112,8 +112,11 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
     own = find(free, p.split)
     with_own = fit(design(replace(eq, own=own.columns()), s.design.terms, runs))
-    again = _built(p.campaign, p.split, eq, measure(with_own, runs), own)
-    s = fit(design(again.eq, s.design.terms, runs))
+    measured = measure(with_own, runs)
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    again = _built(p.campaign, p.split, eq, measured, own)
+    s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
     return again, search(s.design, bank, runs, s.keys, covered, _floors(again), found.ranking)
 
 

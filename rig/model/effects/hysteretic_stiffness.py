@@ -8,39 +8,59 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import play
+from rig.model.memory import play, presliding
 
 
 class HystereticStiffness(Effect):
-    """φ gains Σ c_i·P_{r_i}[T], play operators of the torque: a Prandtl-Ishlinskii loop      [kuhnen2003]
+    """A loop in either of two laws, told by `law`.
 
-    Rate-independent, minor loops close. The half widths r_i spread over the torque the campaign reaches.
+    0: φ gains Σ c_i·P_{r_i}[T], play operators of the torque: a Prandtl-Ishlinskii loop      [kuhnen2003]
+    1: φ loses (T_f/K)·z, dz/dφ = (1 − z·sgn φ̇)/x_0: friction T_f in parallel to the spring, which takes its share first
+    after every reversal and whose minor loops stay open      [dahl1968]
+
+    Both are rate-independent. T_h scales the half widths r_i, and is K·x_0.
     """
 
     name: ClassVar[str] = "hysteretic_stiffness"
     in_short: ClassVar[str] = "rate-independent loop in torque against wind-up"
     source: ClassVar[str] = "seyfferth1995"
-    shape_names: ClassVar[tuple[str, ...]] = ("T_h",)
-    loose: ClassVar[tuple[bool, ...]] = (True,)
+    shape_names: ClassVar[tuple[str, ...]] = ("T_h", "law")
+    loose: ClassVar[tuple[bool, ...]] = (True, False)
+    remembers: ClassVar[bool] = True
     WIDTHS: Final = (1.5, 4.0, 10.0, 25.0)  # N·m
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
+    UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
+    SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
+    PLAYS, FRICTION = 0.0, 1.0
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Loops the campaign's torque can go round."""
-        return tuple((w,) for w in self.WIDTHS if w < 0.7 * reach.torque)
+        widths = [w for w in self.WIDTHS if w < 0.7 * reach.torque]
+        plays = [(w, self.PLAYS) for w in widths]
+        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One play operator a half width."""
+        """One operator a half width, or the friction's state."""
+        width, law = shape
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
-        return {Port.WIND_UP: np.stack([play(torque, shape[0] * share) for share in self.SPREAD], 1)}
+        if law == self.PLAYS:
+            return {Port.WIND_UP: np.stack([play(torque, width * share) for share in self.SPREAD], 1)}
+        return {Port.WIND_UP: presliding(self._wound(signals), width / signals.gear.K)[:, None]}
+
+    def _wound(self, signals: Signals) -> Array:
+        """φ as the encoders show it, without its noise; from the torque where one of them is missing."""
+        phi = signals.theta_m / signals.ratio - signals.theta_l - signals.series_value
+        if not np.isfinite(phi).all():
+            phi = np.nan_to_num(signals.torque) / signals.gear.K
+        return play(np.ascontiguousarray(phi), self.UNMOVED)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Wind-up between the branches at zero torque after a large swing, and the scale of the half widths."""
-        gap = np.zeros(fit.covariance.shape[0])
-        gap[: len(self.SPREAD)] = 2.0 * fit.shape[0] * np.array(self.SPREAD)
-        width = np.zeros(fit.covariance.shape[0])
-        width[-1] = 1.0
-        value = float(gap[: len(self.SPREAD)] @ fit.coefficients[: len(self.SPREAD)])
+        gap, width = np.zeros((2, fit.covariance.shape[0]))
+        weights = self._gap(fit.shape)
+        gap[: weights.size] = weights
+        width[weights.size] = 1.0
+        value = float(weights @ fit.coefficients[: weights.size])
         return (
             parameter("hysteresis_loss", value, fit.half_width(gap), "rad"),
             parameter("T_h", fit.shape[0], fit.half_width(width), "N·m"),
@@ -48,4 +68,15 @@ class HystereticStiffness(Effect):
 
     def plausible(self, fit: Fit) -> bool:
         """A loop loses energy: the branch on the way down lies behind."""
-        return bool(np.dot(self.SPREAD, fit.coefficients[: len(self.SPREAD)]) > 0)
+        weights = self._gap(fit.shape)
+        return bool(weights @ fit.coefficients[: weights.size] > 0)
+
+    def _gap(self, shape: Shape) -> Array:
+        """What each coefficient adds to the wind-up between the branches, (k,)."""
+        width, law = shape
+        return 2.0 * width * np.array(self.SPREAD) if law == self.PLAYS else np.array([-2.0])
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Of T_h; the law is chosen, not fitted."""
+        widths = [w for w, _ in self.shapes(reach)]
+        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.FRICTION)) if widths else ()
