@@ -24,6 +24,11 @@ class Interrupts:
         """What the command ends with when this is why: stopped, halted, or PASS when nobody asked."""
         return (Exit.PASS, Exit.STOPPED, Exit.HALTED)[min(self.count, 2)]
 
+    @property
+    def who(self) -> str:
+        """Who asked, for a sentence that says that something was ended."""
+        return "by the operator"
+
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end; also what a button calls."""
         self.count += 1

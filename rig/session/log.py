@@ -8,16 +8,18 @@ from pathlib import Path
 
 from rig.core.errors import HdrigError
 from rig.runfile.events import EventLog
+from rig.session.observer import Observer
 from rig.supervisor import Act, State
 
 KINDS = {Act.TRIP: "trip", Act.HOLD: "operator", Act.STOP: "operator", Act.HALT: "operator"}
 
 
 class SessionLog:
-    """Events of one session; `run_time` gives the time [s] since the run's start."""
+    """Events of one session; `run_time` gives the time [s] since the run's start, `observer` is told as well."""
 
-    def __init__(self, run_time: Callable[[], float]) -> None:
+    def __init__(self, run_time: Callable[[], float], observer: Observer) -> None:
         self._run_time = run_time
+        self._observer = observer
         self._early: list[tuple[str, str]] = []  # events before there is a folder for them
         self._log: EventLog | None = None
 
@@ -34,6 +36,7 @@ class SessionLog:
 
     def event(self, kind: str, text: str) -> None:
         """`kind` as in `events.jsonl`: state, trip, operator, note, finding."""
+        self._observer.event(kind, text, None if self._log is None else self._run_time())
         if self._log is None:
             self._early.append((kind, text))
             return

@@ -11,7 +11,7 @@ from rig.bench import Bench
 from rig.control.setpoints import setpoints_of
 from rig.core.errors import Exit, HdrigError, RecorderError
 from rig.core.procedure import Procedure
-from rig.core.sample import Mode
+from rig.core.sample import Mode, Sample
 from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
@@ -20,6 +20,7 @@ from rig.recorder import Recorder
 from rig.runfile.finalise import finalise
 from rig.session.done import Done, Ended, Watch
 from rig.session.log import SessionLog
+from rig.session.observer import Begun, Observer
 from rig.supervisor import Supervisor
 from rig.timing import LoopTiming
 
@@ -34,6 +35,7 @@ class Recording:
     interrupts: Interrupts
     log: SessionLog
     timing: LoopTiming
+    observer: Observer
 
     def make(self, folder: Path, procedure: Procedure, mode: Mode, watch: Watch) -> Done:
         """Run it and close its folder, with its status, on every way out.
@@ -43,11 +45,14 @@ class Recording:
         recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
         recorder.start()
         setting = self.bench.setting(lambda text: self.log.event("note", text))
-        guard = Guard(self.bench.limits, procedure.envelope(setting), setting.ratio)
+        envelope = procedure.envelope(setting)
+        guard = Guard(self.bench.limits, envelope, setting.ratio)
         setpoints = setpoints_of(mode, setting)
+        begun = Begun(folder, procedure, envelope.duration, recorder.ring, self.timing)
+        watches = self._both(watch, self.observer.begun(begun))
         loop = Loop(
-            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watch, setpoints
-        )  # fmt: skip
+            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watches, setpoints
+        )
         ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
         try:
             ending = loop.run(procedure, setting)
@@ -56,12 +61,21 @@ class Recording:
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
+            self.observer.ended(folder, ending)
             problem = self._close(recorder, folder, ending, loop.rows)
             if problem:
                 print(f"hdrig: {problem}", file=sys.stderr)
         if problem:
             raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)
+
+    @staticmethod
+    def _both(watch: Watch, other: Watch) -> Watch:
+        def watches(sample: Sample) -> None:
+            watch(sample)
+            other(sample)
+
+        return watches
 
     def _close(self, recorder: Recorder, folder: Path, ending: Ending, rows: int) -> str:
         """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""

@@ -25,6 +25,7 @@ from rig.session.changing import prepare, show
 from rig.session.done import Done, Ended, Watch, nobody
 from rig.session.log import SessionLog
 from rig.session.manifest import manifest_of
+from rig.session.observer import Observer
 from rig.session.recording import Recording
 from rig.supervisor import Act, State, Supervisor
 from rig.timing import LoopTiming
@@ -44,13 +45,14 @@ class Session:
     facts: dict[str, Any] = field(default_factory=dict)  # further keys of every manifest: the campaign a run belongs to
     create: Callable[[Path, str, dict[str, Any], str], Path] = create  # how run folders lie in `root`
     checks: str = ""  # folder within `root` for the runs that only show how the rig is
+    observer: Observer = field(default_factory=Observer)  # who looks on: told of events and runs as they come
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
     folder: Path | None = None  # of the newest run; None when it got none
     proof: Proof | None = None  # what sign-and-scale found since the last reset
     zero: Weighing | None = None  # what the unloaded torque sensor showed
 
     def __enter__(self) -> Session:
-        self.log = SessionLog(self._run_time)
+        self.log = SessionLog(self._run_time, self.observer)
         self.instruments = self.bench.open(self.clock)
         self.supervisor = Supervisor(self.log.announce, self.instruments.causes)
         self.identities = self.instruments.connect()
@@ -174,7 +176,7 @@ class Session:
         folder = self.folder = self.create(root, procedure.name, manifest_of(self, procedure, mode), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
         self.log.open(folder)
-        one = Recording(self.bench, self.instruments, self.supervisor, self.interrupts, self.log, timing)
+        one = Recording(self.bench, self.instruments, self.supervisor, self.interrupts, self.log, timing, self.observer)
         try:
             return one.make(folder, procedure, mode, watch)
         finally:
@@ -188,7 +190,7 @@ class Session:
                 f"`hdrig reset --bench {self.bench.source}`"
             )
         if self.interrupts.count:
-            raise Ended("stopped by the operator; nothing more was started", self.interrupts.exit)
+            raise Ended(f"stopped {self.interrupts.who}; nothing more was started", self.interrupts.exit)
 
     def _mode(self, procedure: Procedure) -> Mode:
         """The bench's for a procedure that has a reference; proofs and checks ask for torques."""

@@ -1,0 +1,76 @@
+"""Interrupts of a session that a page watches: signals, the page's switches, and the page's own absence."""
+
+from __future__ import annotations
+
+from typing import final
+
+from rig.interrupts import Interrupts
+from rig.live.switches import Counts, Switches
+
+
+@final
+class Panel(Interrupts):
+    """`count` and `held` look at the switches each time: the loop does so every tick, and nothing stands in between.
+
+    What counts is what was pressed after the act that is being carried out was accepted: `arm` says how often each had
+    been pressed by then. Two stops are one stop, not a halt.
+    """
+
+    def __init__(self, switches: Switches) -> None:
+        self._switches = switches
+        self._taken = self._seen = switches.pressed
+        self._signals = 0
+        self._patience = float("inf")  # s without a page, then stop
+        self.lost = False  # the page was, and a stop followed from it
+        super().__init__()
+
+    def arm(self, taken: Counts, page_lost_s: float = float("inf")) -> None:
+        """A new act: presses before `taken` are over and done; `page_lost_s` without a page are a stop."""
+        self._taken, self._patience, self.lost = taken, page_lost_s, False
+        self.held = False
+
+    def disarm(self) -> None:
+        """Nothing is being carried out: a page may come and go."""
+        self._patience = float("inf")
+
+    @property
+    def count(self) -> int:
+        """1 stop, 2 halt."""
+        pressed = self._switches.pressed
+        if pressed != self._seen:
+            self._seen = pressed
+            self._switches.tell_seen(pressed)
+        if pressed.halt != self._taken.halt:
+            return 2
+        if self._signals:
+            return self._signals
+        if pressed.stop != self._taken.stop or self.lost:
+            return 1
+        if self._switches.page_age > self._patience:
+            self.lost = True
+            return 1
+        return 0
+
+    @count.setter
+    def count(self, value: int) -> None:
+        self._signals = value
+
+    @property
+    def held(self) -> bool:
+        """Somebody asked for a hold."""
+        return self._held or self._switches.pressed.hold != self._taken.hold
+
+    @held.setter
+    def held(self, value: bool) -> None:
+        self._held = value
+
+    def request(self, signum: int = 0, frame: object = None) -> None:
+        """A signal to this process."""
+        self._signals += 1
+
+    @property
+    def who(self) -> str:
+        """Who asked, for sentences that say that something was ended."""
+        if self.lost and self.count == 1:
+            return f"because no page had been seen for {self._patience:g} s, as [console] page_lost says"
+        return super().who
