@@ -1,0 +1,92 @@
+// All charts of the page: fed by rows, drawn once a frame at most, never more often than there is something new.
+
+import { $, say, show } from "../dom.js";
+import { History } from "../rows.js";
+import { legend } from "./legend.js";
+import { Loop } from "./loop.js";
+import { MOST, Orders } from "./orders.js";
+import { Strip } from "./time.js";
+import { Turns } from "./turns.js";
+import { Wave } from "./wave.js";
+
+const ROWS = 12_000; // 20 s of 250 pairs a second, and some more
+
+export class Charts {
+  constructor() {
+    this.history = new History(ROWS);
+    this.turns = new Turns();
+    this.strips = [
+      new Strip($("chart-angle"), [{ column: "theta_ref_deg", label: "reference", colour: "axis", scale: "deg", width: 3 }, { column: "theta_m_deg", label: "measured", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg", least: 5 }], legend),
+      new Strip($("chart-following"), [{ column: "following_deg", label: "reference less motor, last 20 s", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg, motor", least: 0.5 }], legend),
+      new Strip($("chart-torque"), [{ column: "tau_m", label: "motor", colour: "forward", scale: "m" }, { column: "tau_l", label: "shaft (right)", colour: "reverse", scale: "l", dash: [5, 3] }], [{ scale: "m", label: "motor, N·m", least: 0.5 }, { scale: "l", label: "shaft, N·m", least: 1, side: 1 }], legend),
+    ];
+    this.orders = new Orders($("chart-orders"));
+    const box = (name) => $("chart-picture").querySelector(`.plot.${name}`);
+    this.pictures = { wave: new Wave(box("wave")), loop: new Loop(box("loop")) };
+    this.choose("wave");
+    this.run = null;
+    this.dirty = true;
+    requestAnimationFrame(() => this.#frame());
+  }
+
+  /** A new run begins a new picture; one locked shows torque against wind-up. */
+  follow(run) {
+    const uid = run?.uid ?? null;
+    if (uid === null || uid === this.run) return;
+    this.run = uid;
+    this.turns.clear();
+    this.pictures.loop.clear();
+    this.history.clear();
+    this.choose(run.locked ? "loop" : "wave");
+    this.dirty = true;
+  }
+
+  add(names, rows, running) {
+    this.history.add(names, rows);
+    this.dirty = true;
+    if (!running) return;
+    const column = (name) => rows.columns[names.indexOf(name)];
+    const [angle, error, twist, torque] = ["theta_m_deg", "kinematic_error_arcsec", "wind_up_arcmin", "tau_l"].map(column);
+    for (let k = 0; angle && error && k < rows.t.length; k++) this.turns.add(angle[k], error[k]);
+    for (let k = 0; twist && torque && k < rows.t.length; k++) this.pictures.loop.add(twist[k], torque[k]);
+  }
+
+  /** Which picture stands in the large box. */
+  choose(picture) {
+    this.picture = picture;
+    for (const button of document.querySelectorAll("[data-picture]")) button.setAttribute("aria-pressed", String(button.dataset.picture === picture));
+    for (const box of $("chart-picture").querySelectorAll(".plot")) show(box, box.classList.contains(picture));
+    legend($("picture-legend"), this.pictures[picture].lines);
+    this.dirty = true;
+  }
+
+  restyle() {
+    for (const chart of [...this.strips, this.orders, ...Object.values(this.pictures)]) chart.restyle();
+    this.dirty = true;
+  }
+
+  #frame() {
+    requestAnimationFrame(() => this.#frame());
+    if (!this.dirty || document.hidden || $("view-rig").hidden) return;
+    this.dirty = false;
+    for (const strip of this.strips) strip.draw(this.history);
+    this.pictures[this.picture].draw(this.turns);
+    const [forward, reverse] = [this.turns.ways.forward, this.turns.ways.reverse];
+    const whole = forward.whole ? forward : reverse;
+    const amplitudes = whole.orders(MOST);
+    this.orders.draw(amplitudes);
+    this.#explain(amplitudes, whole === forward ? "forward" : "reverse");
+  }
+
+  #explain(amplitudes, way) {
+    const { forward, reverse } = this.turns.ways;
+    const nothing = this.picture === "wave" ? forward.n + reverse.n === 0 : !this.pictures.loop.twist.length;
+    const empty = $("chart-picture").querySelector(".empty");
+    show(empty, nothing);
+    say(empty, this.picture === "wave" ? "The error is drawn here while a run turns the motor." : "Torque is drawn here over wind-up while the output is locked.");
+    const orders = $("chart-orders");
+    show(orders.querySelector(".empty"), amplitudes === null);
+    say(orders.querySelector(".empty"), "after one whole turn of the motor");
+    say(orders.querySelector(".legend"), amplitudes ? `1 to ${MOST} per motor turn; amplitude of the mean, ${way}, ${this.turns.ways[way].revolutions} turns seen by this page` : "");
+  }
+}
