@@ -15,6 +15,8 @@ REFERENCES: dict[str, str] = {
     "paule1982": "R. C. Paule, J. Mandel, Consensus values and weighting factors, "
     "J. Research of the National Bureau of Standards 87 (1982) 377-385",
     "gum": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement",
+    "vonneumann1941": "J. von Neumann, R. H. Kent, H. R. Bellinson, B. I. Hart, The mean square successive difference, "
+    "Annals of Mathematical Statistics 12 (1941) 153-162",
     "tuttle1992": "T. D. Tuttle, Understanding and modeling the behavior of a harmonic drive gear transmission, "
     "MIT Artificial Intelligence Laboratory, Technical Report 1365 (1992)",
     "dahl1968": "P. R. Dahl, A solid friction model, The Aerospace Corporation, TOR-0158(3107-18)-1 (1968)",
