@@ -83,7 +83,17 @@ class Bench:
         optional = {key: getattr(f.gear, key) for key in ("T_rated", "T1", "T2")} | f.path.model_dump()
         declared |= {key: value for key, value in optional.items() if value is not None}
         backend = "sim" if self.simulated else f.devices.drive.type.partition(".")[0]
-        return {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
+        own = {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
+        return own | ({"latch_skew": skew} if (skew := self._latch_skew()) else {})
+
+    def _latch_skew(self) -> dict[str, dict[str, float]]:
+        """What `hdrig run skew` has measured on this bench, of the channels where it has; s."""
+        sections = {"theta_l": self.file.load_encoder, "tau_l": self.file.torque_sensor}
+        return {
+            channel: {"value": section.skew, "half_width": section.skew_half_width}
+            for channel, section in sections.items()
+            if section is not None and section.skew is not None and section.skew_half_width is not None
+        }
 
     def open(self, clock: ClockName) -> Instruments:
         """Make the devices and their clock; nothing is connected yet. Raises UsageError."""

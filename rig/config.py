@@ -100,16 +100,29 @@ class MotorSection(Strict):
     counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
 
 
-class EncoderSection(Strict):
-    """[load_encoder]"""
+class LatchedSection(Strict):
+    """A channel whose latch skew `hdrig run skew` has measured: both numbers, or neither."""
+
+    skew: Annotated[float | None, quantity("s", ge=-0.1, le=0.1)] = None
+    skew_half_width: Annotated[float | None, quantity("s", ge=0, le=0.1)] = None  # of its 95 % interval
+
+    @model_validator(mode="after")
+    def _both(self) -> LatchedSection:
+        if (self.skew is None) is not (self.skew_half_width is None):
+            raise ValueError("skew and skew_half_width belong together: a skew without its interval is no measurement")
+        return self
+
+
+class EncoderSection(LatchedSection):
+    """[load_encoder]; `skew`: latched so much later than the motor angle"""
 
     counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
     calibrated: date | None = None
     calibration_due: date | None = None
 
 
-class TorqueSensorSection(Strict):
-    """[torque_sensor]"""
+class TorqueSensorSection(LatchedSection):
+    """[torque_sensor]; `skew`: latched so much later than the load angle"""
 
     range: Annotated[float, quantity("N·m", **Positive)]
     calibrated: date | None = None

@@ -102,6 +102,7 @@ def exit_of(result: Result) -> Exit:
 
 def print_result(result: Result, target: Path, folder: Path, simulated: bool) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
+    from rig.analysis.latch_skew_words import bench_lines
     from rig.report.numbers import estimate
 
     said = {"MEASURED": "no limit set"}.get(result.verdict, str(result.verdict))
@@ -114,4 +115,6 @@ def print_result(result: Result, target: Path, folder: Path, simulated: bool) ->
             print(f"  not met: {check.sentence}")
     for sentence in result.cannot:
         print(f"  cannot tell: {sentence}")
+    for line in bench_lines(result):
+        print(line)
     print(f"report {target / 'report.html'}")

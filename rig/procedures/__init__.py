@@ -10,6 +10,7 @@ from rig.core.procedure import Procedure
 CATALOGUE: dict[str, str] = {
     "kinematic-error": "rig.procedures.kinematic_error:KinematicError",
     "sign-and-scale": "rig.procedures.sign_and_scale:SignAndScale",
+    "skew": "rig.procedures.skew:Skew",
     "step-test": "rig.procedures.step_test:StepTest",
     "weigh": "rig.procedures.weigh:Weigh",
     "lock-check": "rig.procedures.lock_check:LockCheck",
