@@ -23,12 +23,7 @@ class LatchOffsets:
         self._mean += away / self.count
         self._squares += away * (offset - self._mean)
 
-    def summary(self) -> dict[str, float | int | str]:
+    def summary(self) -> dict[str, float | int]:
         """What `timing.json` holds of it; times in s."""
         deviation = math.sqrt(self._squares / (self.count - 1)) if self.count > 1 else 0.0
-        return {
-            "mean": self._mean,
-            "deviation": deviation,
-            "rows": self.count,
-            "how": "latch time told by its driver less that of theta_m, every row; not a measurement of what is hidden",
-        }
+        return {"mean": self._mean, "deviation": deviation, "rows": self.count}

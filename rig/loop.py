@@ -87,6 +87,7 @@ class Loop:
             raise
         finally:
             confirmed = self.instruments.safe()
+            self.timing.offsets = self.instruments.told()
         return self._leave(ending, confirmed)
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
