@@ -1,6 +1,6 @@
 // What the operator does, sent to the server: every act has an id and the state it was based on.
 
-import { page, token } from "./token.js";
+import { headers } from "./token.js";
 
 const URGENT = new Set(["halt", "stop", "hold"]);
 const UNANSWERED = 1000; // ms after which an urgent act counts as not confirmed
@@ -8,11 +8,11 @@ const UNANSWERED = 1000; // ms after which an urgent act counts as not confirmed
 /** {ok, text, ms}: the server's answer as a sentence. Never throws. */
 export async function act(name, revision, more = {}) {
   const began = performance.now();
-  const body = { id: crypto.randomUUID(), based_on: revision, act: name, page, ...more };
+  const body = { id: crypto.randomUUID(), based_on: revision, act: name, ...more };
   try {
     const answer = await fetch("/api/act", {
       method: "POST",
-      headers: { "Content-Type": "application/json", "X-Hdrig-Token": token },
+      headers,
       body: JSON.stringify(body),
       keepalive: URGENT.has(name),
       priority: URGENT.has(name) ? "high" : "auto",

@@ -34,7 +34,9 @@ export class Link extends EventTarget {
       return;
     }
     this.heard = performance.now();
-    this.dispatchEvent(new CustomEvent("state", { detail: JSON.parse(data) }));
+    const state = JSON.parse(data);
+    this.#socket?.send(JSON.stringify({ seen: state.seq })); // the page's sign of life
+    this.dispatchEvent(new CustomEvent("state", { detail: state }));
   }
 
   #closed(code) {

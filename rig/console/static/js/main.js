@@ -17,8 +17,8 @@ import { makeTiles, progress, tilesOf } from "./panels/run.js";
 import { benches, steps } from "./panels/steps.js";
 import { themes } from "./panels/theme.js";
 import { openRuns } from "./runs/view.js";
-import { token } from "./token.js";
-import { views } from "./views.js";
+import { get, token } from "./token.js";
+import { panels, views } from "./views.js";
 
 const LOOK_AT_AGE = 100; // ms
 
@@ -31,6 +31,7 @@ const chooser = new Chooser();
 const link = new Link();
 themes(() => charts.restyle());
 views(openRuns);
+panels();
 
 function draw(next) {
   state = next;
@@ -99,7 +100,7 @@ link.addEventListener("closed", ({ detail }) => {
 link.open();
 setInterval(() => freshness(link, state?.live?.age_ms ?? null), LOOK_AT_AGE);
 
-const offered = await (await fetch("/api/catalogue")).json();
+const offered = await get("/api/catalogue");
 benches(offered.benches ?? []);
 chooser.offer(offered);
 if (state) draw(state);

@@ -26,12 +26,17 @@ export class History {
     this.of = new Map();
   }
 
-  add(names, rows) {
-    if (this.length && rows.t.length && rows.t[0] < this.t[this.length - 1] - 1) this.clear(); // another clock: another run
-    if (this.length + rows.t.length > this.t.length) this.#shift();
-    this.t.set(rows.t, this.length);
-    names.forEach((name, k) => this.#column(name).set(rows.columns[k], this.length));
-    this.length += rows.t.length;
+  /** The newest time; -Infinity before the first row. */
+  get newest() {
+    return this.length ? this.t[this.length - 1] : -Infinity;
+  }
+
+  /** `columns`: values by name. */
+  add(columns, t) {
+    if (this.length + t.length > this.t.length) this.#shift();
+    this.t.set(t, this.length);
+    for (const [name, values] of columns) this.#column(name).set(values, this.length);
+    this.length += t.length;
   }
 
   last(name) {

@@ -15,6 +15,27 @@ function given() {
 
 export const token = given();
 
+const PAGE = "hdrig-page";
+if (sessionStorage.getItem(PAGE) === null) sessionStorage.setItem(PAGE, crypto.randomUUID());
+
 /** Who this page is, for as long as the tab lives: control stays with it over a reload. */
-export const page = sessionStorage.getItem("hdrig-page") ?? crypto.randomUUID();
-sessionStorage.setItem("hdrig-page", page);
+export const page = sessionStorage.getItem(PAGE);
+
+/** What every request carries. */
+export const headers = { "Content-Type": "application/json", "X-Hdrig-Token": token, "X-Hdrig-Page": page };
+
+/** A page of this server that is opened by a link, which cannot carry headers. Another server's is not opened. */
+export function opened(path) {
+  const url = new URL(path, location.origin);
+  if (url.origin !== location.origin) return "about:blank";
+  url.searchParams.set("token", token);
+  return url.href;
+}
+
+/** A GET of this server's as JSON. Throws a sentence. */
+export async function get(path) {
+  const answer = await fetch(path, { headers });
+  if (answer.ok) return answer.json();
+  const said = await answer.json().catch(() => ({}));
+  throw new Error(said.why ?? said.detail ?? `the server answered ${answer.status}`);
+}

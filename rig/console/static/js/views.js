@@ -14,3 +14,13 @@ export function views(openRuns) {
   for (const tab of tabs) tab.addEventListener("click", () => open(tab.dataset.view));
   open("rig");
 }
+
+/** On a small screen the controls to prepare and to measure take turns. */
+export function panels() {
+  const buttons = [...document.querySelectorAll("button[data-panel]")];
+  const open = (panel) => {
+    $("side").dataset.panel = panel;
+    for (const button of buttons) button.setAttribute("aria-pressed", String(button.dataset.panel === panel));
+  };
+  for (const button of buttons) button.addEventListener("click", () => open(button.dataset.panel));
+}

@@ -16,8 +16,8 @@ export class Charts {
     this.history = new History(ROWS);
     this.turns = new Turns();
     this.strips = [
-      new Strip($("chart-angle"), [{ column: "theta_ref_deg", label: "reference", colour: "axis", scale: "deg", width: 3 }, { column: "theta_m_deg", label: "measured", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg", least: 5 }], legend),
-      new Strip($("chart-following"), [{ column: "following_deg", label: "reference less motor, last 20 s", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg, motor", least: 0.5 }], legend),
+      new Strip($("chart-angle"), [{ column: "reference", label: "reference", colour: "axis", scale: "deg", width: 3 }, { column: "motor_angle", label: "measured", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg", least: 5 }], legend),
+      new Strip($("chart-following"), [{ column: "following", label: "reference less motor, last 20 s", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg, motor", least: 0.5 }], legend),
       new Strip($("chart-torque"), [{ column: "tau_m", label: "motor", colour: "forward", scale: "m" }, { column: "tau_l", label: "shaft (right)", colour: "reverse", scale: "l", dash: [5, 3] }], [{ scale: "m", label: "motor, N·m", least: 0.5 }, { scale: "l", label: "shaft, N·m", least: 1, side: 1 }], legend),
     ];
     this.orders = new Orders($("chart-orders"));
@@ -34,21 +34,27 @@ export class Charts {
     const uid = run?.uid ?? null;
     if (uid === null || uid === this.run) return;
     this.run = uid;
-    this.turns.clear();
-    this.pictures.loop.clear();
-    this.history.clear();
+    this.clear();
     this.choose(run.locked ? "loop" : "wave");
-    this.dirty = true;
   }
 
   add(names, rows, running) {
-    this.history.add(names, rows);
+    if (rows.t.length && rows.t[0] < this.history.newest) this.clear(); // another clock: another stream
+    const of = new Map(names.map((name, k) => [name, rows.columns[k]]));
+    const [angle, following, error, torque] = ["motor_angle", "following", "kinematic_error", "tau_l"].map((name) => of.get(name));
+    if (angle && following) of.set("reference", angle.map((value, k) => value + following[k]));
+    this.history.add(of, rows.t);
     this.dirty = true;
-    if (!running) return;
-    const column = (name) => rows.columns[names.indexOf(name)];
-    const [angle, error, twist, torque] = ["theta_m_deg", "kinematic_error_arcsec", "wind_up_arcmin", "tau_l"].map(column);
-    for (let k = 0; angle && error && k < rows.t.length; k++) this.turns.add(angle[k], error[k]);
-    for (let k = 0; twist && torque && k < rows.t.length; k++) this.pictures.loop.add(twist[k], torque[k]);
+    if (!running || !angle || !error) return;
+    for (let k = 0; k < rows.t.length; k++) this.turns.add(angle[k], error[k]);
+    for (let k = 0; torque && k < rows.t.length; k++) this.pictures.loop.add(error[k] / 60, torque[k]);
+  }
+
+  clear() {
+    this.turns.clear();
+    this.pictures.loop.clear();
+    this.history.clear();
+    this.dirty = true;
   }
 
   /** Which picture stands in the large box. */
@@ -86,7 +92,7 @@ export class Charts {
     say(empty, this.picture === "wave" ? "The error is drawn here while a run turns the motor." : "Torque is drawn here over wind-up while the output is locked.");
     const orders = $("chart-orders");
     show(orders.querySelector(".empty"), amplitudes === null);
-    say(orders.querySelector(".empty"), "after one whole turn of the motor");
+    say(orders.querySelector(".empty"), "after one whole turn clear of turning round");
     say(orders.querySelector(".legend"), amplitudes ? `1 to ${MOST} per motor turn; amplitude of the mean, ${way}, ${this.turns.ways[way].revolutions} turns seen by this page` : "");
   }
 }

@@ -8,7 +8,7 @@ export function ink() {
   return {
     text: of("muted"), grid: of("grid"), axis: of("axis"), ink: of("ink"), fit: of("fit"), level: of("level"),
     forward: of("forward"), reverse: of("reverse"), forwardSoft: of("forward-soft"), reverseSoft: of("reverse-soft"),
-    bar: of("bar"), font: `12px ${style.fontFamily}`,
+    bar: of("bar"), bad: of("bad"), font: `12px ${style.fontFamily}`,
   };
 }
 

@@ -22,7 +22,7 @@ export class Strip {
 
   draw(history) {
     if (!history.length) return this.chart.plot.setData(this.#none());
-    const end = history.t[history.length - 1];
+    const end = Math.max(history.newest, history.t[0] + WINDOW);
     const from = firstFrom(history.t, history.length, end - WINDOW);
     const t = history.t.subarray(from, history.length);
     const rows = this.lines.map((line) => history.of.get(line.column)?.subarray(from, history.length));

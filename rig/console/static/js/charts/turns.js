@@ -2,10 +2,11 @@
 
 export const BINS = 360; // of one motor turn: one degree, 17 ms at 9.6 rpm
 const BACK = 2; // deg the motor has to come back before that counts as the other direction
-const CATCH = 20; // deg after turning round in which the gear winds up the other way: kept out of the mean
+const CATCH = 60; // deg after turning round: the gear winds up the other way and rings for a second; kept out of the mean
 const JUMP = 30; // deg between two rows that are still joined by a straight line: 600 rpm makes 7 deg
 const KEPT = 3; // revolutions shown beside the mean
 const BIN = 360 / BINS;
+const BEHIND = 0.1; // deg behind the farthest so far: it stands, or turns round, and the gear winds up the other way
 
 const empty = () => new Array(BINS).fill(null);
 
@@ -31,9 +32,10 @@ export class Turns {
   add(angle, error) {
     if (!Number.isFinite(angle) || !Number.isFinite(error)) return;
     this.#follow(angle);
-    const within = angle - 360 * Math.floor(angle / 360);
-    this.marker = { angle: within, error };
-    if (this.way !== null) this.#join(angle, error);
+    this.marker = { angle: angle - 360 * Math.floor(angle / 360), error };
+    if (this.way === null || Math.abs(angle - this.extreme) > BEHIND) return;
+    if (this.before && Math.abs(angle - this.before.angle) < BIN / 4) return; // one that stands does not weigh more
+    this.#join(angle, error);
     this.before = { angle, error };
   }
 
@@ -72,6 +74,7 @@ export class Turns {
   }
 
   #turnRound(way, angle) {
+    this.before = null;
     this.#finish(Math.floor(angle / 360));
     this.way = way;
     this.turned = this.extreme;

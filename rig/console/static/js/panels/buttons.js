@@ -8,6 +8,7 @@ export function permit(button, allowed) {
   button.title = yes ? "" : String(allowed ?? "not possible now");
 }
 
+/** `refused`: the server does not know this page's token. */
 export function permissions(state, refused) {
   const look = refused ? "this page has no valid token: it only looks" : null;
   for (const button of buttons()) permit(button, look ?? state.allowed?.[button.dataset.act]);

@@ -2,7 +2,7 @@
 
 import { $, h, refill, say, show } from "../dom.js";
 import { plain } from "../numbers.js";
-import { token } from "../token.js";
+import { headers } from "../token.js";
 import { typed, written } from "./fields.js";
 import { permit } from "./buttons.js";
 
@@ -91,7 +91,7 @@ export class Chooser {
     const chosen = this.#chosen;
     if (!chosen) return;
     const question = this.kind === "plan" ? { plan: chosen.name } : { procedure: chosen.name, parameters: this.#values() };
-    const said = await check({ ...question, ...(this.bench ? { bench: this.bench } : { bench: $("bench-name").value }) });
+    const said = await check({ ...question, ...(this.bench ? {} : { bench: $("bench-name").value }) });
     if (number === this.#asked) this.#tell(said); // an answer to what was typed before is none
   }
 
@@ -114,7 +114,7 @@ export class Chooser {
 
 async function check(question) {
   try {
-    const answer = await fetch("/api/check-parameters", { method: "POST", headers: { "Content-Type": "application/json", "X-Hdrig-Token": token }, body: JSON.stringify(question) });
+    const answer = await fetch("/api/check-parameters", { method: "POST", headers, body: JSON.stringify(question) });
     if (answer.ok) return await answer.json();
     return { ok: false, problems: { "": answer.status === 401 ? "not checked: this page has no valid token" : `not checked: the server answered ${answer.status}` } };
   } catch {

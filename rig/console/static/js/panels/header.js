@@ -1,11 +1,11 @@
 // The bar on top: which bench, simulated or not, the hard-wired chain, and whether the page hears anything.
 
 import { $, say, show } from "../dom.js";
-import { aged } from "../numbers.js";
+import { aged, plain } from "../numbers.js";
 
 export function header(state) {
   const bench = state.bench;
-  say($("bench"), bench ? [bench.name, bench.gear && `gear ${bench.gear}`, bench.N && `N = ${bench.N}`].filter(Boolean).join(" · ") : "no bench connected");
+  say($("bench"), bench ? [bench.name, bench.gear && `gear ${bench.gear}`, bench.ratio && `N = ${plain(bench.ratio)}`].filter(Boolean).join(" · ") : "no bench connected");
   show($("simulated"), Boolean(bench?.simulated));
   const chain = state.chain ?? { known: false, text: "" };
   $("chain").dataset.chain = chain.known ? (chain.closed ? "closed" : "open") : "unknown";

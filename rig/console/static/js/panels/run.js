@@ -42,8 +42,8 @@ export function tilesOf(state, history) {
   put("peak", run ? withUnit(run.peak_to_peak_arcsec, "arcsec", 1) : "—");
   put("following", run ? withUnit(run.rms_following_deg, "deg", 3) : "—");
   const last = (name) => (bench ? history.last(name) : NaN);
-  put("angle", withUnit(last("theta_m_deg"), "deg", 1));
-  gauge("speed", last("speed_rpm"), "rpm", 1, limits.speed_rpm);
+  put("angle", withUnit(last("motor_angle"), "deg", 1));
+  gauge("speed", last("speed"), "rpm", 1, limits.speed_rpm);
   gauge("motor", last("tau_m"), "N·m", 2, limits.torque);
   gauge("shaft", last("tau_l"), "N·m", 2, limits.shaft_torque);
   put("lateness", late && Number.isFinite(late.p50_us) ? `${fixed(late.p50_us, 0)} / ${withUnit(late.p99_us, "µs", 0)}` : "—");
@@ -58,8 +58,8 @@ function gauge(name, value, unit, digits, limit) {
 
 export function progress(state) {
   const { run, campaign, last_run: last } = state;
-  say($("run-title"), run ? run.title : "nothing runs");
-  say($("run-folder"), run ? run.folder ?? "" : last ? `last: ${last.folder} ${last.status}` : "");
+  say($("run-title"), run ? run.title : state.job || "nothing runs");
+  say($("run-folder"), run ? short(run.folder) : last ? `last: ${short(last.folder)}, ${last.status}` : "");
   const share = run && run.duration ? Math.min(run.t / run.duration, 1) : 0;
   $("run-meter").setAttribute("aria-valuenow", String(Math.round(100 * share)));
   $("run-meter").firstElementChild.style.transform = `scaleX(${share.toFixed(4)})`;
@@ -68,3 +68,6 @@ export function progress(state) {
   if (campaign) say($("campaign"), `campaign ${campaign.plan}: run ${campaign.done + 1} of ${campaign.total}, ${campaign.current ?? ""}${Number.isFinite(campaign.left_s) ? `, about ${lasting(campaign.left_s)} left` : ""}`);
 }
 
+
+/** A run folder without the way to it. */
+const short = (folder) => (folder ?? "").split("/").slice(-2).join("/");

@@ -12,7 +12,7 @@ export function steps(state) {
   const connected = state.state !== "disconnected";
   mark("connect", connected);
   $("bench-name").disabled = connected;
-  if (connected && state.bench) choose($("bench-name"), state.bench.source ?? state.bench.name);
+  if (connected && state.bench) choose($("bench-name"), state.bench.name);
   show(step("connect").querySelector('[data-act="connect"]'), !connected);
   show(step("connect").querySelector('[data-act="disconnect"]'), connected);
   const checks = state.checks ?? [];
