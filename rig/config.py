@@ -154,6 +154,13 @@ class ControlSection(Strict):
     feedforward: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
 
 
+class ConsoleSection(Strict):
+    """[console]: what becomes of a run whose page is lost, chosen beforehand. For `hdrig serve` alone."""
+
+    page_lost: Literal["continue", "stop"] = "stop"  # stop: category 1, brought to rest, torque off
+    page_lost_s: Annotated[float, quantity("s", ge=0.5, le=3600)] = 3.0  # without a sign of life of any page
+
+
 class TwinKinematicError(Strict):
     """[twin.kinematic_error]: C_n cos(n·θ_m − ψ_n), orders 1 to k."""
 
@@ -220,6 +227,7 @@ class BenchFile(Strict):
     torque_sensor: TorqueSensorSection | None = None
     limits: LimitsSection
     control: ControlSection
+    console: ConsoleSection = Field(default_factory=ConsoleSection)
     twin: TwinSection | None = None
 
 

@@ -128,12 +128,12 @@ class Loop:
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
-            if self.interrupts.count or self.interrupts.held:
-                steps = self._course(steps, procedure, setting)
             if self.interrupts.count > 1:
-                self.instruments.safe()
+                self.instruments.safe()  # before any word about it is written down
                 self._last_row(sample, asked)
                 return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
+            if self.interrupts.count or self.interrupts.held:
+                steps = self._course(steps, procedure, setting)
             try:
                 asked = steps.send(sample)
             except NotReady:

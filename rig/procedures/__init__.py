@@ -25,6 +25,7 @@ CATALOGUE: dict[str, str] = {
     "held-standstill": "rig.procedures.held_standstill:HeldStandstill",
     "stiffness-lock": "rig.procedures.stiffness_lock:StiffnessLock",
     "compensated": "rig.procedures.compensated:Compensated",
+    "jog": "rig.procedures.jog:Jog",
 }
 
 

@@ -64,6 +64,11 @@ class Panel(Interrupts):
     def held(self, value: bool) -> None:
         self._held = value
 
+    @property
+    def signalled(self) -> bool:
+        """True once a signal told this process to end."""
+        return self._signals > 0
+
     def request(self, signum: int = 0, frame: object = None) -> None:
         """A signal to this process."""
         self._signals += 1

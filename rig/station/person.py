@@ -22,20 +22,20 @@ class NotMade(HdrigError):
 
 @final
 class PagePerson(Operator):
-    """Asks the page; where the rig has a `hand` of its own, the twin's, that makes the change once the answer is yes."""
+    """Asks the page; where the rig has a `hand` of its own, the twin's, that makes the change once it said yes."""
 
     def __init__(
         self, teller: Teller, interrupts: Interrupts, attend: Callable[[], None], hand: Operator | None
     ) -> None:
-        self._teller, self._interrupts, self._attend, self._hand = teller, interrupts, attend, hand
+        self._teller, self._interrupts, self._attend, self.hand = teller, interrupts, attend, hand
         self._answer: bool | None = None
 
     def make(self, change: Change) -> None:
         """Raises NotReady when the answer is no or nobody can give one, NotMade after a stop."""
         if not self.ask(change.words(), type(change).__name__):
             raise NotReady(f"the operator could not do this: {change.words()}")
-        if self._hand is not None and not isinstance(change, ClearFault):
-            self._hand.make(change)
+        if self.hand is not None and not isinstance(change, ClearFault):
+            self.hand.make(change)
 
     def ask(self, text: str, what: str) -> bool:
         """Yes or no to `text`. Raises as `make`."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 import uuid
+from collections.abc import Callable
 from pathlib import Path
 from typing import final
 
 from rig.core.sample import Sample
-from rig.live.switches import Switches
 from rig.loop import Ending
 from rig.runfile.manifest import utc_now
 from rig.session import Watch
@@ -23,10 +23,10 @@ RARELY = 1.0  # s between two looks at the lateness, which costs 10 to 50 µs
 
 @final
 class Teller(Observer):
-    """The session's observer. `attend` is called while a run goes on, and reads what pages ask meanwhile."""
+    """The session's observer. `attend` is called now and then while a run goes on: reads what pages ask meanwhile."""
 
-    def __init__(self, channel: Channel, switches: Switches, status: Status) -> None:
-        self.channel, self.switches, self.status = channel, switches, status
+    def __init__(self, channel: Channel, status: Status, attend: Callable[[], None]) -> None:
+        self.channel, self.status, self.attend = channel, status, attend
         self.supervisor: Supervisor | None = None
         self._told = time.monotonic()
         self._measured = 0.0
@@ -62,6 +62,7 @@ class Teller(Observer):
             if now - self._told >= OFTEN:
                 self._told = now
                 self._progress(sample, run, now)
+                self.attend()
 
         return watch
 
@@ -75,7 +76,15 @@ class Teller(Observer):
         if now - self._measured >= RARELY:
             self._measured = now
             status["lateness"] |= {"p50_us": timing.quantile(0.5) * 1e6, "p99_us": timing.quantile(0.99) * 1e6}
-        self.channel.offer({"kind": "progress", "t": sample.t, "rows": timing.ticks, "lateness": status["lateness"]})
+        self.channel.offer(
+            {
+                "kind": "progress",
+                "uid": status["uid"],
+                "t": sample.t,
+                "rows": timing.ticks,
+                "lateness": status["lateness"],
+            }
+        )
 
     def ended(self, folder: Path, ending: Ending) -> None:
         """What became of it, before its folder is closed."""
