@@ -16,6 +16,7 @@ CATALOGUE: dict[str, tuple[str, str]] = {
     "devices": ("rig.commands.devices", "who is on the CAN bus and the serial ports; writes a first bench file"),
     "doctor": ("rig.commands.doctor", "is this machine, this bus and this bench fit for a run"),
     "serve": ("rig.commands.serve", "the console: a page to connect, run, stop, annotate; loopback by default"),
+    "view": ("rig.commands.view", "a run in the Rerun viewer, also while it goes on; or as a recording for it"),
     "reset": ("rig.commands.reset", "clear a fault of the drive, once somebody has seen that the rig is whole"),
     "drill": ("rig.commands.drill", "every fault of bus and devices in every phase of a run, on virtual time"),
     "list": ("rig.commands.list_", "the runs in a folder, by date, gear, procedure, verdict"),

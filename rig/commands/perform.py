@@ -19,16 +19,22 @@ from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
 from rig.procedures.weigh import Weigh
 from rig.session import Done, Session
+from rig.session.observer import Observer
 
 if TYPE_CHECKING:
     from rig.analysis.step_response import StepResponse
 
 
-def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, note: str) -> int:
+def perform(
+    bench: Bench, clock: ClockName, procedure: Procedure, root: Path, note: str, observer: Observer | None = None
+) -> int:
     """One procedure to the end, its figures on stdout; the exit code. Ctrl-C once = stop, twice = halt."""
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    with Interrupts() as interrupts, Session(bench, clock, root, interrupts, note, Person(interrupts)) as session:
+    with (
+        Interrupts() as interrupts,
+        Session(bench, clock, root, interrupts, note, Person(interrupts), observer=observer or Observer()) as session,
+    ):
         session.check(procedure)
         if procedure.closes_loop:
             print("the motor is about to turn: sign-and-scale proof, one turn forth and back", file=sys.stderr)

@@ -18,6 +18,7 @@ from rig.commands.options import (
     procedure_arguments,
 )
 from rig.commands.perform import perform
+from rig.commands.viewing import view, view_argument
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.procedures import CATALOGUE, procedure_class
@@ -29,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join([*CATALOGUE, *SWEEPS]))
     bench_arguments(parser)
     procedure_arguments(parser)
+    view_argument(parser)
     parser.epilog = parameters_text()
     parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
 
@@ -58,4 +60,6 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(plan_lines(bench, procedure)))
         refuse_beyond_limits(bench, procedure)
         return 0
-    return perform(bench, clock, procedure, args.out, args.note.encode("utf-8", "replace").decode())
+    with view(args.view) as looking_on:
+        note = args.note.encode("utf-8", "replace").decode()
+        return perform(bench, clock, procedure, args.out, note, looking_on)
