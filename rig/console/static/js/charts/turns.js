@@ -3,6 +3,7 @@
 export const BINS = 360; // of one motor turn: one degree, 17 ms at 9.6 rpm
 const BACK = 2; // deg the motor has to come back before that counts as the other direction
 const CATCH = 60; // deg after turning round: the gear winds up the other way and rings for a second; kept out of the mean
+const LEAVE = 20; // deg before turning round, or stopping: kept out as well, so a row counts when the motor is past it
 const JUMP = 30; // deg between two rows that are still joined by a straight line: 600 rpm makes 7 deg
 const KEPT = 3; // revolutions shown beside the mean
 const BIN = 360 / BINS;
@@ -25,6 +26,7 @@ export class Turns {
     this.turn = NaN;
     this.turned = NaN; // where it turned round last [deg]
     this.before = null; // the row before
+    this.pending = []; // rows the motor is not yet LEAVE past: {angle, bin, error}
     this.marker = null; // {angle, error}: where the wave generator is now
   }
 
@@ -54,7 +56,11 @@ export class Turns {
     const bin = Math.min(Math.floor((angle - 360 * turn) / BIN), BINS - 1);
     if (this.present[bin] === null) this.filled += 1;
     this.present[bin] = error;
-    if (Math.abs(angle - this.turned) > CATCH) this.ways[this.way].add(bin, error);
+    if (Math.abs(angle - this.turned) > CATCH) this.pending.push({ angle, bin, error });
+    while (this.pending.length && Math.abs(angle - this.pending[0].angle) > LEAVE) {
+      const past = this.pending.shift();
+      this.ways[this.way].add(past.bin, past.error);
+    }
   }
 
   /** The level all curves are drawn about: the mean of what was measured, both ways. */
@@ -74,6 +80,7 @@ export class Turns {
   }
 
   #turnRound(way, angle) {
+    this.pending = [];
     this.before = null;
     this.#finish(Math.floor(angle / 360));
     this.way = way;
