@@ -154,10 +154,9 @@ def _mark(value: float, low: float, high: float, limit: float) -> Mark:
 
 
 def _how(a: Row, b: Row, of_a: Scatter, of_b: Scatter, unit: str) -> str:
-    shown = "" if unit == "1" else f", in {unit}"
     if point(a) == point(b):
-        return of_a.words() + shown
-    return f"first run: {of_a.words()}; other run: {of_b.words()}{shown}"
+        return of_a.words(unit)
+    return f"first run: {of_a.words(unit)}; other run: {of_b.words(unit)}"
 
 
 def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> list[str]:

@@ -38,13 +38,14 @@ class Scatter:
         """What the difference of two means of unchanged runs stays below, 99 times of 100; NaN when not known."""
         return _t(self.dof) * self.sd * math.sqrt(1 / n_a + 1 / n_b) if self.known else math.nan
 
-    def words(self) -> str:
-        """How it was estimated."""
+    def words(self, unit: str) -> str:
+        """How large it is, and how it was estimated."""
         if not self.known:
             return "reproducibility not known: no repeats of the same gear, procedure, conditions and assembly"
+        said = f"{self.sd:.3g}" if unit == "1" else f"{self.sd:.3g} {unit}"
         where = "one assembly" if self.sets == 1 else f"{self.sets} assemblies"
         return (
-            f"scatter of a single run {self.sd:.3g} (standard deviation, {self.dof:.1f} degrees of freedom), from "
+            f"scatter of a single run {said} (standard deviation, {self.dof:.1f} degrees of freedom), from "
             f"successive differences among {self.repeats} repeats of the same gear, procedure and conditions in {where}"
         )
 

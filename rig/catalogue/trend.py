@@ -50,14 +50,14 @@ class Series:
         """What was seen, and by which measure."""
         marked = [s for s in self.spots if s.changed]
         if not self.scatter.known:
-            return f"changes cannot be judged, {self.scatter.words()}"
+            return f"changes cannot be judged, {self.scatter.words(self.unit)}"
         seen = "no change larger than reproducibility"
         if marked:
             when = ", ".join(
                 f"{s.row.started_utc[:10]} by {s.figure.value - s.level:+.3g} {self.unit}".rstrip(" 1") for s in marked
             )
             seen = f"{len(marked)} change{'s' if len(marked) > 1 else ''} larger than reproducibility: {when}"
-        return f"{seen}; {self.scatter.words()}"
+        return f"{seen}; {self.scatter.words(self.unit)}"
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Trend:
                     "label": s.label,
                     "unit": s.unit,
                     "scatter": {"sd": finite(s.scatter.sd), "dof": s.scatter.dof, "repeats": s.scatter.repeats,
-                                "assemblies": s.scatter.sets, "how": s.scatter.words()},
+                                "assemblies": s.scatter.sets, "how": s.scatter.words(s.unit)},
                     "sentence": s.sentence,
                     "points": [_spot(p) for p in s.spots],
                 }
