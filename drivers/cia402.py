@@ -34,6 +34,7 @@ from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 
 PROFILE = 402
+VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage
 NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
@@ -242,6 +243,7 @@ class Cia402(Drive):
         if latched == NEVER:
             return self._told(self._last)
         word, mode, permille, position = self._inputs.values
+        self.voltage = bool(int(word) & VOLTAGE)
         self._judge(int(word), mode)
         flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & 1 << 11 else 0
         if latched != self._last.t:

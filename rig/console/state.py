@@ -62,5 +62,6 @@ def _campaign(link: Link) -> dict[str, Any] | None:
     if campaign is None:
         return None
     run = link.picture["run"]
-    done = link.progress.get("t", 0.0) if run and link.progress.get("uid") == run["uid"] else 0.0
+    measured = run and campaign["measuring"]  # a check's time is not in what is left
+    done = link.progress.get("t", 0.0) if measured and run and link.progress.get("uid") == run["uid"] else 0.0
     return {**campaign, "left_s": max(campaign["left_s"] - done, 0.0)}

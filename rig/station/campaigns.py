@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
 
 from rig.campaign import summary
-from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
+from rig.campaign.journal import Journal, new_journal, read_journal, record_of, refuse_other_campaign
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -50,6 +50,8 @@ def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tupl
     campaign = planned(read_plan(str(message.get("plan", ""))), session.bench, secrets.randbelow(SEEDS))
     journal = new_journal(station.root, campaign, session.clock, [])
     journal.book["rigging"] = session.rigging.conditions()  # as it stands: weight and pin come off first
+    if station.pending is not None:
+        journal.book["pending"] = record_of(station.pending)
     return journal, campaign
 
 
@@ -81,9 +83,9 @@ class PageDesk(Desk):
 
     @contextlib.contextmanager
     def watching(self, item: Item, duration: float) -> Iterator[Watch]:
-        self._tell(item.words())
-
+        self._tell(item.words(), measuring=True)
         yield nobody
+        self._tell(item.words())
 
     def again(self, why: str) -> bool:
         person = self.station.person
@@ -105,12 +107,12 @@ class PageDesk(Desk):
             raise DataError(str(found["sentence"]))
         return str(found["sentence"])
 
-    def _tell(self, current: str) -> None:
+    def _tell(self, current: str, measuring: bool = False) -> None:
         left = self.journal.open_runs()
         seconds = sum(self.campaign.envelope(self.campaign.items[k]).duration for k in left)
         total = len(self.campaign.items)
         self.station.status.campaign = {
             "plan": self.campaign.plan.file.name, "done": total - len(left), "total": total, "current": current,
-            "left_s": seconds, "folder": str(self.journal.folder),
+            "left_s": seconds, "measuring": measuring, "folder": str(self.journal.folder),
         }  # fmt: skip
         self.station.told()

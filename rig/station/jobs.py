@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rig.bench import Bench, ClockName, read
+from rig.campaign.run import to_bare
 from rig.core.errors import HdrigError, UsageError
 from rig.core.operator import FreeOutput, LockOutput
 from rig.core.procedure import Procedure
@@ -117,7 +118,9 @@ def _procedure(message: Mapping[str, Any]) -> Procedure:
 
 
 def _prepare(station: Station, session: Session, procedure: Procedure) -> None:
-    """What `hdrig run` does before: the proof, the pin."""
+    """What `hdrig run` does before: the proof, the pin; of a change nobody could show it is first made sure."""
+    for change in to_bare(session.rigging, station.pending) if session.unsure else ():
+        station.teller.say("finding", session.change(change))
     if session.rigging.output_locked and not procedure.output_locked:
         station.teller.say("finding", session.change(FreeOutput()))
     if procedure.closes_loop and session.proof is None:

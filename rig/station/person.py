@@ -29,9 +29,11 @@ class PagePerson(Operator):
     ) -> None:
         self._teller, self._interrupts, self._attend, self.hand = teller, interrupts, attend, hand
         self._answer: bool | None = None
+        self.asked: Change | None = None  # last
 
     def make(self, change: Change) -> None:
         """Raises NotReady when the answer is no or nobody can give one, NotMade after a stop."""
+        self.asked = change
         if not self.ask(change.words(), type(change).__name__):
             raise NotReady(f"the operator could not do this: {change.words()}")
         if self.hand is not None and not isinstance(change, ClearFault):

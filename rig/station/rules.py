@@ -35,11 +35,11 @@ def why_not(act: str, picture: Mapping[str, Any]) -> str:
         case "reset":
             return _busy(picture) or _unconnected(picture) or _no_fault(picture)
         case "prove" | "jog":
-            return _idle(picture) or _locked(picture)
+            return _idle(picture) or _unsure(picture) or _locked(picture)
         case "tare":
-            return _idle(picture) or _untarable(picture)
+            return _idle(picture) or _unsure(picture) or _untarable(picture)
         case "start" | "campaign":
-            return _idle(picture) or _unsure(picture)
+            return _idle(picture)
         case _:
             return f"there is no act '{act}'; expected one of {', '.join(ACTS)}"
 
@@ -55,7 +55,7 @@ def advice(picture: Mapping[str, Any]) -> str:
     if picture["state"] == "fault":
         return "Look at the rig: when it is whole and free to turn, reset the fault. The proof is made anew after it."
     if _unsure(picture):
-        return "See what was asked for by hand and could not be shown; then run the campaign again, or reconnect."
+        return "A change by hand was not shown: the next run or campaign first asks for weight and pin to come off."
     if picture["proof"] is None:
         return "Make the sign-and-scale proof, one turn forth and back; or start a run, which makes it first."
     return "Ready: choose a procedure or a campaign and start it."

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any, final
 
 from rig.core.errors import HdrigError, NotReady
+from rig.core.operator import Change
 from rig.live.switches import Counts, Switches
 from rig.session import Session
 from rig.station.analysis import Analysis
+from rig.station.chain import Chain
 from rig.station.channel import Channel
 from rig.station.interrupts import Panel
 from rig.station.person import PagePerson
@@ -49,6 +51,7 @@ class Station:
         self.stack = contextlib.ExitStack()  # leaving it takes the torque off and lets go of the devices
         self.person: PagePerson | None = None
         self.analysis: Analysis | None = None
+        self.chain = Chain()
         self.closing = False
         self._next_reading = 0.0
         self._halts = switches.pressed.halt
@@ -85,6 +88,13 @@ class Station:
             instruments.latch()
         sample = instruments.read(clock.wait_until(clock.now() + instruments.lead))
         self.teller.idle(sample, clock.now())
+        self._look_at_chain(session, energised=False)
+
+    def _look_at_chain(self, session: Session, energised: bool) -> None:
+        seen = self.chain.judge(session.instruments.drive.voltage, energised)
+        if seen != self.status.chain:
+            self.status.chain = seen
+            self.teller.tell()
 
     def _halted(self) -> None:
         """Halt while nothing runs: nothing should be energised, and it is taken off all the same."""
@@ -144,6 +154,8 @@ class Station:
         for message in self.channel.receive():
             self.meanwhile(message)
         self.channel.flush()
+        if self.session is not None:
+            self._look_at_chain(self.session, energised=True)
 
     def note(self, text: str) -> None:
         """What somebody has to say, into the run's events, or the next one's."""
@@ -205,7 +217,7 @@ class Station:
 
     def connected(self, session: Session) -> None:
         """A session that was entered on `stack`."""
-        self.session = session
+        self.session, self.chain = session, Chain()
         self.teller.supervisor = session.supervisor
         hand, session.instruments.operator = session.instruments.operator, None
         self.person = PagePerson(self.teller, self.panel, self.attend, hand)
@@ -219,9 +231,10 @@ class Station:
         self.status = self.teller.status = Status(last_run=last, checks=checks)
         self.teller.tell()
 
-    def in_fault(self) -> bool:
-        """True while a fault is latched."""
-        return self.session is not None and self.session.supervisor.state is State.FAULT
+    @property
+    def pending(self) -> Change | None:
+        """The change by hand that was asked for and could not be shown."""
+        return self.person.asked if self.person is not None and self.need().unsure else None
 
     def ready(self) -> None:
         """From connected to ready, when every check has passed."""
