@@ -21,6 +21,7 @@ from rig.core.procedure import Setting
 from rig.core.sample import Mode
 from rig.guard import DEG, RPM, Limits
 from rig.instruments import Instruments
+from rig.twin_hand import TwinHand
 
 BENCHES = Path(__file__).parent / "benches"  # benches that ship with hdrig
 ClockName = Literal["virtual", "wall"]
@@ -127,8 +128,9 @@ class Bench:
         speed = SpeedFilter(self.file.loop.speed_filter)
         wiring = Wiring(timer, {name: bus.model_dump() for name, bus in self.file.bus.items()}, **connect)
         made = {role: self._device(role, wiring, self._place(role)) for role in ROLES if self._has(role)}
+        hand = TwinHand(self.file.hand.control) if self.file.hand else None
         return Instruments(
-            made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed,
+            made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed, hand,
             latch=wiring.latch, lead=self.file.loop.latch_lead,
         )  # fmt: skip
 

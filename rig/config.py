@@ -142,6 +142,12 @@ class LimitsSection(Strict):
     stale_s: Annotated[float, quantity("s", **Positive)]
 
 
+class HandSection(Strict):
+    """[hand]: of a twin in another process; a person is the hand of every other bench."""
+
+    control: str = Field(min_length=1)  # socket of the twin's command channel
+
+
 class ControlSection(Strict):
     """[control]: gains of the host's position loop, motor side; `mode` says which loop the drive closes by itself."""
 
@@ -228,6 +234,7 @@ class BenchFile(Strict):
     limits: LimitsSection
     control: ControlSection
     console: ConsoleSection = Field(default_factory=ConsoleSection)
+    hand: HandSection | None = None
     twin: TwinSection | None = None
 
 

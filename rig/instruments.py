@@ -9,7 +9,7 @@ from rig.control.filter import SpeedFilter
 from rig.core.channels import Flag
 from rig.core.clock import Clock
 from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
-from rig.core.errors import HdrigError
+from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Operator
 from rig.core.sample import NAN, Sample, Setpoint
 from rig.latching import LatchOffsets
@@ -62,6 +62,9 @@ class Instruments:
             raise
         if any(identity.simulated for identity in found.values()):
             self._mark = int(Flag.SIMULATED)  # the twin over a wire, whose drivers cannot know
+        elif self.operator is not None:
+            self.close()
+            raise NotReady("the bench file has a [hand], as a twin has, and no device here says that it is simulated")
         return found
 
     def causes(self) -> str:

@@ -145,7 +145,7 @@ class Session:
 
     def restore(self, made: list[Change], rigging: Rigging) -> None:
         """Take up a rig that was left as `rigging`; on a twin, which begins anew, what was `made` is made again."""
-        if self.instruments.operator is not None:
+        if self.instruments.operator is not None and self.instruments.operator.begins_anew:
             for change in made:
                 self.instruments.operator.make(change)
                 wait_for_rest(self.instruments)
