@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rig.core.errors import Exit
+
+if TYPE_CHECKING:
+    from rig.live.view.viewer import Viewer
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,6 +20,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--host", default="127.0.0.1", metavar="ADDRESS", help="default 127.0.0.1: this machine alone")
     parser.add_argument("--port", type=int, default=8765, metavar="N", help="default 8765; 0: a free one")
     parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
+    parser.add_argument("--view", choices=("none", "web"), default="none", help="the live view as a part of the page")
     parser.add_argument(
         "--name", action="append", default=[], metavar="NAME", help="what a proxy that ends TLS calls this server"
     )
@@ -27,8 +33,16 @@ def run(args: argparse.Namespace) -> int:
 
     read(args.bench)  # what is wrong with it is said now
     args.out.mkdir(parents=True, exist_ok=True)
-    serving = Serving(args.host, args.port, args.out, args.bench, tuple(args.name))
-    for line in serving.lines:
-        print(line, flush=True)
-    asyncio.run(serving.run())
+    with _viewer(args.view) as viewer:
+        serving = Serving(args.host, args.port, args.out, args.bench, tuple(args.name), viewer)
+        for line in serving.lines:
+            print(line, flush=True)
+        asyncio.run(serving.run())
     return Exit.PASS
+
+
+def _viewer(kind: str) -> AbstractContextManager[Viewer | None]:
+    """The live view beside the page; it is loopback's alone, whatever the page is."""
+    from rig.live.view.viewer import Viewer
+
+    return Viewer(kind) if kind == "web" else nullcontext()

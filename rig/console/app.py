@@ -8,6 +8,7 @@ import json
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from fastapi import FastAPI, Request, WebSocket
 from fastapi.responses import FileResponse, JSONResponse
@@ -24,6 +25,7 @@ from rig.console.link import Link
 from rig.console.pages import STEP, Pages
 from rig.console.runs import add_runs
 from rig.console.state import compose
+from rig.live.view.viewer import Viewer
 
 STATIC = Path(__file__).parent / "static"
 LONGEST = 65_536  # bytes of a POST
@@ -32,25 +34,29 @@ LONGEST = 65_536  # bytes of a POST
 class Console:
     """One server's parts: `app` is what uvicorn serves."""
 
-    def __init__(self, access: Access, root: Path, offered: str, viewer: str = "") -> None:
+    def __init__(self, access: Access, root: Path, offered: str, viewer: Viewer | None = None) -> None:
         self.link, self.gate = Link(root), Gate()
         self.desk = ActDesk(self.link, self.gate)
         self.desk.offered = offered
         self.feed = Feed(self.link)
         self.pages = Pages(access, self.desk, self.feed, self.state)
         self.closing = False
-        self.viewer = viewer
+        self.viewer, self._shown = viewer, ""
         self.link.changed = self._changed
         self.app = FastAPI(lifespan=self._lifespan, docs_url=None, redoc_url=None, openapi_url=None)
-        self.app.add_middleware(Guarded, access=access, viewer=viewer)
+        self.app.add_middleware(Guarded, access=access, viewer=_origin(viewer.url) if viewer else "")
         self._routes()
 
     def state(self, page: str, seq: int = 0) -> dict[str, Any]:
         """State as `page` is shown it."""
-        extra = {"seq": seq, "closing": self.closing, "viewer_url": self.viewer or None}
+        extra = {"seq": seq, "closing": self.closing, "viewer_url": self.viewer.url if self.viewer else None}
         return compose(self.link, self.feed, self.gate, page, extra)
 
     def _changed(self) -> None:
+        run = self.link.picture["run"]
+        if self.viewer is not None and run is not None and run["folder"] != self._shown:
+            self._shown = run["folder"]
+            self.viewer.follow(Path(self._shown))
         self.desk.look()
         self.pages.news()
 
@@ -108,6 +114,11 @@ class Console:
 
         add_runs(app, self.link.root)
         app.mount("/static", StaticFiles(directory=STATIC), name="static")
+
+
+def _origin(url: str) -> str:
+    parts = urlsplit(url)
+    return f"{parts.scheme}://{parts.netloc}"
 
 
 def _page(request: Request) -> str:

@@ -15,6 +15,7 @@ import uvicorn
 from rig.console.access import Access, is_loopback, new_token
 from rig.console.app import Console
 from rig.core.errors import NotReady
+from rig.live.view.viewer import Viewer
 
 LONGEST_STOP = 120.0  # s: a wound-up gear is let out along its ramp, then the run is closed
 GOODBYE = 1  # s pages have to close their lines
@@ -34,12 +35,14 @@ class Server(uvicorn.Server):
 class Serving:
     """One `hdrig serve`."""
 
-    def __init__(self, host: str, port: int, root: Path, offered: str, names: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, host: str, port: int, root: Path, offered: str, names: tuple[str, ...] = (), viewer: Viewer | None = None
+    ) -> None:
         """Raises NotReady when nothing can listen there."""
         self._socket = _listen(host, port)
         port = self._socket.getsockname()[1]
         self.access = Access(new_token(), host, port, names)
-        self.console = Console(self.access, root, offered)
+        self.console = Console(self.access, root, offered, viewer)
         config = uvicorn.Config(
             self.console.app, log_level="error", access_log=False, ws_ping_interval=5.0, ws_ping_timeout=10.0,
             timeout_graceful_shutdown=GOODBYE, ws_max_size=65_536, server_header=False,

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 from rig.console.columns import COLUMNS
 from rig.console.feed import Feed
 from rig.console.gate import CONTROL, Gate
 from rig.console.link import Link
+from rig.console.runs import report_of
 from rig.station.rules import ALWAYS, advice, allowed
 
 STALE = 1.0  # s without a word while nothing is carried out: a station that reads at 20 Hz is stuck then
@@ -19,7 +21,8 @@ def compose(link: Link, feed: Feed, gate: Gate, page: str, extra: dict[str, Any]
     picture = link.picture
     heard = time.monotonic() - link.heard
     return {
-        **{key: value for key, value in picture.items() if key not in ("run", "campaign")},
+        **{key: value for key, value in picture.items() if key not in ("run", "campaign", "last_run")},
+        "last_run": _last_run(link),
         "revision": gate.revision,
         "server_ns": time.time_ns(),
         "age_ms": round(feed.age_ms, 1),
@@ -55,6 +58,13 @@ def _run(link: Link, feed: Feed) -> dict[str, Any] | None:
     if progress.get("uid") == run["uid"]:
         known |= {"rows": progress["rows"], "lateness": progress["lateness"]}
     return {**known, **figures, "left_s": max(run["duration"] - figures["t"], 0.0)}
+
+
+def _last_run(link: Link) -> dict[str, Any] | None:
+    last: dict[str, Any] | None = link.picture["last_run"]
+    if last is None or last["report"] is None:
+        return last
+    return {**last, "report": report_of(link.root, Path(last["folder"]))}
 
 
 def _campaign(link: Link) -> dict[str, Any] | None:
