@@ -52,12 +52,14 @@ def reach(runs: Sequence[Recording]) -> Reach:
         load_turns=float(np.nanmax(turns)) / (2 * np.pi),
         counts_m=runs[0].counts_m,
         counts_l=runs[0].counts_l,
+        has=frozenset().union(*(run.knows for run in runs)),
     )
 
 
 def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered: Reach) -> Bank:
-    """Columns of all shapes of `effects` for those runs."""
-    terms = tuple(Term(effect, shape) for effect in effects for shape in effect.shapes(covered))
+    """Columns of all shapes of those `effects` that the channels measured can show, for those runs."""
+    able = [effect for effect in effects if effect.needs <= covered.has]
+    terms = tuple(Term(effect, shape) for effect in able for shape in effect.shapes(covered))
 
     def of(run: int) -> _Filled:
         return _filled(eq, run, terms)

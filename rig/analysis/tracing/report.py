@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rig.analysis.tracing import parameters
+from rig.analysis.tracing.cannot import cannot, together
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.curves import curves
 from rig.analysis.tracing.equations import Key
@@ -55,7 +56,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         ),
         baseline=parameters.baseline(empty),
         baseline_after=parameters.baseline(s),
-        cannot_be_told_apart=parameters.TOGETHER,
+        cannot_be_told_apart=together(p.campaign.runs),
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
@@ -69,24 +70,9 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         after=errors(p.eq, p.court, final),
         next_run=ruling.next_run,
         notes=p.campaign.notes,
-        cannot=(*ruling.cannot, *absent(p)),
+        cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
         curves=curves(p, before, final) | pictures(p, before, final),
     )
-
-
-def absent(p: Prepared) -> tuple[str, ...]:
-    """What cannot be told for want of a channel."""
-    has = frozenset().union(*(run.has for run in p.campaign.runs))
-    return tuple(sentence for channel, sentence in WITHOUT.items() if channel not in has)
-
-
-WITHOUT = {
-    "t": "No run has a time column: speeds, inertias and damping have no scale; 250 rows a second were assumed.",
-    "theta_m": "No motor angle: neither the kinematic error nor the motor's torque balance can be looked at.",
-    "theta_l": "No load angle: the kinematic error, the stiffness and the load's torque balance cannot be looked at.",
-    "tau_l": "No shaft torque: it was taken from the declared load inertia; sensor effects of it cannot be seen.",
-    "tau_m": "No motor torque: friction and torque ripple of the motor side cannot be seen.",
-}
 
 
 def own_shares(p: Prepared, s: Solution) -> dict[str, float]:

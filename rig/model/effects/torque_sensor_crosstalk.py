@@ -16,6 +16,7 @@ class TorqueSensorCrosstalk(Effect):
     name: ClassVar[str] = "torque_sensor_crosstalk"
     in_short: ClassVar[str] = "once or twice per output turn in the torque sensor alone"
     source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = frozenset({"tau_l"})
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
 
