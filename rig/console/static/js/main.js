@@ -98,7 +98,7 @@ link.addEventListener("closed", ({ detail }) => {
   answer({ ok: false, text: "This page has no valid token: it shows nothing live. Open the address that hdrig serve printed." });
 });
 link.open();
-setInterval(() => freshness(link, state?.live?.age_ms ?? null), LOOK_AT_AGE);
+setInterval(() => freshness(link, state), LOOK_AT_AGE);
 
 const offered = await get("/api/catalogue");
 benches(offered.benches ?? []);

@@ -141,11 +141,11 @@ function field({ name, type, unit, default: value, meaning }, kept) {
 }
 
 /** How much of a limit the run asks for. */
-function bar({ what, asked, limit, unit, fraction }) {
+function bar({ what, asked, limit, unit, fraction, clamped }) {
   const share = Number.isFinite(fraction) ? fraction : 0;
   const fill = h("i", {});
   fill.style.transform = `scaleX(${Math.min(Math.max(share, 0), 1).toFixed(4)})`;
-  const item = h("li", {}, h("span", { className: "what" }, what), h("span", { className: "track" }, fill), h("span", { className: "value" }, `${plain(asked)} of ${plain(limit)} ${unit}`));
-  item.dataset.margin = share > 1 ? "beyond" : share > 0.9 ? "thin" : "wide";
+  const item = h("li", {}, h("span", { className: "what" }, what), h("span", { className: "track" }, fill), h("span", { className: "value" }, `${clamped ? "at most " : ""}${plain(asked)} of ${plain(limit)} ${unit}`));
+  item.dataset.margin = share > 1 ? "beyond" : share > 0.9 && !clamped ? "thin" : "wide";
   return item;
 }

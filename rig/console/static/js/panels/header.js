@@ -3,6 +3,8 @@
 import { $, say, show } from "../dom.js";
 import { aged, plain } from "../numbers.js";
 
+const OLD = 500; // ms after which a sample is no present value
+
 export function header(state) {
   const bench = state.bench;
   say($("bench"), bench ? [bench.name, bench.gear && `gear ${bench.gear}`, bench.ratio && `N = ${plain(bench.ratio)}`].filter(Boolean).join(" · ") : "no bench connected");
@@ -22,15 +24,15 @@ function local(url) {
   return near && /^https?:$/.test(target.protocol) ? target.href : "about:blank";
 }
 
-/** How old the picture is; `samples` is the age of the newest sample when the state was made [ms], null without one. */
-export function freshness(link, samples) {
+/** How old the picture is. Stale is a page that hears nothing, and one whose control process has died. */
+export function freshness(link, state) {
   const root = document.documentElement;
-  const kind = root.dataset.link === "refused" ? "refused" : link.stale ? "stale" : "live";
+  const dead = state?.station === false;
+  const kind = root.dataset.link === "refused" ? "refused" : link.stale || dead ? "stale" : "live";
   root.dataset.link = kind;
   show($("stale"), kind === "stale");
-  say($("stale-age"), `no word from the station for ${aged(link.age)}`);
-  const now = samples === null || samples === undefined ? null : samples + link.age;
-  root.dataset.samples = now !== null && now > 500 ? "old" : "fresh"; // ms
+  say($("stale-age"), dead && !link.stale ? "the control process has ended: nobody looks after the rig" : `no word from the station for ${aged(link.age)}`);
+  const samples = state?.live?.age_ms ?? null; // when the state was made; null without any
+  root.dataset.samples = samples !== null && samples + link.age > OLD ? "old" : "fresh";
   say($("link").querySelector(".text"), { live: `live, state ${aged(Math.min(link.age, 200))} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
-  return kind;
 }
