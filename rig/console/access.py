@@ -54,7 +54,9 @@ class Access:
         said = headers.get("origin")
         if said is None:
             return ""
-        return "" if self._ours(urlsplit(said).netloc) else f"a page from '{said[:100]}' may not act here"
+        scheme, _, rest = said.partition("://")
+        ours = scheme in ("http", "https") and self._ours(rest)
+        return "" if ours else f"a page from '{said[:100]}' may not act here"
 
     def refuse_token(self, given: str | None) -> str:
         """Why `given` is not the token, or ""."""
@@ -65,10 +67,12 @@ class Access:
 
     def _ours(self, netloc: str) -> bool:
         """Whether a Host header, or an origin's, names this server."""
-        parts = urlsplit(f"//{netloc}")
         try:
+            parts = urlsplit(f"//{netloc}")
             name, port = parts.hostname or "", parts.port
         except ValueError:
+            return False
+        if parts.username is not None or parts.path:
             return False
         if name in self.names:
             return True  # behind a proxy that ends TLS, on whatever port
