@@ -16,6 +16,7 @@ from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operat
 from rig.interrupts import Interrupts
 from rig.runfile.folder import create_in
 from rig.session import Done, Session, Watch
+from rig.session.observer import Observer
 from rig.supervisor import State
 
 
@@ -46,9 +47,20 @@ def open_session(
     interrupts: Interrupts,
     note: str = "",
     hand: Operator | None = None,
+    observer: Observer | None = None,
 ) -> Session:
     """The campaign's runs directly in its folder; proofs and weighings, which are no part of the data, beside them."""
-    return Session(campaign.bench, clock, journal.folder, interrupts, note, hand, create=create_in, checks="checks")
+    return Session(
+        campaign.bench,
+        clock,
+        journal.folder,
+        interrupts,
+        note,
+        hand,
+        create=create_in,
+        checks="checks",
+        observer=observer or Observer(),
+    )
 
 
 def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:

@@ -27,6 +27,13 @@ def bench_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--note", default="", metavar="TEXT", help="kept in the run's manifest")
 
 
+def show_argument(parser: argparse.ArgumentParser) -> None:
+    """--json."""
+    parser.add_argument(
+        "--json", action="store_true", help="every event as a JSON line on stdout; keys in rig/commands/show/show.py"
+    )
+
+
 def open_bench(args: argparse.Namespace) -> tuple[Bench, ClockName]:
     """The bench the options describe, and its clock: virtual on the twin unless told otherwise."""
     seed = [] if args.seed is None else [f"twin.seed={args.seed}"]

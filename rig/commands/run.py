@@ -16,8 +16,10 @@ from rig.commands.options import (
     parameters_of,
     plan_lines,
     procedure_arguments,
+    show_argument,
 )
-from rig.commands.perform import perform
+from rig.commands.perform import Job, clear, let_be, perform
+from rig.commands.show.show import showing
 from rig.commands.viewing import view, view_argument
 from rig.config import nearest
 from rig.core.errors import UsageError
@@ -31,6 +33,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     bench_arguments(parser)
     procedure_arguments(parser)
     view_argument(parser)
+    show_argument(parser)
+    parser.add_argument(
+        "--reset",
+        action="store_const",
+        const=clear,
+        default=let_be,
+        dest="before",
+        help="clear a fault that is still latched before the run: only when somebody has seen that the rig is whole",
+    )
     parser.epilog = parameters_text()
     parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
 
@@ -60,6 +71,6 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join(plan_lines(bench, procedure)))
         refuse_beyond_limits(bench, procedure)
         return 0
-    with view(args.view) as looking_on:
-        note = args.note.encode("utf-8", "replace").decode()
-        return perform(bench, clock, procedure, args.out, note, looking_on)
+    note = args.note.encode("utf-8", "replace").decode()
+    with showing(args.json) as show, view(args.view) as looking_on:
+        return perform(Job(bench, clock, procedure, args.out, note, args.before), show, looking_on)
