@@ -42,6 +42,11 @@ class Bench:
         return self.file.devices.drive.type.startswith("twin.")
 
     @property
+    def by_person(self) -> bool:
+        """Weights and pin are a person's to change; a twin has a hand of its own, also over a wire."""
+        return not self.simulated and self.file.hand is None
+
+    @property
     def gains(self) -> Gains:
         """Of the position loop."""
         c = self.file.control

@@ -15,6 +15,7 @@ from rig.core.sample import NAN, Sample, Setpoint
 from rig.latching import LatchOffsets
 
 FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
+ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 NEVER = -1e9  # s, a latch time older than any
 
 
@@ -119,6 +120,14 @@ class Instruments:
         age = now - oldest
         omega = self.speed_filter.step(t, motor[1])
         return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), fault)
+
+    def look(self) -> Sample:
+        """A sample outside of a run: devices that read when they are asked are asked, and given time to answer."""
+        asked = self.clock.now()
+        if self.latch is None:
+            return self.read(self.clock.wait_until(asked))
+        self.latch()
+        return self.read(self.clock.wait_until(asked + ANSWER))
 
     def told(self) -> dict[str, dict[str, float | int]]:
         """Latch times against the motor angle's since `start`, of the channels that are there, as drivers tell them."""

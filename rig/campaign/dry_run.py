@@ -124,7 +124,7 @@ def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
     ]
     checking = sum(check.envelope(setting).duration for check in checks)
     duration = sum(f.duration for f in found)
-    hand = 0.0 if bench.simulated else CHANGE * len(by_hand)
+    hand = CHANGE * len(by_hand) if bench.by_person else 0.0
     size = sum(f.bytes for f in found) + rows_bytes(checking * bench.file.loop.rate)
     yield f"total       {len(found)} runs, {len(by_hand)} changes by hand, {len(checks)} checks"
     yield (

@@ -61,5 +61,5 @@ def show(session: Session, change: Change) -> str:
 def _wound_up(session: Session) -> float:
     """N·m at the torque sensor, at rest; 0 without a sensor."""
     wait_for_rest(session.instruments)
-    tau = session.instruments.read(session.instruments.clock.now()).tau_l
+    tau = session.instruments.look().tau_l
     return 0.0 if math.isnan(tau) else tau
