@@ -65,7 +65,7 @@ def _show(folder: Path, where: str) -> int:
     from rig.live.view.about import about
     from rig.live.view.pages import Pages
     from rig.live.view.recording import draw
-    from rig.live.view.rerun_canvas import Gone, RerunCanvas, Stalled
+    from rig.live.view.rerun_canvas import WHOLE, Gone, RerunCanvas, Stalled
     from rig.live.view.server import Proxy, Window
     from rig.runfile.run import Run
 
@@ -73,7 +73,7 @@ def _show(folder: Path, where: str) -> int:
     server = Proxy() if where == "web" else Window()
     server.start()
     try:
-        canvas = RerunCanvas.to_viewer(said, server.url)
+        canvas = RerunCanvas.to_viewer(said, server.url, *WHOLE)
         draw(recorded, said, canvas)
         canvas.flush(60.0)  # s: 10 MB to a process on this machine
         _say(Pages(server.port).url if where == "web" else "")

@@ -95,7 +95,7 @@ class Frame:
 
     def titles(self) -> tuple[Array, list[str]]:
         """Where the axes' titles stand, shape (2, 2), and the titles."""
-        where = [(WIDTH / 2, HEIGHT + 9.0), (12.0, -10.0)]
+        where = [(WIDTH / 2, HEIGHT + 9.0), (32.0, -10.0)]
         return np.array(where, dtype=np.float32), [self.x.title, self.y.title]
 
 

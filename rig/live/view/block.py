@@ -50,6 +50,11 @@ def of_ring(rows: Array, mode: str) -> Block:
     return Block(rows)
 
 
+def joined(blocks: list[Block]) -> Block:
+    """Blocks that follow each other, as one."""
+    return Block(np.concatenate([block.rows for block in blocks]))
+
+
 def of_run(run: Run) -> Block:
     """A whole run folder. A run without time gets row numbers as seconds where the rate is not known either."""
     rows = np.zeros(run.rows, LAYOUT)

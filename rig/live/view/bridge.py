@@ -22,7 +22,7 @@ from rig.live.view.rerun_canvas import Gone, RerunCanvas, Stalled
 from rig.live.view.scene import Scene
 from rig.live.view.server import Server
 
-BEAT = 0.04  # s: 25 pictures a second, 40 rows a block at 1 kHz
+BEAT = 0.05  # s: 50 rows a block at 1 kHz; every block costs the viewer as much as its rows
 CHECK = 0.5  # s between looks whether the viewer takes what it is sent
 PATIENCE = 0.1  # s such a look may last; what a frozen viewer is sent between two looks is 0.1 MB
 LAST_WORD = 0.5  # s for the last rows of all

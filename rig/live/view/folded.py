@@ -121,12 +121,9 @@ class Folded(Drawing):
             canvas.dot(f"{PATH}/now/dot", t, place[0], colours.NOW)
 
     def _legend(self, t: float, canvas: Canvas) -> None:
-        words = [
-            f"{name}: mean of {side.count}"
-            for side, (name, _, _) in zip(self._sides.values(), SIDES.values(), strict=True)
-        ]
-        for x, text, (name, colour, _) in zip((26.0, 78.0), words, SIDES.values(), strict=True):
-            canvas.words(f"{PATH}/{name}/words", t, np.array([[x, 5.0]], dtype=np.float32), [text], colour)
+        for x, side, (name, colour, _) in zip((30.0, 88.0), self._sides.values(), SIDES.values(), strict=True):
+            text = f"{name}, mean of {side.count} turn{'s' if side.count > 1 else ''}" if side.count else name
+            canvas.words(f"{PATH}/{name}/words", t, np.array([[x, 3.0]], dtype=np.float32), [text], colour)
         if self._peak:
-            where = np.array([[WIDTH - 52.0, HEIGHT - 5.0]], dtype=np.float32)
+            where = np.array([[WIDTH - 52.0, HEIGHT - 12.0]], dtype=np.float32)
             canvas.words(f"{PATH}/peak", t, where, [self._peak], colours.INK)

@@ -23,6 +23,7 @@ Span = tuple[float, float] | None
 TIMELINE = "rig_time"
 EYE = (-105.0, -120.0, 62.0)  # mm: from the side of the motor, so that the wave generator is seen inside the cup
 LOOK = (22.0, 0.0, 2.0)
+WHOLE = 60.0, 2000  # s and rows gathered of a run that is over
 DOT = 4.0  # px, radius
 
 
@@ -37,11 +38,13 @@ class Stalled(Exception):
 class RerunCanvas(Canvas):
     """One recording. `to_file` or `to_viewer` makes it; `close` ends it."""
 
-    def __init__(self, about: About) -> None:
+    def __init__(self, about: About, gathered: float, turns: int) -> None:
+        """What is logged waits `gathered` s, of each angle `turns` rows, before it goes: pieces cost the viewer."""
         # a blueprint belongs to an application id: one for every kind of procedure
-        self._stream = rr.RecordingStream(
-            f"hdrig {'SIMULATED ' if about.simulated else ''}{_ascii(about.title)}", recording_id=about.uid
-        )
+        name = f"hdrig {'SIMULATED ' if about.simulated else ''}{_ascii(about.title)}"
+        config = rr.ChunkBatcherConfig(flush_tick=gathered)
+        self._stream = rr.RecordingStream(name, recording_id=about.uid, batcher_config=config)
+        self._turns, self._turned = turns, dict[str, list[tuple[Array, Array]]]()
         self._about = about
 
     @classmethod
@@ -49,15 +52,15 @@ class RerunCanvas(Canvas):
         """A recording in a file of its own. Raises OSError when the file cannot be made."""
         with open(path, "wb"):  # the stream itself only warns
             pass
-        canvas = cls(about)
+        canvas = cls(about, *WHOLE)
         canvas._stream.set_sinks(rr.FileSink(str(path)))
         canvas._name()
         return canvas
 
     @classmethod
-    def to_viewer(cls, about: About, url: str) -> RerunCanvas:
-        """A recording in the viewer behind `url`, followed as it grows."""
-        canvas = cls(about)
+    def to_viewer(cls, about: About, url: str, gathered: float = 0.05, turns: int = 1) -> RerunCanvas:
+        """A recording in the viewer behind `url`, followed as it grows; a run that is over goes in large pieces."""
+        canvas = cls(about, gathered, turns)
         canvas._stream.set_sinks(rr.GrpcSink(url))
         canvas._name()
         return canvas
@@ -71,6 +74,8 @@ class RerunCanvas(Canvas):
 
     def flush(self, within: float) -> None:
         """Everything handed over. Raises Stalled when it is not after `within` s, Gone when nobody takes it."""
+        for path in self._turned:
+            self._send_turns(path)
         try:
             self._stream.flush(timeout_sec=within)
         except RuntimeError as error:  # the SDK has one kind for both
@@ -138,7 +143,18 @@ class RerunCanvas(Canvas):
         self._stream.log(path, points, static=True)
 
     def turn(self, path: str, t: Array, angle: Array) -> None:
-        half = np.asarray(angle) / 2
+        kept = self._turned.setdefault(path, [])
+        kept.append((t, angle))
+        if sum(len(piece) for piece, _ in kept) >= self._turns:
+            self._send_turns(path)
+
+    def _send_turns(self, path: str) -> None:
+        kept = self._turned[path]
+        if not kept:
+            return
+        t, half = (np.concatenate(parts) for parts in zip(*kept, strict=True))
+        half = half / 2
+        kept.clear()
         quaternions = np.stack((np.sin(half), 0 * half, 0 * half, np.cos(half)), axis=1)
         # positive as seen from the motor: about +x, y towards z
         self._stream.send_columns(path, indexes=[_times(t)], columns=rr.Transform3D.columns(quaternion=quaternions))

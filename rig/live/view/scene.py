@@ -6,13 +6,14 @@ from collections.abc import Callable
 
 from rig.core.errors import HdrigError
 from rig.live.view.about import About, about
-from rig.live.view.block import of_ring
+from rig.live.view.block import Block, joined, of_ring
 from rig.live.view.canvas import Canvas
 from rig.live.view.feed import Feed
 from rig.live.view.nothing import Nothing
 from rig.live.view.picture import Picture
 
 SHOWN = 500.0  # rows of a curve a second at most, two of each group: a screen has fewer columns
+DRAWN = 4  # beats a picture: five a second; a viewer without a GPU falls behind with more
 MOST = 4096  # rows a beat: a virtual clock makes more, and they are left out
 
 
@@ -25,6 +26,7 @@ class Scene:
         self._canvas: Canvas = Nothing()
         self._about: About | None = None
         self._picture: Picture | None = None
+        self._blocks: list[Block] = []  # not yet in the pictures
 
     def step(self, heard: bool) -> None:
         """What came since the last beat. `heard`: the viewer takes what it is sent."""
@@ -39,7 +41,10 @@ class Scene:
         if len(rows):
             block = of_ring(rows, self._about.mode)
             self._picture.curves(block, canvas)
-            self._picture.draw(block, canvas)
+            self._blocks.append(block)
+        if len(self._blocks) >= DRAWN:
+            self._picture.draw(joined(self._blocks), canvas)
+            self._blocks.clear()
 
     def renew(self) -> None:
         """The viewer knows nothing any more: a new stream, and all that stands at this moment."""

@@ -25,7 +25,7 @@ DRAWN = 4.0  # mm, radial deflection as drawn; the real one is CUP/N, half the d
 TOOTH = 2.2  # mm
 MARKS = 12  # lines along the cup that belong to its material
 DISC = 88.0, 50.0  # mm: where the load disc stands, its radius
-RATE = 25.0  # pictures a second
+RATE = 20.0  # pictures a second
 
 
 class Space(Drawing):
