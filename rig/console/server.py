@@ -69,6 +69,10 @@ class Serving:
         loop = asyncio.get_running_loop()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, self.ask_end)
+        await self.serve()
+
+    async def serve(self) -> None:
+        """Until `ask_end`."""
         await self._server.serve(sockets=[self._socket])
 
     def ask_end(self) -> None:
