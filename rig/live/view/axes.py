@@ -16,7 +16,7 @@ from rig.live.view.ticks import rounded_out, step_for, ticks, written
 Array = np.ndarray[Any, Any]
 
 WIDTH, HEIGHT = 200.0, 100.0  # units of the picture
-LEFT, RIGHT, ABOVE, BELOW = 24.0, 10.0, 16.0, 17.0  # room for numbers and words beside the frame
+LEFT, RIGHT, ABOVE, BELOW = 24.0, 10.0, 16.0, 20.0  # room for numbers and words beside the frame
 SHRINK = 0.45  # an axis is drawn anew when what it shows fills less than this share of it
 
 

@@ -21,9 +21,9 @@ PATH = "/folded"
 LAST = 6  # turns shown singly
 MIDDLES = (np.arange(BINS) + 0.5) * 360.0 / BINS  # deg
 SIDES = {
-    1: ("forward", colours.FORWARD, colours.FORWARD_SOFT),
-    -1: ("reverse", colours.REVERSE, colours.REVERSE_SOFT),
-}
+    1: ("forward", colours.FORWARD, colours.FORWARD_SOFT, 5.0),
+    -1: ("reverse", colours.REVERSE, colours.REVERSE_SOFT, 2.0),
+}  # the one drawn later is thinner: they often lie upon each other
 CURVE = "/curves/error"
 
 
@@ -104,11 +104,11 @@ class Folded(Drawing):
 
     def _draw_done(self, t: float, canvas: Canvas) -> None:
         draw_frame(PATH, t, self._frame, canvas)
-        for side, (name, colour, soft) in zip(self._sides.values(), SIDES.values(), strict=True):
+        for side, (name, colour, soft, width) in zip(self._sides.values(), SIDES.values(), strict=True):
             if side.count:
                 last = [self._frame.place(MIDDLES, curve) for curve in side.last]
                 canvas.lines(f"{PATH}/{name}/last", t, last, Pen(soft, 1.0, 0.0))
-                canvas.lines(f"{PATH}/{name}/mean", t, [self._frame.place(MIDDLES, side.mean)], Pen(colour, 3.0, 2.0))
+                canvas.lines(f"{PATH}/{name}/mean", t, [self._frame.place(MIDDLES, side.mean)], Pen(colour, width, 2.0))
         self._legend(t, canvas)
 
     def _draw_now(self, t: float, now: Array, theta: float, canvas: Canvas) -> None:
@@ -121,7 +121,7 @@ class Folded(Drawing):
             canvas.dot(f"{PATH}/now/dot", t, place[0], colours.NOW)
 
     def _legend(self, t: float, canvas: Canvas) -> None:
-        for x, side, (name, colour, _) in zip((30.0, 88.0), self._sides.values(), SIDES.values(), strict=True):
+        for x, side, (name, colour, _, _) in zip((30.0, 88.0), self._sides.values(), SIDES.values(), strict=True):
             text = f"{name}, mean of {side.count} turn{'s' if side.count > 1 else ''}" if side.count else name
             canvas.words(f"{PATH}/{name}/words", t, np.array([[x, 3.0]], dtype=np.float32), [text], colour)
         if self._peak:

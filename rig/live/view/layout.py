@@ -120,4 +120,4 @@ def _at_rest() -> Group:
 
 def _margin() -> Group:
     """What is the same for all: what this is, the rig, how the loop does, what happened."""
-    return below((1.5, PAGE), (3.2, RIG), (1.4, TICK), (1.6, LOG))
+    return below((2.0, PAGE), (3.2, RIG), (1.3, TICK), (1.6, LOG))

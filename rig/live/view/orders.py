@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.orders import spectrum
 from rig.live.view import colours
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
 from rig.live.view.curves import ARCSEC
 from rig.live.view.drawing import Drawing
-from rig.live.view.turns import BINS, TURN, Turn, Turns
+from rig.live.view.turns import BINS, Turn, Turns
 
 Array = np.ndarray[Any, Any]
 
@@ -22,19 +21,21 @@ SPAN = 16  # turns at most
 HIGHEST = 16.0  # order
 STEP = 0.25  # of an order a bar stands for
 LEAST = 2  # turns: with one, order 1 and slow change are the same
+ENOUGH = 4  # turns, a resolution of STEP: until then the stroke before stays
 
 
 class Orders(Drawing):
-    """Drawn anew after every whole turn; begins anew after a reversal."""
+    """Drawn anew after every whole turn of one stroke; after a reversal once the new stroke has ENOUGH turns."""
 
     def __init__(self, ratio: float) -> None:
         self._ratio = ratio
         self._turns = Turns()
         self._last: deque[Turn] = deque(maxlen=SPAN)
+        self._shown: list[Turn] = []
 
     def draw(self, t: float, canvas: Canvas) -> None:
         at = np.arange(0.0, HIGHEST + STEP / 2, STEP)
-        at, amplitude = bars(list(self._last)) if len(self._last) >= LEAST else (at, np.zeros_like(at))
+        at, amplitude = bars(self._shown) if self._shown else (at, np.zeros_like(at))
         canvas.bars(PATH, t, at, amplitude, colours.FORWARD)
 
     def add(self, block: Block, canvas: Canvas) -> None:
@@ -45,22 +46,31 @@ class Orders(Drawing):
             if self._last and (turn.way != self._last[-1].way or turn.number != self._last[-1].number + turn.way):
                 self._last.clear()
             self._last.append(turn)
-        if done and len(self._last) >= LEAST:
-            canvas.bars(PATH, float(block.t[-1]), *bars(list(self._last)), colours.FORWARD)
+        if done and len(self._last) >= (ENOUGH if self._shown else LEAST):
+            self._shown = list(self._last)
+            canvas.bars(PATH, float(block.t[-1]), *bars(self._shown), colours.FORWARD)
 
 
 def bars(turns: list[Turn]) -> tuple[Array, Array]:
-    """Orders and amplitudes [arcsec] of turns that follow each other, the largest within half a STEP of each order."""
+    """Orders and amplitudes [arcsec] of turns that follow each other, the largest within half a STEP of each order.
+
+    Over a whole number of turns a line of a whole order is one bar; one between orders spreads to its neighbours.
+    """
     turns = sorted(turns, key=lambda turn: turn.number)
-    theta = np.concatenate([(turn.number + (np.arange(BINS) + 0.5) / BINS) * TURN for turn in turns])
-    values = np.concatenate([turn.values for turn in turns])
-    here = np.isfinite(values)
-    theta, values = theta[here], values[here]
-    slope = np.polynomial.Polynomial.fit(theta, values, 1)  # wind-up and eccentricity change slowly
-    orders, amplitude = spectrum(theta, values - slope(theta), HIGHEST + STEP)
+    values = np.stack([_filled(turn.values) for turn in turns])
+    means = values.mean(axis=1)
+    slope = (means[-1] - means[0]) / (len(turns) - 1)  # a turn, of what changes slowly; lines have none
+    values = values.ravel() - slope * (np.arange(values.size) + 0.5) / BINS
+    amplitude = np.abs(np.fft.rfft(values - values.mean())) * 2.0 / values.size
     at = np.arange(0.0, HIGHEST + STEP / 2, STEP)
-    place = np.rint(orders / STEP).astype(np.int64)
+    place = np.rint(np.arange(amplitude.size) / len(turns) / STEP).astype(np.int64)
     largest = np.zeros_like(at)
     inside = place < len(at)
     np.maximum.at(largest, place[inside], amplitude[inside])
     return at, largest
+
+
+def _filled(values: Array) -> Array:
+    """Bins without a row from their neighbours."""
+    here = np.isfinite(values)
+    return np.interp(np.arange(values.size), np.flatnonzero(here), values[here], period=values.size)
