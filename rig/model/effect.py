@@ -175,6 +175,7 @@ class Effect(ABC):
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
+    each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
 
     @abstractmethod

@@ -41,5 +41,8 @@ REFERENCES: dict[str, str] = {
     "lawicel": "Lawicel AB, CANUSB, ASCII commands of its manual (the slcan protocol)",
     "odrive": "ODrive Robotics, CAN protocol (CANSimple) and firmware 0.5.6, odriverobotics.com/docs",
     "usdigital": "US Digital, QSB, list of commands, version 1.28",
+    "randall2011": "R. B. Randall, Vibration-based Condition Monitoring, Wiley (2011)",
+    "rife1974": "D. C. Rife, R. R. Boorstyn, Single-tone parameter estimation from discrete-time observations, "
+    "IEEE Trans. Information Theory 20 (1974) 591-598",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
 }

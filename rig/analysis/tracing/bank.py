@@ -40,7 +40,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
     pieces = [p for run in runs for p in run.pieces]
     speeds = np.concatenate([np.abs(p.omega_m[p.way != 0]) for p in pieces]) if pieces else np.zeros(0)
     torque = np.concatenate([np.abs(p.torque) for p in pieces])
-    turns = [np.ptp(p.theta_l if np.isfinite(p.theta_l).all() else p.theta_m / p.ratio) for p in pieces]
+    turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
     return Reach(
         ratio=runs[0].ratio,
         fastest=float(np.percentile(speeds, 99.9)) if speeds.size else 0.0,
