@@ -53,8 +53,13 @@ class Bridge:
         self._server, self._clock = server, clock
         self._scene: Scene | None = None
         self._canvas: RerunCanvas | None = None
-        self._heard = True
+        self.heard = True  # the viewer takes what it is sent; while it does not, nothing is kept for it
         self._checked = clock()
+
+    @property
+    def skipped(self) -> int:
+        """Rows of the present run this process was too slow for."""
+        return self._scene.feed.skipped if self._scene else 0
 
     def run(self, commands: Commands) -> None:
         """Until stdin ends."""
@@ -71,14 +76,14 @@ class Bridge:
     def follow(self, folder: Path) -> None:
         """This run from now on; what is left of the one before is shown first."""
         if self._scene is not None:
-            self._scene.step(self._heard)
+            self._scene.step(self.heard)
             self._scene.feed.close()
         self._scene = Scene(Feed(folder), self._open)
 
     def beat(self) -> None:
         """One look at the ring, and now and then one at the viewer."""
         if self._scene is not None:
-            self._scene.step(self._heard)
+            self._scene.step(self.heard)
         now = self._clock()
         if now - self._checked >= CHECK:
             self._checked = now
@@ -94,25 +99,25 @@ class Bridge:
         try:
             self._canvas.flush(PATIENCE)
         except Stalled:
-            self._heard = False
+            self.heard = False
         except Gone:
             self._renew()
         else:
-            self._heard = True
+            self.heard = True
 
     def _raise_the_dead(self) -> None:
         if not self._server.wanted:  # a window that was closed
-            self._heard = False
+            self.heard = False
             return
         try:
             self._server.start()
         except NotReady:
-            self._heard = False  # tried again at the next look
+            self.heard = False  # tried again at the next look
             return
         self._renew()
 
     def _renew(self) -> None:
-        self._heard = True
+        self.heard = True
         if self._scene is not None:
             self._scene.renew()
 
@@ -124,7 +129,7 @@ class Bridge:
         return self._canvas
 
     def _last_word(self) -> None:
-        if self._canvas is None or not self._heard:
+        if self._canvas is None or not self.heard:
             return
         if self._scene is not None:
             self._scene.step(True)
