@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import select
 import signal
 import sys
@@ -29,6 +30,7 @@ from typing import Any, final
 from rig.interrupts import Interrupts
 
 LOOK = 0.5  # s between two looks whether this program has come to the foreground again
+SEQUENCE = re.compile(rb"\x1b[\[O][0-9;]*[A-Za-z~]")  # Home ends in H, F4 in S: neither is a letter somebody typed
 IGNORED = (signal.SIGTTIN, signal.SIGTTOU)  # the shell's ways of stopping a program in the background, motor or not
 
 
@@ -116,7 +118,7 @@ class Keys:
             typed = os.read(terminal, 64)
         except OSError:  # in the background meanwhile, or hung up
             return self._foreground()
-        for key in typed.lower():
+        for key in SEQUENCE.sub(b"", typed).lower():
             self._acts.get(bytes([key]), lambda: None)()
         return bool(typed)
 
@@ -152,6 +154,7 @@ class Keys:
         signal.signal(signal.SIGTSTP, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGTSTP)  # sleeps here until fg
         signal.signal(signal.SIGTSTP, self._suspend)
+        self._take()  # where there is no shell to sleep under, it did not
 
     def _resume(self, signum: int, frame: FrameType | None) -> None:
         """fg, after Ctrl-Z or after a SIGSTOP that nobody can catch: the shell has made the terminal its own."""

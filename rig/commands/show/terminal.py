@@ -11,6 +11,7 @@ from rig.commands.show.words import late, peak
 
 KEYS = "keys: h hold  s stop  Space halt (torque off)"
 BAR = 12  # characters
+SETTLED = 1.0  # s to watch before a pace is believed
 UP, CLEAR = "\x1b[1A", "\r\x1b[J"  # to the line above; from here to the end of the screen
 
 
@@ -22,7 +23,8 @@ class Terminal(Screen):
         super().__init__(stream)
         self._foot = ""  # what stands there now
         self._run: dict[str, Any] = {}
-        self._mark, self._began = "", 0.0
+        self._mark = ""
+        self._t, self._first = 0.0, (0.0, 0.0)  # s of the run: now; when it was first seen, and s on the wall
 
     def take(self, event: dict[str, Any]) -> None:
         match event["event"]:
@@ -33,7 +35,7 @@ class Terminal(Screen):
             case "said" | "prompt" | "trip" | "operator" | "figure":
                 self._say(event["text"])
             case "run":
-                self._run, self._began = event, time.monotonic()
+                self._run, self._t, self._first = event, 0.0, (0.0, 0.0)
             case "progress" if self._run:
                 self._draw(event)
             case "ended":
@@ -51,19 +53,31 @@ class Terminal(Screen):
 
     def _lines(self, event: dict[str, Any]) -> list[str]:
         t, duration = event["t"], self._run["duration_s"]
+        self._t = t
         share = min(max(t / duration, 0.0), 1.0) if duration > 0 else 0.0
         bar = ("█" * round(BAR * share)).ljust(BAR, "░")
-        left = max(duration - t, 0.0) * (time.monotonic() - self._began) / t if t > 0 else 0.0
         return [
-            f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s, "
-            f"{left:.0f} s left, {peak(event)}",
+            f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{self._left(t)}, "
+            f"{peak(event)}",
             f"{late(event)} · {KEYS}",
         ]
+
+    def _left(self, t: float) -> str:
+        """Time left on the wall, once the pace is known."""
+        now = time.monotonic()
+        if not self._first[1]:
+            self._first = (t, now)
+        passed, took = t - self._first[0], now - self._first[1]
+        if took < SETTLED or passed <= 0:
+            return ""
+        return f", {max(self._run['duration_s'] - t, 0.0) * took / passed:.0f} s left"
 
     def _over(self, event: dict[str, Any]) -> None:
         """The last numbers stay, as a line."""
         title, duration = self._run.get("title", "run"), self._run.get("duration_s", 0.0)
-        self._put(f"{self._mark}{title}: {event['status']}, {duration:.1f} s planned, {peak(event)}\n", "")
+        self._put(
+            f"{self._mark}{title}: {event['status']} after {self._t:.1f} of {duration:.1f} s, {peak(event)}\n", ""
+        )
 
     def _put(self, text: str, foot: str) -> None:
         """`text` above, `foot` below it in place of the one there."""
