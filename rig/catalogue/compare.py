@@ -11,7 +11,7 @@ from typing import Any
 
 from rig.catalogue.figures import Figure, figures
 from rig.catalogue.repeats import COUNTS, Repeats
-from rig.catalogue.row import UNREADABLE, Row
+from rig.catalogue.row import UNREADABLE, Row, finite
 from rig.catalogue.sameness import mounting, point
 from rig.catalogue.scan import row, rows
 from rig.catalogue.scatter import SHARE, Scatter, between
@@ -185,11 +185,6 @@ def _unlike(a: Row, b: Row) -> str:
         if key not in ("note", "assembly"):
             pairs[key] = (a.conditions.get(key, "–"), b.conditions.get(key, "–"))
     return ", ".join(f"{key} {x} and {y}" for key, (x, y) in pairs.items() if x != y) or "their kind"
-
-
-def finite(value: float) -> float | None:
-    """JSON has no NaN."""
-    return value if math.isfinite(value) else None
 
 
 def _figure(f: Figure | None) -> dict[str, Any] | None:

@@ -54,9 +54,22 @@ class Row:
             "duration_s": self.duration,
             "rows": self.rows,
             "simulated": self.simulated,
-            "conditions": dict(self.conditions),
+            "conditions": finite(self.conditions),
             "path": str(self.path),
         }
+
+
+def finite(value: Any) -> Any:
+    """JSON has no NaN, though files may: null."""
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case list():
+            return [finite(v) for v in value]
+        case dict():
+            return {k: finite(v) for k, v in value.items()}
+        case _:
+            return value
 
 
 def row_of(folder: Path, about: Mapping[str, Any]) -> Row:

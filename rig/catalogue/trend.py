@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rig.catalogue.compare import finite
 from rig.catalogue.figures import Figure, figures, names_of, refuse_unknown
 from rig.catalogue.filter import Filter
 from rig.catalogue.repeats import figure_of
-from rig.catalogue.row import Row
+from rig.catalogue.row import Row, finite
 from rig.catalogue.sameness import Mounting, Point, mounting, point, words
 from rig.catalogue.scan import runs
 from rig.catalogue.scatter import SHARE, Scatter, scatter
