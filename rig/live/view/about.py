@@ -22,6 +22,7 @@ class About:
     ratio: float  # N
     simulated: bool
     locked: bool  # the output is
+    stiffness: float  # N·m/rad at the output, declared; 0 where nobody says
     rate: float  # Hz of the loop; 0 where nobody says
     mode: str  # which loop the drive closed: torque | velocity | position
     folder: str
@@ -46,6 +47,7 @@ def about(folder: Path) -> About:
         ratio=ratio_of(folder, said),
         simulated=said.get("backend") == "sim",
         locked=bool(conditions.get("output_locked")),
+        stiffness=_number(_part(said, "declared").get("K")),
         rate=_number(loop.get("rate")),
         mode=str(loop.get("mode") or "torque"),
         folder=folder.name,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.core.channels import CHANNELS
+from rig.core.channels import CHANNEL, CHANNELS
 from rig.runfile.columns import COMMANDED
 from rig.runfile.run import Run
 
@@ -56,9 +56,13 @@ def joined(blocks: list[Block]) -> Block:
 
 
 def of_run(run: Run) -> Block:
-    """A whole run folder. A run without time gets row numbers as seconds where the rate is not known either."""
-    rows = np.zeros(run.rows, LAYOUT)
-    for name in FLOATS:
+    """A whole run folder, with a further field for every channel the table lacks.
+
+    A run without time gets its row numbers as seconds.
+    """
+    others = [name for name in run.channels if name not in CHANNEL]
+    rows = np.zeros(run.rows, np.dtype([*LAYOUT.descr, *((name, "f8") for name in others)]))
+    for name in (*FLOATS, *others):
         found = run.column(name) if name in run.channels else None
         rows[name] = np.nan if found is None else found
     rows["flags"] = run.flags

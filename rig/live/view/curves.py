@@ -20,6 +20,7 @@ Array = np.ndarray[Any, Any]
 
 ARCSEC = 180 * 3600 / math.pi  # arcsec a rad
 RPM = 30 / math.pi  # rpm a rad/s
+COLOURS = (colours.FORWARD, colours.REVERSE, colours.GOOD, colours.BRASS, colours.MARK)
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ class Curve:
     of: Callable[[Block, float], Array]
 
 
-GROUPS: dict[str, tuple[Curve, ...]] = {
+Groups = dict[str, tuple[Curve, ...]]
+GROUPS: Groups = {
     "/curves/angle": (  # deg at the output
         Curve("θ_ref / N", colours.MUTED, lambda b, n: np.degrees(b["theta_ref"]) / n),
         Curve("θ_m / N", colours.FORWARD, lambda b, n: np.degrees(b["theta_m"]) / n),
@@ -54,15 +56,40 @@ GROUPS: dict[str, tuple[Curve, ...]] = {
 TICK = "/curves/tick"  # ms
 
 
+@dataclass(frozen=True)
+class More:
+    """A group beside those everybody has."""
+
+    path: str
+    unit: str
+    curves: tuple[Curve, ...]
+
+
+def all_groups(more: tuple[More, ...]) -> Groups:
+    """Curves by path."""
+    return {**GROUPS, **{one.path: one.curves for one in more}}
+
+
+def everything(curve: str) -> bool:
+    """While a run goes on nobody knows what will not be measured."""
+    return True
+
+
 class Curves:
     """Sends every group at most one pair of rows for each `every` rows."""
 
-    def __init__(self, about: About, every: int, measured: Callable[[str], bool] = lambda curve: True) -> None:
-        """`measured` says which curves, called path and name, have any value at all; the others are left out."""
+    def __init__(
+        self, about: About, every: int, measured: Callable[[str], bool] = everything, more: tuple[More, ...] = ()
+    ) -> None:
+        """`measured` says which curves, called path and name, have any value at all; the others are left out. `more`
+        are groups beside those everybody has.
+        """
         self._ratio, self._every = about.ratio, every
         self._lateness = Lateness(1.0 / about.rate if about.rate else 0.0)
         self._groups = {
-            path: chosen for path, group in GROUPS.items() if (chosen := [c for c in group if measured(path + c.name)])
+            path: chosen
+            for path, group in all_groups(more).items()
+            if (chosen := [c for c in group if measured(path + c.name)])
         }
 
     def begin(self, canvas: Canvas) -> None:
@@ -109,11 +136,25 @@ def speed(block: Block) -> Array:
         return np.asarray(np.gradient(block["theta_m"], t))
 
 
-def measured_in(block: Block, ratio: float) -> Callable[[str], bool]:
+def others(units: dict[str, str]) -> tuple[More, ...]:
+    """Channels the table lacks, one group a unit: what another logger had. `units` by name of the channel."""
+    found = []
+    for number, unit in enumerate(dict.fromkeys(units.values())):
+        names = [name for name in units if units[name] == unit]
+        curves = tuple(Curve(name, COLOURS[i % len(COLOURS)], _channel(name)) for i, name in enumerate(names))
+        found.append(More(f"/curves/other_{number}", unit, curves))
+    return tuple(found)
+
+
+def _channel(name: str) -> Callable[[Block, float], Array]:
+    return lambda block, ratio: block[name]
+
+
+def measured_in(block: Block, ratio: float, more: tuple[More, ...] = ()) -> Callable[[str], bool]:
     """Which curves these rows have at all, by path and name."""
     there = {
         path + curve.name
-        for path, group in GROUPS.items()
+        for path, group in all_groups(more).items()
         for curve in group
         if np.isfinite(curve.of(block, ratio)).any()
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -61,6 +62,7 @@ RIG = Pane(Kind.SPACE, "/rig", "Rig (deformation exaggerated)")
 LOG = Pane(Kind.LOG, "/events", "State, events, trips")
 FOLDED = Pane(Kind.PLANE, "/folded", "Kinematic error against wave-generator angle")
 WIND_UP = Pane(Kind.PLANE, "/wind_up", "Shaft torque against wind-up")
+LOSS = Pane(Kind.PLANE, "/loss", "Shaft torque less that of a straight spring")
 STRIBECK = Pane(Kind.PLANE, "/stribeck", "Motor torque against speed")
 ORDERS = Pane(Kind.BARS, "/orders", "Orders per motor turn, amplitude [arcsec]")
 ANGLE = Pane(Kind.TIME, "/curves/angle", "Angles at the output θ_ref/N, θ_m/N, θ_l [deg]", legend=True)
@@ -76,13 +78,45 @@ LOSSES = ("friction", "coast_down", "step-test")
 AT_REST = ("standstill", "weigh")
 
 
-def layout_for(procedure: str, title: str, span: tuple[float, float] | None) -> Layout:
-    """The arrangement for a procedure: its name as in the manifest, and what people call it."""
+def layout_for(
+    procedure: str,
+    title: str,
+    span: tuple[float, float] | None,
+    absent: Collection[str] = (),
+    more: Sequence[Pane] = (),
+) -> Layout:
+    """The arrangement for a procedure: its name as in the manifest, and what people call it.
+
+    Panes whose paths are `absent` are left out, `more` of them come below the curves.
+    """
+    whole = _whole(procedure, title)
+    middle = whole.parts[1]
+    assert isinstance(middle, Group)
+    parts = (
+        whole.parts[0],
+        below(*zip(middle.shares, middle.parts, strict=True), *((2, p) for p in more)),
+        whole.parts[2],
+    )
+    return Layout(_without(Group(whole.upright, parts, whole.shares), absent), span)
+
+
+def _whole(procedure: str, title: str) -> Group:
     names = (procedure, title)
     for kinds, arranged in ((LOCKED, _locked()), (LOSSES, _losses()), (AT_REST, _at_rest())):
         if any(name in kinds for name in names):
-            return Layout(arranged, span)
-    return Layout(_turning(), span)
+            return arranged
+    return _turning()
+
+
+def _without(group: Group, absent: Collection[str]) -> Group:
+    """The group without some panes, and without groups that are empty then."""
+    parts = [_without(part, absent) if isinstance(part, Group) else part for part in group.parts]
+    kept = [
+        (share, part)
+        for share, part in zip(group.shares, parts, strict=True)
+        if (part.parts if isinstance(part, Group) else part.path not in absent)
+    ]
+    return Group(group.upright, tuple(part for _, part in kept), tuple(share for share, _ in kept))
 
 
 def _turning() -> Group:
@@ -96,9 +130,9 @@ def _turning() -> Group:
 
 def _locked() -> Group:
     return beside(
-        (5, below((3, WIND_UP), (2, SHAFT))),
-        (4, below((2, ANGLE), (2, FOLLOWING), (2, MOTOR), (2, SPEED))),
-        (3, _margin()),
+        (5, below((3, WIND_UP), (3, LOSS))),
+        (4, below((2, SHAFT), (2, ANGLE), (2, FOLLOWING), (2, MOTOR), (2, SPEED))),
+        (3.4, _margin()),
     )
 
 
@@ -106,7 +140,7 @@ def _losses() -> Group:
     return beside(
         (5, below((3, STRIBECK), (2, MOTOR))),
         (4, below((2, SPEED), (2, ANGLE), (2, SHAFT), (2, ERROR))),
-        (3, _margin()),
+        (3.4, _margin()),
     )
 
 
@@ -114,7 +148,7 @@ def _at_rest() -> Group:
     return beside(
         (5, below((2, ERROR), (2, SHAFT), (2, MOTOR))),
         (4, below((2, ANGLE), (2, FOLLOWING), (2, SPEED))),
-        (3, _margin()),
+        (3.4, _margin()),
     )
 
 

@@ -9,35 +9,43 @@ from typing import Any
 from rig.live.view.about import About
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
-from rig.live.view.curves import Curves
+from rig.live.view.curves import GROUPS, Curves, More, everything
 from rig.live.view.drawing import Drawing
 from rig.live.view.folded import Folded
-from rig.live.view.layout import FOLDED, ORDERS, STRIBECK, WIND_UP, Group, Pane, layout_for
+from rig.live.view.layout import FOLDED, LOSS, ORDERS, STRIBECK, WIND_UP, Group, Kind, Pane, layout_for
 from rig.live.view.orders import Orders
 from rig.live.view.space import Space
 from rig.live.view.trail import STRIBECK as STRIBECK_PLANE
 from rig.live.view.trail import WIND_UP as WIND_UP_PLANE
-from rig.live.view.trail import Trail
+from rig.live.view.trail import Trail, loss
 
 LEVELS = {"trip": "ERROR", "operator": "WARN"}
-
-
-def _all(curve: str) -> bool:
-    """Nobody knows yet what will be measured."""
-    return True
 
 
 class Picture:
     """Begun once; then rows, in order, and events."""
 
     def __init__(
-        self, about: About, every: int, span: tuple[float, float] | None, measured: Callable[[str], bool] = _all
+        self,
+        about: About,
+        every: int,
+        span: tuple[float, float] | None,
+        measured: Callable[[str], bool] = everything,
+        more: tuple[More, ...] = (),
     ) -> None:
-        """`every`: rows of which two are drawn as curves; `span` [s of the run] of the curves, None: the last ones."""
+        """`every`: rows of which two are drawn as curves; `span` [s of the run] of the curves, None: the last ones.
+
+        `measured` as in `Curves`; `more`: groups of curves beside those everybody has.
+        """
         self._about = about
-        self._layout = layout_for(about.procedure, about.title, span)
+        panes_more = [
+            Pane(Kind.TIME, one.path, f"Other channels [{one.unit}]", legend=True)
+            for one in more
+            if any(measured(one.path + curve.name) for curve in one.curves)
+        ]
+        self._layout = layout_for(about.procedure, about.title, span, absent(about, measured), panes_more)
         self._t = 0.0
-        self._curves = Curves(about, every, measured)
+        self._curves = Curves(about, every, measured, more)
         self._drawings = [*_planes(about, self._layout.root), Space(about)]
 
     def begin(self, canvas: Canvas) -> None:
@@ -66,12 +74,21 @@ class Picture:
         canvas.event("/events", at, LEVELS.get(kind, "INFO"), f"{kind}: {text}")
 
 
+def absent(about: About, measured: Callable[[str], bool]) -> set[str]:
+    """Paths of panes that would stay empty."""
+    without = {path for path, group in GROUPS.items() if not any(measured(path + curve.name) for curve in group)}
+    error, shaft = "/curves/error" in without, "/curves/shaft" in without
+    lacking = {FOLDED: error, ORDERS: error, WIND_UP: error or shaft, LOSS: error or shaft or not about.stiffness}
+    return without | {pane.path for pane, empty in lacking.items() if empty}
+
+
 def _planes(about: About, group: Group) -> list[Drawing]:
     """The drawings whose panes are somewhere in the layout."""
     known: dict[Pane, Callable[[], Drawing]] = {
         FOLDED: lambda: Folded(about.ratio, about.banner),
         ORDERS: lambda: Orders(about.ratio),
         WIND_UP: lambda: Trail(WIND_UP_PLANE, about.ratio, about.banner),
+        LOSS: lambda: Trail(loss(about.stiffness), about.ratio, about.banner),
         STRIBECK: lambda: Trail(STRIBECK_PLANE, about.ratio, about.banner),
     }
     return [known[pane]() for pane in panes(group) if pane in known]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from rig.core.channels import CHANNEL
 from rig.core.errors import UsageError
 from rig.live.view.about import About, about
 from rig.live.view.block import Block, of_run
 from rig.live.view.canvas import Canvas
-from rig.live.view.curves import measured_in
+from rig.live.view.curves import measured_in, others
 from rig.live.view.picture import Picture
 from rig.runfile.events import read_events
 from rig.runfile.run import Run
@@ -44,8 +45,10 @@ def draw(run: Run, said: About, canvas: Canvas) -> None:
     block = of_run(run)
     if not len(block):
         raise UsageError(f"{run.name} has no row with a time: there is nothing to draw")
+    more = others({name: run.unit(name) or "no unit said" for name in run.channels if name not in CHANNEL})
+    measured = measured_in(block, said.ratio, more)
     span = (float(block.t[0]), float(block.t[-1]))
-    picture = Picture(said, 2 * -(-len(block) // ROWS), span, measured_in(block, said.ratio))
+    picture = Picture(said, 2 * -(-len(block) // ROWS), span, measured, more)
     picture.begin(canvas)
     for event in read_events(run.path):
         picture.event(event, canvas)

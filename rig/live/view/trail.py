@@ -39,7 +39,7 @@ WIND_UP = Plane(
     "/wind_up",
     Axis("wind-up θ_m/N − θ_l", "arcmin", -1.0, 1.0),
     Axis("shaft torque τ_l", "N·m", -5.0, 5.0),
-    lambda b, n: ((b["theta_m"] / n - b["theta_l"]) * ARCMIN, b["tau_l"]),
+    lambda b, n: (twist(b, n) * ARCMIN, b["tau_l"]),
     0.01,
 )
 STRIBECK = Plane(
@@ -49,6 +49,20 @@ STRIBECK = Plane(
     lambda b, n: (speed(b) * RPM, torque(b)),
     0.05,
 )
+
+
+def loss(stiffness: float) -> Plane:
+    """What of the torque is no straight spring of `stiffness` N·m/rad: hysteresis, and stiffness that is not constant.
+
+    Beside the whole torque a loop of a few per cent is a line.
+    """
+    return Plane(
+        "/loss",
+        Axis("wind-up θ_m/N − θ_l", "arcmin", -1.0, 1.0),
+        Axis(f"τ_l less {stiffness:g} N·m/rad of wind-up", "N·m", -0.5, 0.5),
+        lambda b, n: (twist(b, n) * ARCMIN, b["tau_l"] - stiffness * twist(b, n)),
+        0.05,
+    )
 
 
 @dataclass
@@ -141,6 +155,11 @@ def averaged(t: Array, x: Array, y: Array, mean: float) -> tuple[Array, Array]:
     starts = np.concatenate(([0], np.flatnonzero(np.diff(stretch)) + 1))
     rows = np.diff(np.append(starts, len(t)))
     return np.add.reduceat(x, starts) / rows, np.add.reduceat(y, starts) / rows
+
+
+def twist(block: Block, ratio: float) -> Array:
+    """Wind-up [rad] at the output, shape (n,)."""
+    return np.asarray(block["theta_m"] / ratio - block["theta_l"])
 
 
 def torque(block: Block) -> Array:

@@ -12,7 +12,7 @@ from rig.live.view.block import LAYOUT, Block
 from rig.live.view.nothing import Nothing
 
 Array = np.ndarray[Any, Any]
-ABOUT = About("u1", "kinematic-error", "kinematic_error", "G1", 50.0, True, False, 1000.0, "torque", "run", "")
+ABOUT = About("u1", "kinematic-error", "kinematic_error", "G1", 50.0, True, False, 7000.0, 1000.0, "torque", "run", "")
 
 
 class Kept(Nothing):

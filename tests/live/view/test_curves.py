@@ -7,7 +7,7 @@ import pytest
 
 from rig.core.channels import Flag
 from rig.live.view.block import of_ring
-from rig.live.view.curves import Curves, measured_in, speed, thinned
+from rig.live.view.curves import Curves, measured_in, others, speed, thinned
 from rig.live.view.lateness import Lateness
 from tests.live.view.kept import ABOUT, Kept, block, turning
 
@@ -89,3 +89,11 @@ def test_rows_the_reader_never_saw_are_no_lateness_either() -> None:
 
 def test_without_a_period_nothing_is_said() -> None:
     assert np.isnan(Lateness(0.0).add(np.array([0.0, 0.1]), np.zeros(2, np.int64))).all()
+
+
+def test_channels_the_table_lacks_are_drawn_with_their_own_units() -> None:
+    more = others({"tau_current": "N·m", "bus": "V", "tau_other": "N·m"})
+    assert [(one.unit, [curve.name for curve in one.curves]) for one in more] == [
+        ("N·m", ["tau_current", "tau_other"]),
+        ("V", ["bus"]),
+    ]

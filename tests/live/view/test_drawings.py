@@ -12,9 +12,9 @@ from rig.live.view.axes import HEIGHT
 from rig.live.view.folded import Folded
 from rig.live.view.layout import layout_for
 from rig.live.view.orders import Orders
-from rig.live.view.picture import Picture, page, panes
+from rig.live.view.picture import Picture, absent, page, panes
 from rig.live.view.space import CUP, DRAWN, Space, deflection, material
-from rig.live.view.trail import STRIBECK, WIND_UP, Trail, averaged
+from rig.live.view.trail import STRIBECK, WIND_UP, Trail, averaged, loss
 from rig.live.view.turns import BINS, Turns
 from tests.live.view.kept import ABOUT, Kept, block, turning
 
@@ -159,3 +159,17 @@ def test_a_trip_stands_out_in_the_log_and_hostile_words_act_on_nothing() -> None
     assert canvas.said == ["ERROR trip: motor speed 200 rpm", "INFO note: x"]
     assert "[" not in canvas.shown["/page"]
     assert "\n# big" not in canvas.shown["/page"]
+
+
+def test_panes_that_would_stay_empty_are_left_out() -> None:
+    nothing = absent(ABOUT, lambda curve: curve.startswith("/curves/angle"))
+    shown = {pane.path for pane in panes(layout_for("stiffness_lock", "stiffness-lock", None, nothing).root)}
+    assert shown == {"/curves/angle", "/page", "/rig", "/curves/tick", "/events"}
+
+
+def test_what_is_no_straight_spring_is_drawn_beside_the_whole_torque() -> None:
+    canvas, drawing = Kept(), Trail(loss(7000.0), 50.0, "")
+    twist = np.linspace(-1e-3, 1e-3, 4000)
+    drawing.add(block(4000, theta_m=twist * 50, theta_l=0.0, tau_l=twist * 7000 + 2.0), canvas)
+    y = np.concatenate([line[:, 1] for path, v in canvas.shown.items() if "/trail/" in path for line in v])
+    assert np.ptp(y) < 1e-3  # a constant: the spring is gone
