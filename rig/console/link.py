@@ -21,6 +21,7 @@ EVENTS = 200  # the newest, for pages that come later
 REPLY = 5.0  # s a station has to say yes or no: it does so within 0.1 s unless the machine stalls
 LOOK = 0.001  # s between two looks whether the loop has seen a switch
 SEEN = 0.25  # s after which nobody waits any longer for that
+STARTING = "starting the control process"
 GONE = "the control process has ended: start hdrig serve again; its run, if there was one, is in the run folder"
 
 
@@ -31,7 +32,7 @@ class Link:
     def __init__(self, root: Path) -> None:
         self.root = root
         self.switches = Switches.create()
-        self.picture: dict[str, Any] = Status().picture()
+        self.picture: dict[str, Any] = Status(job=STARTING).picture()  # until the station says better
         self.events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
         self.idle: deque[dict[str, Any]] = deque(maxlen=40)  # readings nobody has fetched yet: two seconds
         self.heard = time.monotonic()  # s, when anything came
@@ -105,12 +106,13 @@ class Link:
             return GONE
         waiting: asyncio.Future[str] = asyncio.get_running_loop().create_future()
         self._replies[str(message["id"])] = waiting
-        self._channel.post({**message, "pressed": list(self.switches.pressed)})
+        until = time.monotonic() + REPLY  # after that it is not done any more: the page was told so
+        self._channel.post({**message, "pressed": list(self.switches.pressed), "until": until})
         try:
             return await asyncio.wait_for(waiting, REPLY)
         except TimeoutError:
             self._replies.pop(str(message["id"]), None)
-            return f"the control process did not answer within {REPLY:g} s: look at its state before trying again"
+            return f"the control process did not answer within {REPLY:g} s, and will not do it later: try again"
 
     async def press(self, name: str) -> float | None:
         """Hold, stop or halt; ms until the loop had seen it, None when no loop looked."""

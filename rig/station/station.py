@@ -128,7 +128,7 @@ class Station:
         if act == "close":
             self.closing = True
             return
-        why = why_not(act, self._picture())
+        why = self._too_late(message) or why_not(act, self._picture())
         if why:
             self._reply(message, why)
         else:
@@ -142,12 +142,18 @@ class Station:
         if act == "close":
             self.closing = True
             return
-        why = why_not(act, self._picture())
+        why = self._too_late(message) or why_not(act, self._picture())
         if not why and act == "answer" and self.person is not None:
             why = self.person.answer(str(message.get("prompt_id")), bool(message.get("done")))
         elif not why and act == "note":
             self.note(str(message.get("text", "")))
         self._reply(message, why)
+
+    @staticmethod
+    def _too_late(message: Mapping[str, Any]) -> str:
+        """An act nobody waits for any more: whoever asked was told that it is not done."""
+        late = time.monotonic() > float(message.get("until") or "inf")
+        return "it was asked for too long ago" if late else ""
 
     def watch(self) -> None:
         """Called within a tick now and then: reads what has come, never waits."""

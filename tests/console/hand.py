@@ -34,6 +34,7 @@ class Hand:
 
     def __enter__(self) -> Hand:
         self._thread.start()
+        self.until(lambda state: not state["job"])
         return self
 
     def __exit__(self, *error: object) -> None:
