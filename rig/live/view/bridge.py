@@ -24,6 +24,7 @@ from rig.live.view.server import Server
 
 BEAT = 0.05  # s: 50 rows a block at 1 kHz; every block costs the viewer as much as its rows
 CHECK = 0.5  # s between looks whether the viewer takes what it is sent
+PROBE = 2.0  # s between looks at one that does not: the SDK keeps a note of each
 PATIENCE = 0.1  # s such a look may last; what a frozen viewer is sent between two looks is 0.1 MB
 LAST_WORD = 0.5  # s for the last rows of all
 
@@ -85,7 +86,7 @@ class Bridge:
         if self._scene is not None:
             self._scene.step(self.heard)
         now = self._clock()
-        if now - self._checked >= CHECK:
+        if now - self._checked >= (CHECK if self.heard else PROBE):
             self._checked = now
             self._look()
 
