@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import signal
 import subprocess
 import sys
 import time
@@ -34,7 +33,7 @@ def photograph(run: Path, picture: Path, width: int = 1600, height: int = 900) -
             assert view.stderr is not None
             return _taken(_address(view.stderr), picture, width, height)
         finally:
-            view.send_signal(signal.SIGINT)
+            view.terminate()
 
 
 def _address(lines: Any) -> str:

@@ -127,11 +127,12 @@ def measure(condition: Condition, seconds: float, root: Path) -> Measured:
     began = time.monotonic()
     if viewer is not None:
         viewer.close()
+    closing = time.monotonic() - began
     run = Run.open(done.folder)
     said = run.timing
     micro = [1e6 * float(said[key]) for key in ("lateness_p50", "lateness_p99", "lateness_max")]
     missed, ticks = int(said["missed_cycles"]), int(said["ticks"])
-    return Measured(*micro, missed, ticks, run.rows, time.monotonic() - began)
+    return Measured(*micro, missed, ticks, run.rows, closing)
 
 
 def main() -> None:

@@ -158,4 +158,5 @@ def measured_in(block: Block, ratio: float, more: tuple[More, ...] = ()) -> Call
         for curve in group
         if np.isfinite(curve.of(block, ratio)).any()
     }
-    return there.__contains__
+    ages = {TICK} if np.isfinite(block["age"]).any() else set()
+    return (there | ages).__contains__

@@ -88,8 +88,9 @@ class Folded(Drawing):
         there = np.isfinite(now)
         side = self._sides.get(self._turns.way)
         offset = np.nanmean(now[there]) if there.any() else 0.0
-        if side is not None and side.count and there.any():
-            offset = np.nanmean((now - side.mean)[there])
+        beside = now - side.mean if side is not None and side.count else np.full(BINS, np.nan)
+        if np.isfinite(beside).any():
+            offset = np.nanmean(beside)
         return np.asarray(now - offset)
 
     def _refit(self, now: Array) -> bool:

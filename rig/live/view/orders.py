@@ -20,6 +20,7 @@ PATH = "/orders"
 SPAN = 16  # turns at most
 HIGHEST = 16.0  # order
 STEP = 0.25  # of an order a bar stands for
+ROWS_PER_ORDER = 4  # bins with rows a turn must have for each order: twice what Nyquist asks
 LEAST = 2  # turns: with one, order 1 and slow change are the same
 ENOUGH = 4  # turns, a resolution of STEP: until then the stroke before stays
 
@@ -55,6 +56,7 @@ def bars(turns: list[Turn]) -> tuple[Array, Array]:
     """Orders and amplitudes [arcsec] of turns that follow each other, the largest within half a STEP of each order.
 
     Over a whole number of turns a line of a whole order is one bar; one between orders spreads to its neighbours.
+    Nothing is shown of orders for which the rows of a turn are too few.
     """
     turns = sorted(turns, key=lambda turn: turn.number)
     values = np.stack([_filled(turn.values) for turn in turns])
@@ -65,7 +67,8 @@ def bars(turns: list[Turn]) -> tuple[Array, Array]:
     at = np.arange(0.0, HIGHEST + STEP / 2, STEP)
     place = np.rint(np.arange(amplitude.size) / len(turns) / STEP).astype(np.int64)
     largest = np.zeros_like(at)
-    inside = place < len(at)
+    seen = min(int(np.isfinite(turn.values).sum()) for turn in turns)
+    inside = (place < len(at)) & (place * STEP <= seen / ROWS_PER_ORDER)
     np.maximum.at(largest, place[inside], amplitude[inside])
     return at, largest
 

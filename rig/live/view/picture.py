@@ -9,10 +9,11 @@ from typing import Any
 from rig.live.view.about import About
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
-from rig.live.view.curves import GROUPS, Curves, More, everything
+from rig.live.view.curves import GROUPS, TICK, Curves, More, everything
 from rig.live.view.drawing import Drawing
 from rig.live.view.folded import Folded
 from rig.live.view.layout import FOLDED, LOSS, ORDERS, STRIBECK, WIND_UP, Group, Kind, Pane, layout_for
+from rig.live.view.layout import TICK as TICK_PANE
 from rig.live.view.orders import Orders
 from rig.live.view.space import Space
 from rig.live.view.trail import STRIBECK as STRIBECK_PLANE
@@ -79,6 +80,7 @@ def absent(about: About, measured: Callable[[str], bool]) -> set[str]:
     without = {path for path, group in GROUPS.items() if not any(measured(path + curve.name) for curve in group)}
     error, shaft = "/curves/error" in without, "/curves/shaft" in without
     lacking = {FOLDED: error, ORDERS: error, WIND_UP: error or shaft, LOSS: error or shaft or not about.stiffness}
+    lacking[TICK_PANE] = not about.rate and not measured(TICK)
     return without | {pane.path for pane, empty in lacking.items() if empty}
 
 
@@ -103,9 +105,10 @@ def page(about: About) -> str:
     """What this is, in a few lines of Markdown."""
     head = f"## {about.banner}\n" if about.banner else ""
     rate = f", {about.rate:g} Hz" if about.rate else ""
+    when = f"{_plain(about.started[:19].replace('T', ' '))} UTC · " if about.started else ""
     rows = [
         f"{head}**{_plain(about.title)}** · {_plain(about.gear)}, N = {about.ratio:g}{rate}",
-        f"{_plain(about.started[:19].replace('T', ' '))} UTC · {_plain(about.folder)}",
+        f"{when}{_plain(about.folder)}",
         "Curves keep every peak; planes show means of 1° or 10 ms. Figures with intervals stand in the report.",
     ]
     return "\n\n".join(rows)

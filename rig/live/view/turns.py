@@ -13,7 +13,7 @@ Array = np.ndarray[Any, Any]
 
 TURN = 2 * math.pi
 BINS = 360  # of a turn: a picture is hardly wider
-WHOLE = 0.98  # share of the bins a turn must have been seen in
+GAP = 1 / 8  # of a turn that may lie between two bins with rows, where a turn counts as seen
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,16 @@ class Turns:
         before, way = self._number, 0
         if before is not None and abs(number - before) == 1:
             way = number - before
-        whole = before is not None and way != 0 and way == self._way and (self._rows > 0).mean() >= WHOLE
+        whole = before is not None and way != 0 and way == self._way and _widest_gap(self._rows) <= GAP
         done = [Turn(before, way, self.partial)] if whole and before is not None else []
         self._number, self._way = number, way
         self._sum, self._rows = np.zeros(BINS), np.zeros(BINS)
         return done
+
+
+def _widest_gap(rows: Array) -> float:
+    """The widest stretch of a turn without a row, as a share of the turn."""
+    seen = np.flatnonzero(rows)
+    if not len(seen):
+        return 1.0
+    return float((np.diff(seen, append=seen[0] + BINS).max() - 1) / BINS)

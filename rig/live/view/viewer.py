@@ -16,7 +16,7 @@ from typing import Any
 from rig.core.errors import NotReady
 
 READY_WITHIN = 25.0  # s: three processes and, the first time, the viewer's files; 1.5 s on a quiet machine
-GONE_WITHIN = 1.5  # s to say the last rows and end; then it is killed, frozen or not
+GONE_WITHIN = 1.2  # s to say the last rows and end; then it is killed, frozen or not
 
 
 class Viewer:

@@ -173,3 +173,20 @@ def test_what_is_no_straight_spring_is_drawn_beside_the_whole_torque() -> None:
     drawing.add(block(4000, theta_m=twist * 50, theta_l=0.0, tau_l=twist * 7000 + 2.0), canvas)
     y = np.concatenate([line[:, 1] for path, v in canvas.shown.items() if "/trail/" in path for line in v])
     assert np.ptp(y) < 1e-3  # a constant: the spring is gone
+
+
+def test_a_fast_turn_of_few_rows_is_seen_and_orders_beyond_its_rows_are_not_shown() -> None:
+    canvas, rows = Kept(), turning(12.5, 40.0, order=2, n=12 * 21)
+    orders, planes = Orders(50.0), Folded(50.0, "")
+    for drawing in (orders, planes):
+        drawing.add(rows, canvas)
+    at, amplitude = canvas.shown["/orders"]
+    assert at[np.argmax(amplitude)] == 2.0
+    assert amplitude[at > 6.0].max() == 0.0
+    assert canvas.shown["/folded/forward/words"] == ["forward, mean of 11 turns"]
+
+
+def test_a_turn_of_which_a_third_was_not_seen_is_none() -> None:
+    theta = np.linspace(0.0, 3.5, 7000) * 2 * np.pi
+    seen = (theta < 2.2 * np.pi) | (theta > 2.9 * np.pi)
+    assert [turn.number for turn in Turns().add(theta[seen], np.zeros(seen.sum()))] == [2]
