@@ -35,6 +35,12 @@ PARAMETERS = [
     {"name": "cycles", "type": "float", "unit": "1", "default": 2.0, "meaning": ""},
     {"name": "rates", "type": "tuple", "unit": "1", "default": [1.0, 0.3], "meaning": "shares of the rate"},
 ]
+PROCEDURE = {"summary": "What it does", "needs_lock": False, "parameters": PARAMETERS}
+OFFERED = {
+    "benches": ["twin", "twin-can"],
+    "procedures": [{"name": name, "title": name, **PROCEDURE} for name in ("kinematic-error", "friction")],
+    "plans": [{"name": "quick", "summary": ""}],
+}
 BENCH = {
     "name": "twin", "source": "twin.toml", "simulated": True, "gear": "TWIN-40-50", "ratio": 50.0, "page_lost": "stop",
     "torque_sensor": True, "limits": {"speed_rpm": 600.0, "torque": 5.0, "shaft_torque": 45.0},
@@ -111,15 +117,7 @@ class Puppet:
 
         @app.get("/api/catalogue")
         async def offered() -> Any:
-            procedures = [
-                {"name": name, "title": name, "summary": f"What {name} does", "needs_lock": False, "parameters": PARAMETERS}
-                for name in ("kinematic-error", "friction")
-            ]  # fmt: skip
-            return {
-                "benches": ["twin", "twin-can"],
-                "procedures": procedures,
-                "plans": [{"name": "quick", "summary": ""}],
-            }
+            return OFFERED
 
         @app.get("/api/runs")
         async def runs() -> Any:

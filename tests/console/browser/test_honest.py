@@ -48,11 +48,11 @@ def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(page: P
     station.silent = True
     ages = []
     for _ in range(2):
-        page.clock.run_for(30_000)
+        page.clock.run_for(20_000)  # less than a minute in all
         found = re.search(r"for ([\d.]+)\u00a0s", text(page, "#stale-age"))
         assert found
         ages.append(float(found[1]))
-    assert ages[1] - ages[0] == pytest.approx(30.0, abs=1.0)
+    assert ages[1] - ages[0] == pytest.approx(20.0, abs=1.0)
 
 
 def test_simulated_is_said_as_long_as_the_bench_is_the_twin(page: Page, station: Puppet) -> None:
@@ -82,7 +82,7 @@ def test_hostile_words_from_files_and_people_are_shown_as_words(page: Page, stat
         checks=[{"name": HOSTILE, "ok": False, "text": HOSTILE}], events=[event], last_run=last,
         chain={"known": False, "closed": None, "text": HOSTILE}, prompt={"id": "p", "text": HOSTILE, "what": HOSTILE},
         campaign={"plan": HOSTILE, "done": 0, "total": 1, "current": HOSTILE, "left_s": 1.0}, viewer_url=None,
-        runs=[{"path": HOSTILE, "gear": HOSTILE, "procedure": HOSTILE, "status": HOSTILE, "report": "//evil.example/x"}],
+        runs=[{**dict.fromkeys(("path", "gear", "procedure", "status"), HOSTILE), "report": "//evil.example/x"}],
     )  # fmt: skip
     page.wait_for_selector("#prompt", state="visible")
     station.tell(prompt=None)

@@ -14,6 +14,14 @@ from tests.console.browser.puppet import BENCH, RUN, Puppet
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
 SCREENS = {"a wall": (1920, 1080), "a desk": (1600, 900), "a tablet": (1024, 768)}
 UNITS = r"(arcsec|deg|rpm|N·m|µs|ticks?|ms|s|%)"
+SCROLLS = "[document.body.scrollHeight > innerHeight, document.body.scrollWidth > innerWidth]"
+PAINTED = """node => {
+  const ink = getComputedStyle(node).color;
+  const clear = (one) => /rgba\\(0, 0, 0, 0\\)|transparent/.test(getComputedStyle(one).backgroundColor);
+  while (node && clear(node)) node = node.parentElement;
+  return [ink, getComputedStyle(node).backgroundColor];
+}"""
+TEXTS = ("#state", "#fault", "#halt b", ".tile dt", ".tile .basis", ".summary", "#steps .said", "#bench")
 TOUCH = 44  # px, the least a finger hits
 
 
@@ -125,14 +133,7 @@ def test_text_stands_out_from_its_ground_in_every_look(page: Page, station: Pupp
 
 def _contrast(page: Page, selector: str) -> float:
     """Of the text to the nearest ground behind it that is painted, WCAG 2."""
-    ink, ground = page.locator(selector).first.evaluate(
-        """node => {
-          const ink = getComputedStyle(node).color;
-          let ground = node;
-          while (ground && /rgba\\(0, 0, 0, 0\\)|transparent/.test(getComputedStyle(ground).backgroundColor)) ground = ground.parentElement;
-          return [ink, getComputedStyle(ground).backgroundColor];
-        }"""
-    )
+    ink, ground = page.locator(selector).first.evaluate(PAINTED)
     high, low = sorted((_luminance(ink), _luminance(ground)), reverse=True)
     return (high + 0.05) / (low + 0.05)
 

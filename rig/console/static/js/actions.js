@@ -1,6 +1,6 @@
 // What the operator does, sent to the server: every act has an id and the state it was based on.
 
-import { headers } from "./token.js";
+import { headers, uuid } from "./token.js";
 
 const URGENT = new Set(["halt", "stop", "hold"]);
 const UNANSWERED = 1000; // ms after which an urgent act counts as not confirmed
@@ -8,7 +8,7 @@ const UNANSWERED = 1000; // ms after which an urgent act counts as not confirmed
 /** {ok, text, ms}: the server's answer as a sentence. Never throws. */
 export async function act(name, revision, more = {}) {
   const began = performance.now();
-  const body = { id: crypto.randomUUID(), based_on: revision, act: name, ...more };
+  const body = { id: uuid(), based_on: revision, act: name, ...more };
   try {
     const answer = await fetch("/api/act", {
       method: "POST",

@@ -15,8 +15,17 @@ function given() {
 
 export const token = given();
 
+/** A UUID; crypto.randomUUID is there on https and on this machine only. */
+export function uuid() {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  bytes[6] = (bytes[6] & 0x0f) | 0x40; // version 4
+  bytes[8] = (bytes[8] & 0x3f) | 0x80; // the variant of RFC 9562
+  const hex = Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+  return [hex.slice(0, 8), hex.slice(8, 12), hex.slice(12, 16), hex.slice(16, 20), hex.slice(20)].join("-");
+}
+
 const PAGE = "hdrig-page";
-if (sessionStorage.getItem(PAGE) === null) sessionStorage.setItem(PAGE, crypto.randomUUID());
+if (sessionStorage.getItem(PAGE) === null) sessionStorage.setItem(PAGE, uuid());
 
 /** Who this page is, for as long as the tab lives: control stays with it over a reload. */
 export const page = sessionStorage.getItem(PAGE);

@@ -4,7 +4,7 @@ import { $, h, say, show } from "../dom.js";
 import { fixed, lasting, plain, withUnit } from "../numbers.js";
 
 const TILES = [
-  ["peak", "Error, peak to peak", "so far in this run"],
+  ["peak", "Error, peak to peak", "over the last whole turn"],
   ["following", "Following error", "rms of the run, motor"],
   ["angle", "Motor angle", "from the encoder's zero"],
   ["speed", "Motor speed", ""],
