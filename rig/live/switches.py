@@ -94,6 +94,11 @@ class Switches:
         return Counts(self._pressed[0], self._pressed[1], self._pressed[2])
 
     @property
+    def total(self) -> int:
+        """How often any was pressed: when it is the same as before, nothing was."""
+        return self._pressed[0] + self._pressed[1] + self._pressed[2]
+
+    @property
     def seen(self) -> Counts:
         """How often of that the station has seen."""
         return Counts(self._seen[0], self._seen[1], self._seen[2])

@@ -16,8 +16,9 @@ from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct
 from rig.campaign.steps import Item
 from rig.changes import wait_for_rest
-from rig.core.errors import DataError
+from rig.core.errors import DataError, NotReady
 from rig.runfile.folder import create, create_in
+from rig.runfile.manifest import told
 from rig.session import Session, Watch
 from rig.session.done import nobody
 from rig.station.analysis import Analysis
@@ -42,7 +43,8 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
         session.root, session.create, session.checks = station.root, create, ""
         session.facts = {}
     text = "\n".join(summary.lines(journal)) + "\n"
-    (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    with told(NotReady, f"the summary cannot be written into {journal.folder}"):
+        (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     station.teller.say("said", f"campaign {journal.book['status']}: {journal.book['sentence']}; {journal.folder}")
 
 

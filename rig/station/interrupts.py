@@ -18,7 +18,10 @@ class Panel(Interrupts):
 
     def __init__(self, switches: Switches) -> None:
         self._switches = switches
-        self._taken = self._seen = switches.pressed
+        self._taken = switches.pressed
+        self._total = -1  # presses seen so far, all switches together; -1: not looked yet
+        self._asked = 0  # by the switches: 1 stop, 2 halt
+        self._hold = False
         self._signals = 0
         self._patience = float("inf")  # s without a page, then stop
         self.lost = False  # the page was, and a stop followed from it
@@ -27,29 +30,30 @@ class Panel(Interrupts):
     def arm(self, taken: Counts, page_lost_s: float = float("inf")) -> None:
         """A new act: presses before `taken` are over and done; `page_lost_s` without a page are a stop."""
         self._taken, self._patience, self.lost = taken, page_lost_s, False
+        self._total = -1
         self.held = False
 
     def disarm(self) -> None:
         """Nothing is being carried out: a page may come and go."""
         self._patience = float("inf")
 
+    def _look(self) -> None:
+        """At the switches, when any was pressed since the last look: nearly every tick that is one comparison."""
+        if self._switches.total == self._total:
+            return
+        pressed = self._switches.pressed
+        self._total = sum(pressed)
+        self._asked = 2 if pressed.halt != self._taken.halt else int(pressed.stop != self._taken.stop)
+        self._hold = pressed.hold != self._taken.hold
+        self._switches.tell_seen(pressed)
+
     @property
     def count(self) -> int:
         """1 stop, 2 halt."""
-        pressed = self._switches.pressed
-        if pressed != self._seen:
-            self._seen = pressed
-            self._switches.tell_seen(pressed)
-        if pressed.halt != self._taken.halt:
-            return 2
-        if self._signals:
-            return self._signals
-        if pressed.stop != self._taken.stop or self.lost:
-            return 1
-        if self._switches.page_age > self._patience:
-            self.lost = True
-            return 1
-        return 0
+        self._look()
+        if not (self._asked or self._signals or self.lost):
+            self.lost = self._switches.page_age > self._patience
+        return max(self._asked, self._signals, int(self.lost))
 
     @count.setter
     def count(self, value: int) -> None:
@@ -58,7 +62,8 @@ class Panel(Interrupts):
     @property
     def held(self) -> bool:
         """Somebody asked for a hold."""
-        return self._held or self._switches.pressed.hold != self._taken.hold
+        self._look()
+        return self._hold or self._held
 
     @held.setter
     def held(self, value: bool) -> None:

@@ -21,7 +21,7 @@ from rig.station.analysis import Analysis
 from rig.station.campaigns import conduct_plan
 from rig.station.station import Job, Station
 
-ANALYSED = ("completed", "stopped")
+TOLD = ("sign-and-scale", "weigh", "lock-check", "step-test", "unwind", "jog")  # their finding is all there is to say
 
 
 def connect(station: Station, message: Mapping[str, Any]) -> None:
@@ -138,7 +138,7 @@ def _run(station: Station, session: Session, procedure: Procedure, note: str) ->
         done = session.run(procedure)
     finally:
         session.note = ""
-    if done.ending.status == "completed" and done.ending.finding is None:
+    if done.ending.status == "completed" and procedure.title() not in TOLD:
         if station.analysis is not None:
             station.analysis.end()
         station.analysis = Analysis(done.folder)

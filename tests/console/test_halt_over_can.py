@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import socket
 import statistics
 import struct
 import threading
 import time
-import uuid
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
 
 from drivers.unixbus import FRAME
-from tests.console.browser.rigs import Rig, rig
+from tests.console.browser.rigs import rig
+from tests.console.client import Client
 from tests.console.hand import FOREVER
 
 pytestmark = [pytest.mark.slow, pytest.mark.long, pytest.mark.xdist_group("real time")]
@@ -63,76 +59,34 @@ class Listener:
         return bool(self.commands) and self.commands[-1][1] == ENABLE and self.commands[-1][2] != 0
 
 
-class Console:
-    """Calls, and a page that gives signs of life."""
-
-    def __init__(self, made: Rig) -> None:
-        address, _, token = made.url.partition("/#token=")
-        self.client = httpx.Client(base_url=address, headers={"x-hdrig-token": token}, timeout=PATIENCE)
-        threading.Thread(target=self._live, args=(address.replace("http", "ws"), token), daemon=True).start()
-
-    @staticmethod
-    def _live(address: str, token: str) -> None:
-        with connect(f"{address}/api/live") as page:
-            page.send(json.dumps({"token": token, "page": ""}))
-            while True:
-                try:
-                    message = page.recv()
-                except (OSError, ConnectionClosed):
-                    return
-                if isinstance(message, str):
-                    page.send(json.dumps({"seen": json.loads(message)["seq"]}))
-
-    def state(self) -> dict[str, Any]:
-        return dict(self.client.get("/api/state").json())
-
-    def idle(self) -> dict[str, Any]:
-        give_up = time.monotonic() + PATIENCE
-        while (state := self.state())["job"]:
-            assert time.monotonic() < give_up, state
-            time.sleep(0.02)
-        return state
-
-    def post(self, act: str, **more: Any) -> dict[str, Any]:
-        body = {"id": str(uuid.uuid4()), "based_on": self.state()["revision"], "act": act, **more}
-        return dict(self.client.post("/api/act", json=body).json())
-
-    def halt(self) -> tuple[float, dict[str, Any]]:
-        """When it was posted [s, monotonic], and the answer."""
-        body = {"id": str(uuid.uuid4()), "act": "halt"}
-        began = time.monotonic()
-        return began, dict(self.client.post("/api/act", json=body).json())
-
-
-def turning(console: Console, listener: Listener) -> None:
+def turning(console: Client, listener: Listener) -> None:
     """A run in which the drive is given torque; a trip, for the machine stalls, is reset and the run made again."""
     give_up = time.monotonic() + 4 * PATIENCE
     while time.monotonic() < give_up:
-        if console.idle()["state"] == "fault":
-            console.post("reset")
-            console.idle()
-        console.post("start", procedure="kinematic-error", parameters=FOREVER)
-        while (state := console.state())["job"]:
-            if state["run"] and state["run"]["procedure"] == "kinematic_error" and state["run"]["t"] > 1.0:
-                assert listener.turns()
-                return
-            time.sleep(0.02)
+        if console.state()["state"] == "fault":
+            console.finish("reset")
+        console.do("start", procedure="kinematic-error", parameters=FOREVER)
+        state = console.until(lambda s: not s["job"] or _turning(s["run"]))
+        if state["job"] and listener.turns():
+            return
     raise AssertionError(f"no run lasted for a second: {console.state()['fault']}")
+
+
+def _turning(run: dict[str, Any] | None) -> bool:
+    return run is not None and run["procedure"] == "kinematic_error" and run["t"] > 1.0
 
 
 def test_a_halt_reaches_the_wire_within_50_ms_at_the_median(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     taken, seen = [], []
     with rig() as made:
-        console, listener = Console(made), Listener(made.bus)
-        console.idle()
-        console.post("connect", bench=f"{made.doors}/can-rig.toml")
-        assert console.idle()["bench"]
+        console, listener = Client(made.url), Listener(made.bus)
+        assert console.finish("connect", bench=f"{made.doors}/can-rig.toml")["bench"]
         while len(taken) < HALTS:
             turning(console, listener)
             began, answer = console.halt()
             taken.append(listener.off_after(began) - began)
             seen.append(answer["seen_by_loop_ms"])
-            assert console.idle()["last_run"]["status"] == "stopped"
+            assert console.until(lambda s: not s["job"])["last_run"]["status"] == "stopped"
     ordered = sorted(1e3 * t for t in taken)
     with capsys.disabled():
         print(

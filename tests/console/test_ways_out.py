@@ -5,84 +5,39 @@ In real time. What is looked at are folders and their words, never how long anyt
 
 from __future__ import annotations
 
-import json
 import os
-import re
 import signal
 import subprocess
 import sys
-import threading
 import time
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-import httpx
 import pytest
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
 
 from rig.runfile.manifest import read
-from tests.console.hand import FOREVER, PATIENCE
+from tests.console.client import PATIENCE, Client, until
+from tests.console.hand import FOREVER
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("real time")]
 FAR = ["limits.stale_s=0.5"]  # a loaded machine's twin may be late: that is not what is tried here
 
 
-class Served:
-    """`hdrig serve` as somebody starts it, and a page that gives signs of life until `leave`."""
+class Served(Client):
+    """`hdrig serve` as somebody starts it, with a page."""
 
     def __init__(self, root: Path) -> None:
         command = [sys.executable, "-m", "rig.cli", "serve", "--port", "0", "--out", str(root)]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         assert self.process.stdout is not None
-        found = re.match(r"console (http://\S+)/#token=(\S+)", self.process.stdout.readline())
-        assert found
-        self.root, self.token = root, found[2]
-        self.client = httpx.Client(base_url=found[1], headers={"x-hdrig-token": found[2]}, timeout=PATIENCE)
-        self._here = True
-        self._page = threading.Thread(target=self._be_seen, daemon=True)
-        self._page.start()
+        super().__init__(self.process.stdout.readline().split()[1])
 
-    def _be_seen(self) -> None:
-        address = str(self.client.base_url).replace("http", "ws") + "/api/live"
-        with connect(address) as page:
-            page.send(json.dumps({"token": self.token, "page": ""}))
-            while self._here:
-                try:
-                    message = page.recv()
-                except (OSError, ConnectionClosed):  # the server is gone: that is what is tried
-                    return
-                if isinstance(message, str):
-                    page.send(json.dumps({"seen": json.loads(message)["seq"]}))
-
-    def leave(self) -> None:
-        """The page is closed."""
-        self._here = False
-        self._page.join(PATIENCE)
-
-    def do(self, act: str, **more: Any) -> None:
-        revision = self.client.get("/api/state").json()["revision"]
-        body = {"id": str(uuid.uuid4()), "based_on": revision, "act": act, **more}
-        said = self.client.post("/api/act", json=body)
-        assert said.status_code == 200, said.text
-
-    def until(self, seen: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
-        return until(lambda: self.client.get("/api/state").json(), seen)
-
-    def running(self, page_lost: str = "stop", **run: Any) -> Path:
+    def running(self, page_lost: str = "stop", procedure: str = "standstill", **parameters: float) -> Path:
         """The folder of a run that goes on and on, half a second into it; standing still, unless told otherwise."""
-        asked = run or {"procedure": "standstill", "parameters": {"duration": 1000.0}}
         overrides = [f"console.page_lost={page_lost}", "console.page_lost_s=1.0", *FAR]
-        self.until(lambda s: not s["job"])
-        self.do("connect", bench="twin", overrides=overrides)
-        self.until(lambda s: not s["job"])
-        self.do("start", **asked)
-        state = self.until(lambda s: (s["run"] and s["run"]["title"] == asked["procedure"] and s["run"]["t"] > 0.5)
-                           or not s["job"])  # fmt: skip
-        assert state["run"], state["events"][-3:]
-        return Path(state["run"]["folder"])
+        self.finish("connect", bench="twin", overrides=overrides)
+        return self.start(procedure, **(parameters or {"duration": 1000.0}))
 
     @property
     def station(self) -> int:
@@ -91,14 +46,6 @@ class Served:
             ["pgrep", "-P", str(self.process.pid), "-f", "rig.station"], capture_output=True, text=True
         )
         return int(found.stdout.split()[0])
-
-
-def until(look: Callable[[], Any], seen: Callable[[Any], Any]) -> Any:
-    give_up = time.monotonic() + PATIENCE
-    while not seen(found := look()):
-        assert time.monotonic() < give_up, found
-        time.sleep(0.05)
-    return found
 
 
 def gone(pid: int) -> bool:
@@ -150,7 +97,7 @@ def test_a_page_that_is_closed_stops_the_run_while_the_server_lives(served: Serv
 
 
 def test_ctrl_c_brings_the_motor_to_rest_and_closes_the_run_before_the_server_ends(served: Served) -> None:
-    folder = served.running(procedure="kinematic-error", parameters=FOREVER)
+    folder = served.running(procedure="kinematic-error", **FOREVER)
     station = served.station
     served.process.send_signal(signal.SIGINT)
     assert served.process.wait(PATIENCE) == 0
