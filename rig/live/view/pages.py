@@ -23,6 +23,7 @@ POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self' http://{host}:{port}; img-src 'self' data: blob:; worker-src 'self' blob:"
 )
+CLOSING = 0.05  # s between looks whether it is to end
 CHUNK = 1 << 20  # bytes at a time
 
 
@@ -34,7 +35,7 @@ class Pages:
         self._proxy_port = proxy_port
         self._server = ThreadingHTTPServer((LOOPBACK, 0), _handler(files(), proxy_port))
         self._server.daemon_threads = True
-        threading.Thread(target=self._server.serve_forever, daemon=True, name="pages").start()
+        threading.Thread(target=self._server.serve_forever, args=(CLOSING,), daemon=True, name="pages").start()
 
     @property
     def url(self) -> str:
