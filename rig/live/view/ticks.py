@@ -24,12 +24,15 @@ def ticks(low: float, high: float, most: int = 6, step: float | None = None) -> 
 
 
 def rounded_out(low: float, high: float, most: int = 6) -> tuple[float, float]:
-    """The span widened to whole steps on both sides; a span of nothing gets a width of its own."""
+    """The span widened until both ends are ticks of it; a span of nothing gets a width of its own."""
     if high <= low:
         width = max(abs(low) * 0.01, 1e-6)
         low, high = low - width, high + width
-    step = step_for(high - low, most)
-    return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
+    step = 0.0
+    while step_for(high - low, most) > step * (1 + 1e-9):  # a wider span may want a wider step
+        step = step_for(high - low, most)
+        low, high = math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
+    return low, high
 
 
 def written(value: float, step: float) -> str:
