@@ -125,7 +125,23 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
     print(f"{text}campaign folder {journal.folder}")
     if exit:
         print(f"hdrig campaign --resume {journal.folder} goes on with it", file=sys.stderr)
-    return int(exit)
+        return int(exit)
+    return LAST.get(str(journal.book["name"]), nothing)(journal.folder)
+
+
+def nothing(folder: Path) -> int:
+    """What follows most campaigns."""
+    return 0
+
+
+def to_gear_file(folder: Path) -> int:
+    """Parameters with intervals, on stdout and in the campaign's folder."""
+    from rig.commands.identify import identify
+
+    return identify([folder], folder / "gear.toml")
+
+
+LAST = {"identify": to_gear_file}  # what follows the last run of a campaign, by the name of its plan
 
 
 def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:

@@ -7,6 +7,7 @@ import pytest
 from rig.campaign.plan import PLANS, plan_of, read_plan
 from rig.campaign.steps import items_of
 from rig.core.errors import UsageError
+from rig.procedures.constant_torque import ConstantTorque
 from tests.campaign.plans import HEAD, REST, plan
 
 
@@ -71,6 +72,18 @@ def test_a_load_sweep_makes_every_weight_twice_once_up_and_once_down() -> None:
 def test_an_assembly_sweep_fits_the_reference_depth_anew_and_counts_assemblies() -> None:
     items = items_of(plan_of("assembly-sweep", {"weights": [0], "depths_mm": [0.3], "reference": 2}).file, "x")
     assert [(item.rigging.assembly, item.rigging.depth_mm) for item in items] == [(1, 0.0), (2, 0.0), (3, 0.3)]
+
+
+def test_identify_is_a_slow_run_friction_every_speed_both_ways_and_a_lock_test_last() -> None:
+    items = items_of(plan_of("identify", {"speeds_rpm": [300, 120], "revolutions": 25}).file, "identify")
+    assert [item.procedure.name for item in items] == [
+        "kinematic_error", "friction", *["constant_torque"] * 4, "stiffness_lock",
+    ]  # fmt: skip
+    told = [item.procedure for item in items if isinstance(item.procedure, ConstantTorque)]
+    assert [t.speed_rpm for t in told] == [120.0, 300.0, -120.0, -300.0]
+    assert {t.revolutions for t in told} == {25}
+    with pytest.raises(UsageError, match="at least two speeds"):
+        items_of(plan_of("identify", {"speeds_rpm": [300, -300]}).file, "identify")
 
 
 def test_a_step_without_a_depth_stays_in_the_assembly_of_the_step_before() -> None:
