@@ -53,10 +53,15 @@ class Series:
         seen = "no change larger than reproducibility"
         if marked:
             when = ", ".join(
-                f"{s.row.started_utc[:10]} by {s.figure.value - s.level:+.3g} {self.unit}".rstrip(" 1") for s in marked
+                f"{s.row.started_utc[:10]} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1")
+                for s in marked
             )
             seen = f"{len(marked)} change{'s' if len(marked) > 1 else ''} larger than reproducibility: {when}"
         return f"{seen}; {self.scatter.words(self.unit)}"
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.3g}".replace("-", "−")
 
 
 @dataclass(frozen=True)

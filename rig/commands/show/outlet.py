@@ -63,7 +63,8 @@ class Apart(Outlet):
     """Drawn by a process of its own, fed through a pipe that is never waited for."""
 
     def __init__(self, how: str, out: int) -> None:
-        terminal = [sys.stdin.fileno()] if _is_terminal(sys.stdin) else []
+        # a number of its own: 0 is the pipe over there
+        terminal = [os.dup(sys.stdin.fileno())] if _is_terminal(sys.stdin) else []
         self._process = subprocess.Popen(
             [sys.executable, "-m", "rig.commands.show.painter", how, *map(str, terminal)],
             stdin=subprocess.PIPE,
@@ -71,6 +72,8 @@ class Apart(Outlet):
             pass_fds=terminal,
             start_new_session=True,  # Ctrl-C and Ctrl-Z are for us; it ends when we do
         )
+        for number in terminal:
+            os.close(number)
         assert self._process.stdin is not None
         self._pipe = self._process.stdin.fileno()
         os.set_blocking(self._pipe, False)
