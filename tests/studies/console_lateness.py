@@ -20,7 +20,7 @@ from typing import Any
 from tests.console.client import Client
 
 HDRIG = [sys.executable, "-m", "rig.cli"]
-SECONDS = 20.0  # s of each run
+SECONDS = 10.0  # s of each run
 
 
 def alone(root: Path) -> dict[str, Any]:
