@@ -21,6 +21,7 @@ Array = np.ndarray[Any, Any]
 PIECE = 300  # points of a piece: what is sealed is sent once
 PIECES = 24  # the trail's length: older ones give their place to new ones
 APART = 1 / 300  # of an axis: nearer points are one on any screen
+BACK = 0.05  # of the axis that x goes back before it counts as another way: noise and stick-slip turn all the time
 ARCMIN = 180 * 60 / np.pi  # arcmin a rad
 
 
@@ -73,6 +74,17 @@ class Piece:
     x: list[float] = field(default_factory=list)
     y: list[float] = field(default_factory=list)
 
+    def turned(self, back: float) -> int | None:
+        """Where x turned round, once it has come `back` by so much; None while it has not."""
+        furthest = max(range(len(self.x)), key=lambda i: self.way * self.x[i])
+        return furthest if self.way * (self.x[furthest] - self.x[-1]) > back else None
+
+    def split(self, at: int, way: int) -> Piece:
+        """This piece ends at point `at`; what came after is the beginning of the next."""
+        later = Piece(way, self.x[at:], self.y[at:])
+        del self.x[at + 1 :], self.y[at + 1 :]
+        return later
+
 
 class Trail(Drawing):
     """The plane's points in the order they came, coloured by which way x went."""
@@ -116,12 +128,13 @@ class Trail(Drawing):
         dy = (y - piece.y[-1]) / (self._frame.y.high - self._frame.y.low)
         if abs(dx) < APART and abs(dy) < APART:
             return
-        way = piece.way if abs(dx) < APART else (1 if dx > 0 else -1)
-        if way != piece.way or len(piece.x) >= PIECE:
-            self._start(Piece(way, [piece.x[-1], x], [piece.y[-1], y]))
-        else:
-            piece.x.append(x)
-            piece.y.append(y)
+        piece.x.append(x)
+        piece.y.append(y)
+        turned = piece.turned(BACK * (self._frame.x.high - self._frame.x.low))
+        if turned is not None:
+            self._start(piece.split(turned, -piece.way))
+        elif len(piece.x) >= PIECE:
+            self._start(piece.split(len(piece.x) - 1, piece.way))
 
     def _start(self, piece: Piece) -> None:
         self._pieces.append((self._count, piece))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rig.core.channels import Flag
 from rig.live.view.block import of_ring
@@ -97,3 +99,16 @@ def test_channels_the_table_lacks_are_drawn_with_their_own_units() -> None:
         ("N·m", ["tau_current", "tau_other"]),
         ("V", ["bus"]),
     ]
+
+
+@given(st.lists(st.one_of(st.floats(0.0, 0.75), st.floats(1.01, 40.0)), max_size=60), st.integers(1, 9))
+def test_the_loops_own_lateness_is_found_again_from_its_rows(periods: list[float], piece: int) -> None:
+    t, flags, k = [], [], 0
+    for late in (0.0, *periods):  # in periods; the first row was in time
+        t.append((k + late) * 1e-3)
+        flags.append(int(Flag.MISSED) if late >= 1.0 else 0)
+        k += 1 + (int(late) if late >= 1.0 else 0)
+    lateness = Lateness(1e-3)
+    pieces = range(0, len(t), piece)
+    found = [lateness.add(np.array(t[i : i + piece]), np.array(flags[i : i + piece])) for i in pieces]
+    assert np.concatenate(found) == pytest.approx(1e-3 * np.array([0.0, *periods]), abs=2e-7)
