@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from rig.analysis.angle import TURN
-from rig.analysis.intervals import t95
+from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array
 
 SETTLE = 0.5  # s at speed before a row counts: the gear's own swing, 25 Hz at 4 % damping, is over by then
@@ -171,12 +171,19 @@ def torque_late(found: list[Leg], odd: list[Pair], ratio: float) -> Late | None:
     drag = line(np.array([p.omega for p in odd]) / ratio, np.array([p.torque for p in odd]))  # slope: B_l
     u = u / (stiff * w)  # s
     late = (turned + np.arctan2(drag.slope, J_l * w)) / w
-    weight = 1.0 / u**2
-    mean = float(np.sum(weight * late) / np.sum(weight))
-    scatter = float(np.sqrt(np.sum(weight * (late - mean) ** 2) / (len(points) - 1)))
-    own = max(scatter, 1.0) / float(np.sqrt(np.sum(weight)))
-    lever = float(np.sum(weight / (J_l * w**2)) / np.sum(weight))  # s per N·m·s/rad of B_l
-    return Late(mean, t95(len(points) - 1) * float(np.hypot(own, lever * drag.u_slope)))
+    lever = 1.0 / (J_l * w**2 + drag.slope**2 / J_l)  # s per N·m·s/rad that B_l is larger
+    return _by_both(late, u, lever, drag)
+
+
+def _by_both(late: Array, u: Array, lever: Array, drag: Line) -> Late:
+    """Delay and B_l by least squares over the points [s], B_l seen by the mean torques as well, each by its error."""
+    own = max(t95(drag.dof) / Z95 * drag.u_slope, 1e-9)  # N·m·s/rad, widened for the few pairs
+    rows = np.stack([np.append(1.0 / u, 0.0), np.append(-lever / u, 1.0 / own)], axis=1)
+    sides = np.append(late / u, 0.0)
+    inverse = np.linalg.inv(rows.T @ rows)
+    found = inverse @ (rows.T @ sides)
+    scatter = float(np.sqrt(np.sum((sides - rows @ found) ** 2) / (late.size - 1)))
+    return Late(float(found[0]), t95(late.size - 1) * max(scatter, 1.0) * float(np.sqrt(inverse[0, 0])))
 
 
 def _phases(leg: Leg, tau_l: Array) -> list[tuple[float, complex, float]]:
