@@ -68,6 +68,7 @@ def _looked_at(bench: Bench, procedure: Procedure) -> dict[str, Any]:
             "limit": limit * scale,
             "unit": unit,
             "fraction": asked / limit if limit else 1.0,
+            "clamped": what == "torque",  # the loop is held there: what a run will need is known only once it runs
         }
         for what, asked, limit, unit, scale in margins(bench, procedure)
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import re
 from dataclasses import MISSING, Field, fields
 from functools import cache
@@ -52,10 +53,17 @@ def _parameter(field: Field[Any], told: str) -> dict[str, Any]:
         "name": field.name,
         "type": type(default).__name__,
         "unit": unit,
-        "default": list(default) if isinstance(default, tuple) else default,
+        "default": _plain(default),
         "meaning": meaning,
         "signed": bool(field.metadata.get("signed", False)),
     }
+
+
+def _plain(default: Any) -> Any:
+    """As JSON has it; a default that is no number stands for something not given."""
+    if isinstance(default, tuple):
+        return list(default)
+    return None if isinstance(default, float) and not math.isfinite(default) else default
 
 
 @cache

@@ -26,7 +26,10 @@ def add_runs(app: FastAPI, root: Path) -> None:
     @app.get("/api/runs")
     async def listed(request: Request) -> Response:
         words = {name: request.query_params.get(name, "") for name in WORDS}
-        return await _answer(lambda: {"runs": [_row(row, root) for row in runs(root, asked(**words, reverse=True))]})
+        newest_first = request.query_params.get("reverse", "true") != "false"
+        return await _answer(
+            lambda: {"runs": [_row(row, root) for row in runs(root, asked(**words, reverse=newest_first))]}
+        )
 
     @app.get("/api/runs/{uid}")
     async def one(uid: str) -> Response:

@@ -46,7 +46,16 @@ def connect(station: Station, message: Mapping[str, Any]) -> None:
         "torque_sensor": session.instruments.torque_sensor is not None,
         "devices": {name: " ".join(part for part in who if part) for name, who in session.identities.items()},
     }  # fmt: skip
+    station.status.bench["limits"] = _limits(session)
     station.teller.say("state", f"connected {bench.file.name}: {bench.source}")
+
+
+def _limits(session: Session) -> dict[str, float | None]:
+    """What the page draws its scales to, in the bench file's own units; None where there is nothing to limit."""
+    lim = session.bench.file.limits
+    shaft = lim.shaft_torque if session.instruments.torque_sensor is not None else None
+    keys = ("speed_rpm", "torque", "following_deg", "travel_turns")
+    return {**{key: getattr(lim, key) for key in keys}, "shaft_torque": shaft}
 
 
 def disconnect(station: Station, message: Mapping[str, Any]) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import time
-import uuid
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
+from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.loop import Ending
+from rig.runfile import manifest
 from rig.runfile.manifest import utc_now
 from rig.session import Watch
 from rig.session.observer import Begun, Observer
@@ -51,7 +54,8 @@ class Teller(Observer):
         """The page is told where the rows are."""
         procedure = run.procedure
         self.status.run = {
-            "uid": uuid.uuid4().hex, "procedure": procedure.name, "title": procedure.title(), "duration": run.duration,
+            "uid": manifest.read(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
+            "duration": run.duration, "locked": procedure.output_locked, "parameters": _parameters(procedure),
             "folder": str(run.folder), "ring": str(run.ring), "rows": 0, "t": 0.0,
             "lateness": {"p50_us": None, "p99_us": None, "missed": 0},
         }  # fmt: skip
@@ -100,3 +104,9 @@ class Teller(Observer):
         # NaN is no JSON: what is not measured is null
         values = [x if x == x else None for x in (*sample[1:7],)]
         self.channel.offer({"kind": "idle", "t": t, "row": values, "flags": sample.flags, "fault": sample.fault})
+
+
+def _parameters(procedure: Procedure) -> dict[str, Any]:
+    """As the page shows them; what is no number was not given."""
+    found = {f.name: getattr(procedure, f.name) for f in fields(procedure)}  # type: ignore[arg-type]
+    return {name: value for name, value in found.items() if not isinstance(value, float) or math.isfinite(value)}
