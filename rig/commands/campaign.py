@@ -23,7 +23,9 @@ from rig.commands.options import bench_arguments, show_argument
 from rig.commands.perform import let_be
 from rig.commands.person import Person
 from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
+from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.session.done import Watch, nobody
@@ -52,6 +54,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     bench_arguments(parser)
     parser.set_defaults(bench=None, before=let_be)
     show_argument(parser)
+    view_argument(parser)
     parser.add_argument("--resume", type=Path, metavar="FOLDER", help="go on with the campaign in this folder")
     parser.add_argument(
         "--skip", type=_numbers, default=[], metavar="N,…", help="with --resume: runs, by number, that are not made"
@@ -113,8 +116,9 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
     show.bench(campaign.bench, clock)
     show.say(f"campaign folder {journal.folder}")
     with (
+        view(args.view) as looking_on,
         at_the_rig(show) as (interrupts, person),
-        open_session(campaign, journal, clock, interrupts, args.note, person, show) as session,
+        open_session(campaign, journal, clock, interrupts, args.note, person, Onlookers(show, looking_on)) as session,
     ):
         args.before(session, show)
         exit = conduct(session, campaign, journal, Terminal(campaign.bench, person, show))

@@ -22,7 +22,7 @@ def view_argument(parser: argparse.ArgumentParser) -> None:
         "--view",
         choices=KINDS,
         default="none",
-        help="live view: web (a page on this machine), native (a window), file (view.rrd in the run folder)",
+        help="live view: web (a page on this machine), native (a window), file (view.rrd beside the last run's rows)",
     )
 
 
@@ -80,7 +80,7 @@ class RecordedView(View):
 
         if self._folder is not None:
             record(self._folder, self._folder / NAME)
-            print(f"view {self._folder / NAME}")
+            print(f"view {self._folder / NAME}", file=sys.stderr)
 
 
 def view(kind: str) -> View:
