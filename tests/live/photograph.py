@@ -84,6 +84,14 @@ def _drawn(pixels: np.ndarray[Any, Any]) -> bool:
     return bool((left > 60).mean() > 0.02)
 
 
+def share_of(picture: Path, colour: tuple[int, int, int]) -> float:
+    """How much of a picture has a colour, nearly."""
+    from PIL import Image
+
+    pixels = np.asarray(Image.open(picture).convert("RGB"), dtype=np.int16)
+    return float((abs(pixels - colour).max(axis=-1) < 12).mean())
+
+
 if __name__ == "__main__":
     size = [int(word) for word in sys.argv[3:5]] or [1600, 900]
     print(photograph(Path(sys.argv[1]), Path(sys.argv[2]), *size) or "no other host was asked")
