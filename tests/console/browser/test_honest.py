@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page
 
 from tests.console.browser.conftest import Open
-from tests.console.browser.look import in_state, text, until
+from tests.console.browser.look import enabled, in_state, text, until
 from tests.console.browser.puppet import BENCH, RUN, Puppet
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
@@ -29,6 +29,7 @@ def test_without_a_word_for_half_a_second_the_page_says_stale_and_strikes_out_wh
     page.wait_for_selector("#stale", state="visible")
     assert "no word from the station for" in text(page, "#stale")
     assert {node.evaluate(CROSSED) for node in page.locator(STRUCK).all()} == {"line-through"}
+    until(lambda: enabled(page) == {"hold", "stop"}, "nothing but stopping may be pressed")
     page.keyboard.press("F8")  # a halt is sent all the same
     until(lambda: [act["act"] for act in station.acts] == ["halt"], "halt")
 
@@ -50,9 +51,9 @@ def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(page: P
     for _ in range(2):
         page.clock.run_for(20_000)  # less than a minute in all
         found = re.search(r"for ([\d.]+)\u00a0s", text(page, "#stale-age"))
-        assert found
+        assert found, text(page, "#stale-age")
         ages.append(float(found[1]))
-    assert ages[1] - ages[0] == pytest.approx(20.0, abs=1.0)
+    assert ages[1] - ages[0] > 19.9  # and what the machine took for it
 
 
 def test_simulated_is_said_as_long_as_the_bench_is_the_twin(page: Page, station: Puppet) -> None:

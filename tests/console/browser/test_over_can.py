@@ -14,8 +14,10 @@ from playwright.sync_api import Browser, Page
 from tests.console.browser.conftest import SIZE, Open
 from tests.console.browser.look import enabled, in_state, text
 from tests.console.browser.rigs import Rig, rig
+from tests.scenario.test_over_the_wire import STALLED
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
+ATTEMPTS = 4
 LOADED = 60.0  # s for what takes a tenth of that on an idle machine
 
 
@@ -63,34 +65,42 @@ def _turning(page: Page) -> None:
 
 
 def test_a_whole_kinematic_error_run_from_start_to_report_by_clicking(served: Rig, desk: Page) -> None:
-    page = desk
-    assert "SIMULATED" in text(page, "#simulated")
-    page.select_option("#chosen", "kinematic-error")
-    for name, value in (("amplitude_deg", "720"), ("frequency", "0.04"), ("cycles", "0.5")):  # 13 s
-        page.fill(f"#parameter-{name}", value)
-    page.fill("#start-note", "by clicking")
-    page.wait_for_selector("#margins:has-text('19.2 of 600 rpm')", timeout=1e3 * LOADED)
-    page.wait_for_selector("#start[aria-disabled=false]")
-    page.click("#start")
-    in_state(page, "running", LOADED)
-    page.wait_for_selector("#run-title:has-text('kinematic')", timeout=1e3 * LOADED)  # the proof came first, by itself
-    page.wait_for_selector("[data-tile=peak] .value:has-text('arcsec')", timeout=1e3 * LOADED)
+    assert "SIMULATED" in text(desk, "#simulated")
+    desk.select_option("#chosen", "kinematic-error")
+    for name, value in (("amplitude_deg", "1080"), ("frequency", "0.04"), ("cycles", "0.5")):  # 13 s
+        desk.fill(f"#parameter-{name}", value)
+    desk.fill("#start-note", "by clicking")
+    desk.wait_for_selector("#margins:has-text('28.8 of 600 rpm')", timeout=1e3 * LOADED)
+    desk.wait_for_selector("#start[aria-disabled=false]")
+    _until_completed(desk)
 
-    page.wait_for_selector("#last a", state="visible", timeout=1e3 * LOADED)
-    report = page.context.new_page()
-    report.goto(page.locator("#last a").get_attribute("href") or "")
-    assert "SIMULATED" in (report.text_content("body") or "")
-    assert "arcsec" in (report.text_content("body") or "")
-    proof, run = served.closed(2)
-    assert (run["procedure"], run["status"], run["conditions"]["note"]) == (
-        "kinematic_error",
-        "completed",
-        "by clicking",
-    )
-    assert run["parameters"]["amplitude_deg"] == 720.0
-    assert proof["status"] == "completed"
-    page.click("#tab-runs")
-    page.wait_for_selector(".listing tbody tr:has-text('kinematic-error')")
+    report = desk.context.new_page()
+    report.goto(desk.locator("#last a").get_attribute("href") or "")
+    said = report.text_content("body") or ""
+    report.close()
+    assert "SIMULATED" in said
+    assert "arcsec" in said
+    *before, run = served.closed(2)
+    assert (run["procedure"], run["status"]) == ("kinematic_error", "completed")
+    assert run["conditions"]["note"] == "by clicking"
+    assert run["parameters"]["amplitude_deg"] == 1080.0
+    assert before[0]["status"] == "completed"  # the proof, made first by itself
+    desk.click("#tab-runs")
+    desk.wait_for_selector(".listing tbody tr:has-text('kinematic-error')", timeout=1e3 * LOADED)
+
+
+def _until_completed(page: Page) -> None:
+    """Start, and see it to its end. A run that the guard ends because the machine stalled is made again, by clicking."""
+    for _ in range(ATTEMPTS):
+        page.click("#start", timeout=1e3 * LOADED)
+        page.wait_for_selector("#run-title:has-text('kinematic'), #fault:visible", timeout=1e3 * LOADED)
+        page.wait_for_selector("#last a:visible, #fault:visible", timeout=1e3 * LOADED)
+        if page.locator("#fault").is_hidden():
+            return
+        assert STALLED.search(text(page, "#fault")), text(page, "#fault")
+        page.click("#reset")
+        in_state(page, "connected", LOADED)
+    raise AssertionError(f"this machine stalled in all of {ATTEMPTS} runs")
 
 
 def test_two_quick_clicks_on_the_real_server_turn_the_motor_once(served: Rig, desk: Page) -> None:

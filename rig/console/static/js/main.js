@@ -5,7 +5,7 @@ import { Charts } from "./charts/all.js";
 import { $, say } from "./dom.js";
 import { keys } from "./keys.js";
 import { Link } from "./link.js";
-import { onPress, permissions } from "./panels/buttons.js";
+import { forbid, onPress, permissions } from "./panels/buttons.js";
 import { Chooser } from "./panels/chooser.js";
 import { events } from "./panels/events.js";
 import { typed } from "./panels/fields.js";
@@ -98,7 +98,9 @@ link.addEventListener("closed", ({ detail }) => {
   answer({ ok: false, text: "This page has no valid token: it shows nothing live. Open the address that hdrig serve printed." });
 });
 link.open();
-setInterval(() => freshness(link, state), LOOK_AT_AGE);
+setInterval(() => {
+  if (freshness(link, state) === "stale") forbid("the page is stale: what may be done now is not known");
+}, LOOK_AT_AGE);
 
 const offered = await get("/api/catalogue");
 benches(offered.benches ?? []);

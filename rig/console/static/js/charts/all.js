@@ -17,7 +17,7 @@ export class Charts {
     this.turns = new Turns();
     this.strips = [
       new Strip($("chart-angle"), [{ column: "reference", label: "reference", colour: "axis", scale: "deg", width: 3 }, { column: "motor_angle", label: "measured", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg", least: 5 }], legend),
-      new Strip($("chart-following"), [{ column: "following", label: "reference less motor, last 20 s", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg, motor", least: 0.5 }], legend),
+      new Strip($("chart-following"), [{ column: "following", label: "reference less motor", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg, motor", least: 0.5 }], legend),
       new Strip($("chart-torque"), [{ column: "tau_m", label: "motor", colour: "forward", scale: "m" }, { column: "tau_l", label: "shaft (right)", colour: "reverse", scale: "l", dash: [5, 3] }], [{ scale: "m", label: "motor, N·m", least: 0.5 }, { scale: "l", label: "shaft, N·m", least: 1, side: 1 }], legend),
     ];
     this.orders = new Orders($("chart-orders"));
@@ -93,6 +93,6 @@ export class Charts {
     const orders = $("chart-orders");
     show(orders.querySelector(".empty"), amplitudes === null);
     say(orders.querySelector(".empty"), "after one whole turn clear of turning round");
-    say(orders.querySelector(".legend"), amplitudes ? `1 to ${MOST} per motor turn; amplitude of the mean, ${way}, ${this.turns.ways[way].revolutions} turns seen by this page` : "");
+    say(orders.querySelector(".legend"), amplitudes ? `amplitude of the mean, ${way}, ${this.turns.ways[way].revolutions} turns` : "");
   }
 }

@@ -7,10 +7,10 @@ import { BINS } from "./turns.js";
 const ANGLES = Array.from({ length: BINS }, (_, k) => ((k + 0.5) * 360) / BINS);
 const RECENT = 3;
 const LINES = [
-  { label: "running mean, forward", colour: "forward" },
-  { label: "reverse", colour: "reverse", dash: [7, 4] },
-  { label: "last revolutions", colour: "forward-soft" },
-  { label: "this revolution", colour: "fit" },
+  { label: "mean, forward", colour: "forward" },
+  { label: "mean, reverse", colour: "reverse", dash: [7, 4] },
+  { label: "last turns", colour: "forward-soft" },
+  { label: "this turn", colour: "fit" },
 ];
 
 export class Wave {

@@ -17,6 +17,13 @@ export function permissions(state, refused) {
   for (const button of document.querySelectorAll("[data-jog]")) permit(button, look ?? state.allowed?.jog);
 }
 
+/** Nothing but stopping, for one reason. */
+export function forbid(why) {
+  for (const button of document.querySelectorAll("[data-act], [data-jog], [data-start]")) {
+    if (!["hold", "stop"].includes(button.dataset.act)) permit(button, why);
+  }
+}
+
 /** Called once per press: not for the second half of a double click, not while the first is on its way. */
 export function onPress(button, press, refuse) {
   let waiting = false;

@@ -35,4 +35,5 @@ export function freshness(link, state) {
   const samples = state?.live?.age_ms ?? null; // when the state was made; null without any
   root.dataset.samples = samples !== null && samples + link.age > OLD ? "old" : "fresh";
   say($("link").querySelector(".text"), { live: `live, state ${aged(Math.min(link.age, 200))} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
+  return kind;
 }

@@ -2,13 +2,11 @@
 
 import { $, say, show } from "../dom.js";
 
-const LOUD = new Set(["fault"]);
-
 export function now(state) {
   const root = document.documentElement;
   root.dataset.state = state.state;
   say($("state"), state.state);
-  $("now").dataset.kind = LOUD.has(state.state) || state.fault ? "fault" : state.controller === "other" ? "other" : "calm";
+  $("now").dataset.kind = state.state === "fault" || state.fault ? "fault" : state.prompt ? "asked" : state.controller === "other" ? "other" : "calm";
   show($("fault"), Boolean(state.fault));
   say($("fault"), state.fault ?? "");
   const other = state.controller === "other" ? "Another page has control: this one only looks. Stop and halt work here too. " : "";

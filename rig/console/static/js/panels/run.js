@@ -4,13 +4,13 @@ import { $, h, say, show } from "../dom.js";
 import { fixed, lasting, plain, withUnit } from "../numbers.js";
 
 const TILES = [
-  ["peak", "Error, peak to peak", "over the last whole turn"],
-  ["following", "Following error", "rms of the run, motor"],
-  ["angle", "Motor angle", "from the encoder's zero"],
+  ["peak", "Error, peak to peak", "last whole turn"],
+  ["following", "Following error", "motor, rms so far"],
+  ["angle", "Motor angle", "from encoder zero"],
   ["speed", "Motor speed", ""],
   ["motor", "Motor torque", ""],
   ["shaft", "Shaft torque", ""],
-  ["lateness", "Lateness of the loop", "half of the ticks / 99 %"],
+  ["lateness", "Loop lateness", "50 % / 99 % of ticks"],
   ["missed", "Missed ticks", "in this run"],
 ];
 const tiles = new Map();
@@ -47,7 +47,7 @@ export function tilesOf(state, history) {
   gauge("motor", last("tau_m"), "N·m", 2, limits.torque);
   gauge("shaft", last("tau_l"), "N·m", 2, limits.shaft_torque);
   put("lateness", late && Number.isFinite(late.p50_us) ? `${fixed(late.p50_us, 0)} / ${withUnit(late.p99_us, "µs", 0)}` : "—");
-  put("missed", late && Number.isFinite(late.missed) ? withUnit(late.missed, late.missed === 1 ? "tick" : "ticks", 0) : "—", late?.missed > 0, run?.rows ? `of ${run.rows} in this run` : "in this run");
+  put("missed", late && Number.isFinite(late.missed) ? withUnit(late.missed, late.missed === 1 ? "tick" : "ticks", 0) : "—", late?.missed > 0, run?.rows ? `of ${run.rows}` : "in this run");
 }
 
 /** Abnormal from nine tenths of the bench's limit on. */
