@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rig.campaign.changes import ByHand, Deed, Measure, deeds
-from rig.campaign.planner import RPM, Campaign
+from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
-from rig.campaign.swing import declared_gear, resonance_speed
+from rig.campaign.swing import RPM, declared_gear, resonance_speed
 from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
