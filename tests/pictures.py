@@ -6,6 +6,7 @@ time. About a quarter of an hour in all, most of it the campaign of the trace pa
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 import tempfile
@@ -21,9 +22,10 @@ from tests.live.photograph import CHROMIUM, photograph
 
 PLACE = Path(__file__).parent.parent / ".readme"
 DESK = (1600, 900)
-SHEET = (900, 1777)  # px of a report: verdict, figures, the error over one turn, orders
+SHEET = (1200, 2370)  # px of a report: verdict, figures, the error over one turn
+SHOWN = 0.75  # of a sheet's size in the README
 INTO = 47.0  # s into the run: both directions have been drawn, the motor turns
-EFFECT = "twin.effects.hysteresis.torque=0.6"  # N·m, half the loop's width; the trace has to find it
+EFFECT = "twin.effects.load_dependent_error.A_inf=0.5"  # half the error is left under load; the trace has to find it
 
 
 def console(picture: Path, folder: Path) -> None:
@@ -57,8 +59,8 @@ def report(picture: Path, folder: Path) -> None:
 def trace(picture: Path, folder: Path) -> None:
     """What is missing, found in a campaign of a twin that has it."""
     _hdrig("campaign", "modest", "--bench", "twin", "--clock", "virtual", "--set", EFFECT, "--out", str(folder))
-    _hdrig("trace", str(_only(folder, "*/campaign.json").parent))
-    _photograph(_only(folder, "*/trace.html"), picture, *SHEET)
+    _hdrig("trace", str(_only(folder, "*/campaign.json").parent), "--out", str(folder / "trace"))
+    _photograph(folder / "trace" / "report.html", picture, *SHEET)
 
 
 def view(picture: Path, folder: Path) -> None:
@@ -83,7 +85,7 @@ def _photograph(file: Path, picture: Path, width: int, height: int) -> None:
     with sync_playwright() as playwright:
         page = _page(playwright, width, height)
         page.goto(file.as_uri())
-        _keep(page.screenshot(), picture)
+        _keep(page.screenshot(), picture, SHOWN)
 
 
 def _hdrig(*words: str) -> None:
@@ -98,10 +100,12 @@ def _only(folder: Path, pattern: str) -> Path:
     return found
 
 
-def _keep(png: bytes, picture: Path) -> None:
+def _keep(png: bytes, picture: Path, scale: float = 1.0) -> None:
     """256 colours are enough for a page, and a third of the size."""
-    picture.write_bytes(png)
-    Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(picture, optimize=True)
+    image = Image.open(io.BytesIO(png)).convert("RGB")
+    size = (round(scale * image.width), round(scale * image.height))
+    shown = image.resize(size, Image.Resampling.LANCZOS) if scale != 1.0 else image
+    shown.quantize(256, dither=Image.Dither.NONE).save(picture, optimize=True)
 
 
 def main(names: list[str]) -> None:

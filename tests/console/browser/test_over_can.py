@@ -90,7 +90,7 @@ def test_a_whole_kinematic_error_run_from_start_to_report_by_clicking(served: Ri
 
 
 def _until_completed(page: Page) -> None:
-    """Start, and see it to its end. A run that the guard ends because the machine stalled is made again, by clicking."""
+    """Start, and see it to its end. A run that ends because the machine stalled is made again, by clicking."""
     for _ in range(ATTEMPTS):
         page.click("#start", timeout=1e3 * LOADED)
         page.wait_for_selector("#run-title:has-text('kinematic'), #fault:visible", timeout=1e3 * LOADED)
