@@ -33,7 +33,11 @@ class Viewer:
             raise NotReady(f"the live view cannot be started: {error.strerror}") from error
         assert self._process.stdin is not None
         os.set_blocking(self._process.stdin.fileno(), False)
-        said = self._first_line()
+        try:
+            said = self._first_line()
+        except BaseException:  # a Ctrl-C while it starts
+            self.close()
+            raise
         self.url = str(said.get("url", ""))  # of the page; "" for a window
         self.viewer_pid = int(said.get("viewer", 0))
         if "error" in said:
