@@ -14,6 +14,8 @@ FRESH = 2_000_000_000  # ns; a file this young may change again without its time
 class Remembered(Generic[T]):
     """`read(path)`, called again only when time of change, size or inode of the file are others.
 
+    The time is that of the inode, which no program can set back as it can the time of the contents.
+
     Safe to use from several threads: two that meet both read, and either answer is right.
     """
 
@@ -28,11 +30,11 @@ class Remembered(Generic[T]):
         except OSError:
             self._kept.pop(path, None)
             return self._read(path)
-        now = (about.st_mtime_ns, about.st_size, about.st_ino)
+        now = (about.st_ctime_ns, about.st_size, about.st_ino)
         kept = self._kept.get(path)
         if kept is not None and kept[0] == now:
             return kept[1]
         value = self._read(path)
-        if time.time_ns() - about.st_mtime_ns > FRESH:
+        if time.time_ns() - about.st_ctime_ns > FRESH:
             self._kept[path] = (now, value)
         return value
