@@ -93,9 +93,8 @@ def run(args: argparse.Namespace) -> int:
 
 def swing_lines(bench: Bench, procedure: Procedure) -> list[str]:
     """What the kinematic error is expected to do to the shaft torque of a free output."""
-    if procedure.output_locked:
-        return []
-    return [predicted(bench, procedure.envelope(bench.setting(lambda text: None)).speed, ORDER_2)]
+    speed = procedure.envelope(bench.setting(lambda text: None)).speed
+    return [] if procedure.output_locked or speed == 0.0 else [predicted(bench, speed, ORDER_2)]
 
 
 def keep_clear(bench: Bench, procedure: Procedure) -> None:
