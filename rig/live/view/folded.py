@@ -59,7 +59,7 @@ class Folded(Drawing):
         self._sides = {1: Side(), -1: Side()}
         self._peak = ""
         x = Axis("wave-generator angle", "deg", 0.0, 360.0, step=45.0)
-        self._frame = Frame(x, Axis("θ̃ less its mean, at the output", "arcsec", -60.0, 60.0))
+        self._frame = Frame(x, Axis("θ̃ less its mean, at the output", "arcsec", -60.0, 60.0, most=8))
 
     def draw(self, t: float, canvas: Canvas) -> None:
         if self._banner:
@@ -122,7 +122,7 @@ class Folded(Drawing):
             canvas.dot(f"{PATH}/now/dot", t, place[0], colours.NOW)
 
     def _legend(self, t: float, canvas: Canvas) -> None:
-        for x, side, (name, colour, _, _) in zip((30.0, 88.0), self._sides.values(), SIDES.values(), strict=True):
+        for x, side, (name, colour, _, _) in zip((30.0, 96.0), self._sides.values(), SIDES.values(), strict=True):
             text = f"{name}, mean of {side.count} turn{'s' if side.count > 1 else ''}" if side.count else name
             canvas.words(f"{PATH}/{name}/words", t, np.array([[x, 3.0]], dtype=np.float32), [text], colour)
         if self._peak:

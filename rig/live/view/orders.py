@@ -18,7 +18,7 @@ Array = np.ndarray[Any, Any]
 
 PATH = "/orders"
 SPAN = 16  # turns at most
-HIGHEST = 16.0  # order
+LOWEST, HIGHEST = 0.5, 16.0  # orders; below is what changes slowly: load, eccentricity of the output
 STEP = 0.25  # of an order a bar stands for
 ROWS_PER_ORDER = 4  # bins with rows a turn must have for each order: twice what Nyquist asks
 LEAST = 2  # turns: with one, order 1 and slow change are the same
@@ -68,7 +68,7 @@ def bars(turns: list[Turn]) -> tuple[Array, Array]:
     place = np.rint(np.arange(amplitude.size) / len(turns) / STEP).astype(np.int64)
     largest = np.zeros_like(at)
     seen = min(int(np.isfinite(turn.values).sum()) for turn in turns)
-    inside = (place < len(at)) & (place * STEP <= seen / ROWS_PER_ORDER)
+    inside = (place < len(at)) & (place * STEP <= seen / ROWS_PER_ORDER) & (place * STEP >= LOWEST)
     np.maximum.at(largest, place[inside], amplitude[inside])
     return at, largest
 

@@ -21,8 +21,8 @@ Array = np.ndarray[Any, Any]
 Span = tuple[float, float] | None
 
 TIMELINE = "rig_time"
-EYE = (-105.0, -120.0, 62.0)  # mm: from the side of the motor, so that the wave generator is seen inside the cup
-LOOK = (22.0, 0.0, 2.0)
+EYE = (-116.0, -132.0, 64.0)  # mm: from the side of the motor, so that the wave generator is seen inside the cup
+LOOK = (4.0, 0.0, 2.0)
 WHOLE = 60.0, 2000  # s and rows gathered of a run that is over
 DOT = 4.0  # px, radius
 
