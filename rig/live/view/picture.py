@@ -109,7 +109,7 @@ def page(about: About) -> str:
     rows = [
         f"{head}**{_plain(about.title)}** · {_plain(about.gear)}, N = {about.ratio:g}{rate}",
         f"{when}{_plain(about.folder)}",
-        "Curves keep every peak; planes show means of 1° or of 10 to 50 ms. Figures with intervals stand in the report.",
+        "Curves keep every peak; planes show means of 1° or of 10 to 50 ms. Figures with intervals: in the report.",
     ]
     return "\n\n".join(rows)
 

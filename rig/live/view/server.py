@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -136,11 +135,6 @@ def quiet_home() -> Path:
             check=False,
         )
     return home
-
-
-def forget() -> None:
-    """Remove what `cache` holds."""
-    shutil.rmtree(cache(), ignore_errors=True)
 
 
 def free_port() -> int:
