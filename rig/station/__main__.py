@@ -20,6 +20,7 @@ def main(line: int, switches: Path, root: Path) -> int:
         assert isinstance(panel, Panel)
         Station(channel, seen, panel, root, JOBS).serve()
     channel.close()
+    seen.unlink()  # where the server was killed it could not
     return 0
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,13 +10,12 @@ from typing import Any, final
 from rig.core.errors import Exit
 from rig.runfile.manifest import parse
 
-NICE = 10  # a run that follows goes before the figures of the last
 TOLD = (Exit.PASS, Exit.OUT_OF_LIMITS, Exit.INCOMPLETE)  # there is a report
 
 
 @final
 class Analysis:
-    """One `hdrig analyse`, begun when made."""
+    """One `hdrig analyse`, begun when made. A loop that runs meanwhile is scheduled before it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -26,8 +23,6 @@ class Analysis:
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         )
-        with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, self._process.pid, NICE)
 
     @property
     def done(self) -> bool:

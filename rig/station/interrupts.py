@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from typing import final
 
 from rig.interrupts import Interrupts
@@ -36,6 +38,15 @@ class Panel(Interrupts):
     def disarm(self) -> None:
         """Nothing is being carried out: a page may come and go."""
         self._patience = float("inf")
+
+    @contextlib.contextmanager
+    def unwatched(self) -> Iterator[None]:
+        """While somebody has to do something by hand nothing moves: his page may sleep meanwhile."""
+        patience, self._patience = self._patience, float("inf")
+        try:
+            yield
+        finally:
+            self._patience = patience
 
     def _look(self) -> None:
         """At the switches, when any was pressed since the last look: nearly every tick that is one comparison."""

@@ -8,7 +8,7 @@ from typing import final
 
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator
-from rig.interrupts import Interrupts
+from rig.station.interrupts import Panel
 from rig.station.telling import Teller
 
 
@@ -24,10 +24,8 @@ class NotMade(HdrigError):
 class PagePerson(Operator):
     """Asks the page; where the rig has a `hand` of its own, the twin's, that makes the change once it said yes."""
 
-    def __init__(
-        self, teller: Teller, interrupts: Interrupts, attend: Callable[[], None], hand: Operator | None
-    ) -> None:
-        self._teller, self._interrupts, self._attend, self.hand = teller, interrupts, attend, hand
+    def __init__(self, teller: Teller, panel: Panel, attend: Callable[[], None], hand: Operator | None) -> None:
+        self._teller, self._panel, self._attend, self.hand = teller, panel, attend, hand
         self._answer: bool | None = None
         self.asked: Change | None = None  # last
 
@@ -45,16 +43,20 @@ class PagePerson(Operator):
         status.prompt = {"id": uuid.uuid4().hex, "text": text, "what": what}
         self._teller.tell()
         try:
-            while self._answer is None:
-                self._attend()
-                if self._interrupts.count:
-                    raise NotMade(f"stopped {self._interrupts.who}, asked to {text}", self._interrupts.exit)
-                if self._teller.channel.closed:
-                    raise NotReady(f"nobody can be asked to {text}: the page's server is gone")
+            with self._panel.unwatched():
+                self._wait(text)
         finally:
             status.prompt = None
             self._teller.tell()
-        return self._answer
+        return bool(self._answer)
+
+    def _wait(self, text: str) -> None:
+        while self._answer is None:
+            self._attend()
+            if self._panel.count:
+                raise NotMade(f"stopped {self._panel.who}, asked to {text}", self._panel.exit)
+            if self._teller.channel.closed:
+                raise NotReady(f"nobody can be asked to {text}: the page's server is gone")
 
     def answer(self, prompt_id: str, done: bool) -> str:
         """What a page said; why it is not taken, or ""."""

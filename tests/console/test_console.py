@@ -300,6 +300,38 @@ def test_a_bench_that_is_not_there_is_refused_with_its_sentence(hand: Hand) -> N
     assert hand.state()["allowed"]["connect"] is True
 
 
+PLAN = """schema = "hdrig.plan/1"
+name = "short"
+[[step]]
+procedure = "standstill"
+with = { duration = 1.0 }
+[[step]]
+procedure = "lock-check"
+"""
+
+
+def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path: Path) -> None:
+    plan = tmp_path / "short.toml"
+    plan.write_text(PLAN, encoding="utf-8")
+    hand.connect()
+    hand.do("campaign", plan=str(plan))
+    state = hand.until(lambda s: s["prompt"])
+    campaign = state["campaign"]
+    assert (campaign["done"], campaign["total"], campaign["plan"]) == (1, 2, "short")
+    hand.do("stop")
+    hand.until(lambda s: not s["job"])
+    assert "campaign stopped" in hand.told("said")[-1]
+    hand.do("campaign", resume=campaign["folder"])
+    for text in ("remove the lock pin", "fit the lock pin", "remove the lock pin"):
+        prompt = hand.until(lambda s: s["prompt"])["prompt"]
+        assert text in prompt["text"]
+        hand.do("answer", prompt_id=prompt["id"], done=True)
+    hand.until(lambda s: not s["job"])
+    assert "campaign completed: 2 done" in hand.told("said")[-1]
+    book = json.loads((Path(campaign["folder"]) / "campaign.json").read_text(encoding="utf-8"))
+    assert [run["status"] for run in book["runs"]] == ["done", "done"]
+
+
 def test_a_tare_says_the_zero_of_the_torque_sensor(ready: Hand) -> None:
     assert "N·m" in ready.finish("tare")["tare"]
     assert any(text.startswith("zero of the torque sensor") for text in ready.told("finding"))

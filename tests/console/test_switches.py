@@ -99,6 +99,19 @@ def test_a_page_that_gives_signs_of_life_is_not_lost(pressed: Switches, panel: P
     assert pressed.page_age < 30.0
 
 
+def test_a_page_may_sleep_while_somebody_works_by_hand(pressed: Switches, panel: Panel) -> None:
+    panel.arm(pressed.pressed, page_lost_s=0.02)
+    with panel.unwatched():
+        time.sleep(0.03)
+        assert panel.count == 0
+        pressed.stop()
+        assert panel.count == 1, "a stop is a stop all the same"
+    panel.arm(pressed.pressed, page_lost_s=0.02)
+    with panel.unwatched():
+        pass
+    assert panel.count == 1, "afterwards a page is wanted again"
+
+
 def test_a_bench_that_says_continue_never_loses_its_page(pressed: Switches, panel: Panel) -> None:
     panel.arm(pressed.pressed)
     time.sleep(0.01)
