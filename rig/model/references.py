@@ -44,5 +44,6 @@ REFERENCES: dict[str, str] = {
     "randall2011": "R. B. Randall, Vibration-based Condition Monitoring, Wiley (2011)",
     "rife1974": "D. C. Rife, R. R. Boorstyn, Single-tone parameter estimation from discrete-time observations, "
     "IEEE Trans. Information Theory 20 (1974) 591-598",
+    "anderson1965": "D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
 }

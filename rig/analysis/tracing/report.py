@@ -14,6 +14,7 @@ from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.curves import curves
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import errors
+from rig.analysis.tracing.free import curves_of, free, with_free
 from rig.analysis.tracing.judge import Worth, unseen
 from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
@@ -42,6 +43,7 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+    simulated = free(p, empty, s)
     words = p.own.parameters | (parameters.effects(s, p.split.fitted) if s.design.terms else {})
     return Trace(
         campaign=p.campaign.name,
@@ -66,12 +68,12 @@ def report(p: Prepared, found: Searched, s: Solution, held: Design, worths: Sequ
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
         ),
-        before=errors(p.eq, p.court, before),
-        after=errors(p.eq, p.court, final),
+        before=with_free(errors(p.eq, p.court, before), simulated, 0),
+        after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
         notes=p.campaign.notes,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
-        curves=curves(p, before, final) | pictures(p, before, final),
+        curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
     )
 
 
