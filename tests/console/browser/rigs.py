@@ -21,6 +21,7 @@ from rig.bench import BENCHES
 
 HDRIG = [sys.executable, "-m", "rig.cli"]
 ENDING = 20.0  # s to bring a motor to rest and close a run
+PATIENT = (("stale_s", 0.1, 0.6), ("watchdog", 0.15, 0.8))  # s: a browser beside it stalls a machine of two processors
 QUIET = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 
 
