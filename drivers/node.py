@@ -30,7 +30,8 @@ SETTLE = 0.02  # s for a node that says nothing of its state to become what it w
 PRODUCE = 50  # ms between a node's heartbeats
 PATIENCE = 3.5  # heartbeats that may stay away
 TRIES = 5  # questions of 0.3 s each before a node is not there: some take a second to boot
-TWICE = 5  # SYNCs in a row answered twice that are no accident
+TWICE = 5  # answers more than there were SYNCs that are no accident
+OWED = 200  # answers at most that a node held up may give all at once, later
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
 MISSING = object()
 
@@ -85,7 +86,7 @@ class Node:
         self._sdo: Any = None
         self._number = 0  # of the frame seen last
         self._syncs = 0  # sent until then
-        self._twice = 0  # SYNCs in a row that were answered more than once
+        self._excess = 0  # answers more than SYNCs; below 0: those it still owes
 
     def open(self) -> None:
         """Open the bus and listen to the node; it is asked nothing yet. Raises NotReady."""
@@ -107,8 +108,8 @@ class Node:
         self._sdo.RESPONSE_TIMEOUT = seconds
 
     def forget(self) -> None:
-        """Emergencies and reboots told so far are no longer news."""
-        self.emergency, self.rebooted = "", False
+        """Emergencies, reboots and doubled answers so far are no longer news."""
+        self.emergency, self.rebooted, self._excess = "", False, 0
 
     def revive(self) -> None:
         """Forget what it told. Raises NotReady when it has lost its configuration meanwhile."""
@@ -230,16 +231,19 @@ class Node:
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
 
     def answered(self, frame: Frame) -> None:
-        """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error."""
+        """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error.
+
+        Who was held up answers several at once, a few at a time: what it owed is taken off.
+        """
         answers, syncs = frame.number - self._number, self.bus.syncs - self._syncs
-        self._twice = self._twice + 1 if answers > syncs else 0
+        self._excess = max(self._excess + answers - syncs, -OWED)
         self._number, self._syncs = frame.number, self.bus.syncs
 
     def trouble(self, now: float) -> str:
         """What is wrong with the node as such, in words; "" when nothing is."""
         if self.bus.dead:
             return self.bus.dead
-        if self._twice > TWICE:
+        if self._excess > TWICE:
             return f"every SYNC is answered twice for {self.who}: are there two nodes of this number?"
         if self.rebooted:
             return f"{self.who} rebooted: its configuration and position are lost"

@@ -154,7 +154,7 @@ class Inputs:
 
         A frame of another length than mapped is `wrong`, and changes nothing.
         """
-        frame: Frame | None = None
+        answer: Frame | None = None
         frames, oldest = self.node.bus.frames, math.inf
         for identifier, packing, slots, time in self._layouts:
             frame = frames.get(identifier)
@@ -168,8 +168,10 @@ class Inputs:
             for slot, number in zip(slots, packing.unpack(frame.data), strict=True):
                 self.values[slot] = number
             oldest = min(oldest, time(frame))
-        if frame is not None:
-            self.node.answered(frame)
+            if time is LATCHED:
+                answer = frame
+        if answer is not None:
+            self.node.answered(answer)
         return oldest
 
 
