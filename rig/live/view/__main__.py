@@ -39,7 +39,7 @@ def main() -> int:
 def _page(server: Server) -> str:
     from rig.live.view.pages import Pages
 
-    return Pages(server.port).url
+    return Pages(server.port, lambda: server.starts).url
 
 
 if __name__ == "__main__":

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import threading
 import time
 import urllib.request
+from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.metadata import version
 from pathlib import Path
+from typing import BinaryIO
 from urllib.parse import quote, urlsplit
 
 from rig.core.errors import NotReady
@@ -23,6 +27,15 @@ POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self' http://{host}:{port}; img-src 'self' data: blob:; worker-src 'self' blob:"
 )
+STARTS = "starts"  # where a page asks how often the proxy was started
+AGAIN = f"""<script>
+let first;
+setInterval(async () => {{
+  const now = await fetch("{STARTS}").then(answer => answer.text(), () => first);
+  first ??= now;
+  if (now !== first) location.reload();
+}}, 1000);
+</script>"""  # the viewer never looks again for a proxy it has lost
 CLOSING = 0.05  # s between looks whether it is to end
 CHUNK = 1 << 20  # bytes at a time
 
@@ -30,10 +43,13 @@ CHUNK = 1 << 20  # bytes at a time
 class Pages:
     """Serves the viewer for the recordings behind `proxy_port`, on loopback, until `close`."""
 
-    def __init__(self, proxy_port: int) -> None:
-        """Raises NotReady when the viewer's files cannot be had."""
+    def __init__(self, proxy_port: int, starts: Callable[[], int]) -> None:
+        """`starts`: how often the proxy was started; a page that is open is loaded anew when that changes.
+
+        Raises NotReady when the viewer's files cannot be had.
+        """
         self._proxy_port = proxy_port
-        self._server = ThreadingHTTPServer((LOOPBACK, 0), _handler(files(), proxy_port))
+        self._server = ThreadingHTTPServer((LOOPBACK, 0), _handler(files(), proxy_port, starts))
         self._server.daemon_threads = True
         threading.Thread(target=self._server.serve_forever, args=(CLOSING,), daemon=True, name="pages").start()
 
@@ -85,7 +101,8 @@ def _take(url: str, path: Path) -> None:
     os.replace(part, path)
 
 
-def _handler(folder: Path, proxy_port: int) -> type[BaseHTTPRequestHandler]:
+def _handler(folder: Path, proxy_port: int, starts: Callable[[], int]) -> type[BaseHTTPRequestHandler]:
+    page = (folder / "index.html").read_text(encoding="utf-8") + AGAIN
     policy = POLICY.format(host=LOOPBACK, port=proxy_port)
 
     class Handler(BaseHTTPRequestHandler):
@@ -94,17 +111,28 @@ def _handler(folder: Path, proxy_port: int) -> type[BaseHTTPRequestHandler]:
         def do_GET(self) -> None:  # http.server's name
             name = urlsplit(self.path).path.lstrip("/") or "index.html"
             host = (self.headers.get("Host") or "").rpartition(":")[0]
-            if name not in FILES or host not in (LOOPBACK, "localhost"):  # another name would be another's page
+            if host not in (LOOPBACK, "localhost"):  # another name would be another's page
                 self.send_error(404)
-                return
+            elif name == STARTS:
+                self._send("text/plain", io.BytesIO(str(starts()).encode()))
+            elif name == "index.html":
+                self._send(FILES[name], io.BytesIO(page.encode()))
+            elif name in FILES:
+                with open(folder / name, "rb") as file:
+                    self._send(FILES[name], file)
+            else:
+                self.send_error(404)
+
+        def _send(self, kind: str, body: BinaryIO) -> None:
             self.send_response(200)
-            self.send_header("Content-Type", FILES[name])
-            self.send_header("Content-Length", str((folder / name).stat().st_size))
+            self.send_header("Content-Type", kind)
+            self.send_header("Content-Length", str(body.seek(0, io.SEEK_END)))
             self.send_header("Content-Security-Policy", policy)
             self.send_header("Cache-Control", "no-cache")
             self.end_headers()
-            with open(folder / name, "rb") as file:
-                while piece := file.read(CHUNK):
+            body.seek(0)
+            with contextlib.suppress(ConnectionError):  # a page that was closed in the middle
+                while piece := body.read(CHUNK):
                     self.wfile.write(piece)
 
         def log_message(self, format: str, *args: object) -> None:

@@ -27,6 +27,7 @@ class Server(ABC):
 
     def __init__(self) -> None:
         self.port = free_port()
+        self.starts = 0  # how often it was started
         self._process: subprocess.Popen[bytes] | None = None
 
     @property
@@ -52,6 +53,7 @@ class Server(ABC):
     def start(self) -> None:
         """Start it and wait until it listens. Raises NotReady."""
         self.stop()
+        self.starts += 1
         self._process = launch([*self.options(), "--port", str(self.port)])
         give_up = time.monotonic() + UP_WITHIN
         while not listens(self.port):

@@ -20,7 +20,8 @@ def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[pages.Pa
         (tmp_path / name).write_bytes(name.encode())
     (tmp_path / "secret").write_text("no")
     monkeypatch.setattr(pages, "files", lambda: tmp_path)
-    server = pages.Pages(4711)
+    starts = [1]
+    server = pages.Pages(4711, lambda: starts[0])
     yield server
     server.close()
 
@@ -87,3 +88,8 @@ def test_the_proxy_listens_on_loopback_and_nowhere_else() -> None:
     assert bound == {"0100007F"}
     assert not listens(server.port)
     assert free_port() > 0
+
+
+def test_a_page_can_tell_that_its_proxy_is_another_one_and_loads_itself_anew(served: pages.Pages) -> None:
+    assert answer(served, "/starts")[2] == b"1"
+    assert b"location.reload()" in answer(served, "/")[2]
