@@ -9,6 +9,7 @@ import { Strip } from "./time.js";
 import { Turns } from "./turns.js";
 import { Wave } from "./wave.js";
 
+const EVERY = { strips: 40, picture: 90, orders: 450 }; // ms between two drawings: samples come every 50
 const ROWS = 12_000; // 20 s of 250 pairs a second, and some more
 
 export class Charts {
@@ -23,9 +24,10 @@ export class Charts {
     this.orders = new Orders($("chart-orders"));
     const box = (name) => $("chart-picture").querySelector(`.plot.${name}`);
     this.pictures = { wave: new Wave(box("wave")), loop: new Loop(box("loop")) };
+    this.fresh = new Set();
+    this.drawn = {};
     this.choose("wave");
     this.run = null;
-    this.dirty = true;
     requestAnimationFrame(() => this.#frame());
   }
 
@@ -44,7 +46,7 @@ export class Charts {
     const [angle, following, error, torque] = ["motor_angle", "following", "kinematic_error", "tau_l"].map((name) => of.get(name));
     if (angle && following) of.set("reference", angle.map((value, k) => value + following[k]));
     this.history.add(of, rows.t);
-    this.dirty = true;
+    this.#renew();
     if (!running || !angle || !error) return;
     for (let k = 0; k < rows.t.length; k++) this.turns.add(angle[k], error[k]);
     for (let k = 0; torque && k < rows.t.length; k++) this.pictures.loop.add(error[k] / 60, torque[k]);
@@ -54,7 +56,12 @@ export class Charts {
     this.turns.clear();
     this.pictures.loop.clear();
     this.history.clear();
-    this.dirty = true;
+    this.#renew();
+  }
+
+  /** Everything is to be drawn again. */
+  #renew() {
+    for (const name of Object.keys(EVERY)) this.fresh.add(name);
   }
 
   /** Which picture stands in the large box. */
@@ -63,25 +70,37 @@ export class Charts {
     for (const button of document.querySelectorAll("[data-picture]")) button.setAttribute("aria-pressed", String(button.dataset.picture === picture));
     for (const box of $("chart-picture").querySelectorAll(".plot")) show(box, box.classList.contains(picture));
     legend($("picture-legend"), this.pictures[picture].lines);
-    this.dirty = true;
+    this.#renew();
   }
 
   restyle() {
     for (const chart of [...this.strips, this.orders, ...Object.values(this.pictures)]) chart.restyle();
-    this.dirty = true;
+    this.#renew();
   }
 
   #frame() {
     requestAnimationFrame(() => this.#frame());
-    if (!this.dirty || document.hidden || $("view-rig").hidden) return;
-    this.dirty = false;
-    for (const strip of this.strips) strip.draw(this.history);
-    this.pictures[this.picture].draw(this.turns);
-    const [forward, reverse] = [this.turns.ways.forward, this.turns.ways.reverse];
-    const whole = forward.whole ? forward : reverse;
-    const amplitudes = whole.orders(MOST);
+    if (document.hidden || $("view-rig").hidden) return;
+    if (this.#due("strips")) for (const strip of this.strips) strip.draw(this.history);
+    if (this.#due("picture")) this.pictures[this.picture].draw(this.turns);
+    if (this.#due("orders")) this.#drawOrders();
+  }
+
+  /** Whether there is something new to draw, and the last drawing long enough ago. */
+  #due(name) {
+    const now = performance.now();
+    if (!this.fresh.has(name) || now - (this.drawn[name] ?? -Infinity) < EVERY[name]) return false;
+    this.fresh.delete(name);
+    this.drawn[name] = now;
+    return true;
+  }
+
+  #drawOrders() {
+    const { forward, reverse } = this.turns.ways;
+    const way = forward.whole ? "forward" : "reverse";
+    const amplitudes = this.turns.ways[way].orders(MOST);
     this.orders.draw(amplitudes);
-    this.#explain(amplitudes, whole === forward ? "forward" : "reverse");
+    this.#explain(amplitudes, way);
   }
 
   #explain(amplitudes, way) {
