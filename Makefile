@@ -6,7 +6,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner long blind lint install lock clean
+.PHONY: demo test inner long blind pictures lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
@@ -25,6 +25,9 @@ blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plan
 
 long: .venv/ready-dev  ## real time over the wire, whole loops: a quarter of an hour on a quiet machine
 	$(BIN)/python -m pytest -m long
+
+pictures: .venv/ready-dev  ## the README's pictures, from real runs on the twin: a quarter of an hour
+	$(BIN)/python -m tests.pictures
 
 lint: .venv/ready-dev
 	$(BIN)/ruff check .

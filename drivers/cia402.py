@@ -34,6 +34,7 @@ from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 
 PROFILE = 402
+VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage
 NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
@@ -62,7 +63,7 @@ class Cia402(Drive):
         self.place = place
         self.guarded = ""  # what stops the drive when this program dies, in words
         self.mode = Mode.TORQUE
-        self._inputs, self._outputs = Inputs(self.node), Outputs(self.node)
+        self._inputs, self._outputs = Inputs(self.node, place.period), Outputs(self.node)
         self._direction = place.options.get("direction", 1)
         self._rated = place.torque_rated
         self._step = TURN / place.counts_per_turn
@@ -92,7 +93,9 @@ class Cia402(Drive):
         return identity
 
     def _compare_scales(self) -> None:
-        rated = self.node.read_uint(0x6076, default=round(self._rated * 1000)) / 1000
+        if not (told := self.node.read_uint(0x6076, default=0)):
+            self.node.remarks.append(f"{self.node.who} tells no rated torque (6076h): {self._rated:g} N·m is trusted")
+        rated = told / 1000 or self._rated
         if abs(rated / self._rated - 1) > SCALE_TOLERANCE:
             raise NotReady(
                 f"{self.node.who} says its rated torque is {rated:g} N·m (6076h), motor.torque_rated in the bench file "
@@ -150,7 +153,7 @@ class Cia402(Drive):
         self._outputs.arrange(target.mapped, [*CHOSEN, *others])
         if mode is not Mode.POSITION:
             self.node.put(target.object.at, 0, bytes(target.object.bits // 8))
-        self.node.write(0x6060, 0, struct.pack("<b", target.number))
+        self.node.put(0x6060, 0, struct.pack("<b", target.number))  # some cannot be read; 6061h tells before enabling
         self.mode = mode
 
     def _arm(self) -> str:
@@ -242,6 +245,7 @@ class Cia402(Drive):
         if latched == NEVER:
             return self._told(self._last)
         word, mode, permille, position = self._inputs.values
+        self.voltage = bool(int(word) & VOLTAGE)
         self._judge(int(word), mode)
         flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & 1 << 11 else 0
         if latched != self._last.t:

@@ -37,7 +37,7 @@ class Cia404(TorqueSensor):
         self.remarks = self.node.remarks
         self.place = place
         self._direction = place.options.get("direction", 1)
-        self._inputs = Inputs(self.node)
+        self._inputs = Inputs(self.node, place.period)
         self._scale = 1.0  # N·m per digit
         self._last = TorqueReading(NEVER, NAN)
 
@@ -47,9 +47,12 @@ class Cia404(TorqueSensor):
         identity = self.node.identify(PROFILE)
         self.node.pause()
         unit = self.node.read_uint(0x6131, 1, default=0)
-        prefix = prefix_of(unit)
+        prefix = 1.0 if unit == self.place.options.get("unit_code") else prefix_of(unit)
         if prefix is None:
-            raise NotReady(f"{self.node.who} measures in a unit that is no torque (6131h = {unit:08X}h), expected N·m")
+            raise NotReady(
+                f"{self.node.who} measures in a unit that is no torque (6131h = {unit:08X}h), expected N·m, 00560000h; "
+                f"where its manual says that this is N·m: {self.place.where}.unit_code = 0x{unit:08X}"
+            )
         whole = self.node.read(0x9130, 1, b"") != b""
         digits = self.node.read_uint(0x6132, 1) if whole else 0
         self._scale = prefix * 10.0**-digits

@@ -32,7 +32,7 @@ class Cia406(Encoder):
         self.node = Node(self.bus, place.need("node"), "load encoder")
         self.remarks = self.node.remarks
         self.place = place
-        self._inputs = Inputs(self.node)
+        self._inputs = Inputs(self.node, place.period)
         self._direction = place.options.get("direction", 1)
         self._step = TURN / place.counts_per_turn
         self._angle = Unwrapped(1 << 32, 1)

@@ -10,7 +10,6 @@ import contextlib
 import logging
 import queue
 import struct
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import can
@@ -30,8 +29,9 @@ NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational",
 SETTLE = 0.02  # s for a node that says nothing of its state to become what it was told
 PRODUCE = 50  # ms between a node's heartbeats
 PATIENCE = 3.5  # heartbeats that may stay away
-TWICE = 5  # SYNCs in a row answered twice that are no accident
-INVALID = 1 << 31  # of a PDO's identifier: not in use
+TRIES = 5  # questions of 0.3 s each before a node is not there: some take a second to boot
+TWICE = 5  # answers more than there were SYNCs that are no accident
+OWED = 200  # answers at most that a node held up may give all at once, later
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
 MISSING = object()
 
@@ -86,7 +86,7 @@ class Node:
         self._sdo: Any = None
         self._number = 0  # of the frame seen last
         self._syncs = 0  # sent until then
-        self._twice = 0  # SYNCs in a row that were answered more than once
+        self._excess = 0  # answers more than SYNCs; below 0: those it still owes
 
     def open(self) -> None:
         """Open the bus and listen to the node; it is asked nothing yet. Raises NotReady."""
@@ -108,8 +108,8 @@ class Node:
         self._sdo.RESPONSE_TIMEOUT = seconds
 
     def forget(self) -> None:
-        """Emergencies and reboots told so far are no longer news."""
-        self.emergency, self.rebooted = "", False
+        """Emergencies, reboots and doubled answers so far are no longer news."""
+        self.emergency, self.rebooted, self._excess = "", False, 0
 
     def revive(self) -> None:
         """Forget what it told. Raises NotReady when it has lost its configuration meanwhile."""
@@ -119,6 +119,7 @@ class Node:
 
     def identify(self, profile: int) -> Identity:
         """Device type, name, serial number and version. Raises NotReady when it is no `profile` device."""
+        self._await()
         kind = self.read_uint(0x1000) & 0xFFFF
         if kind != profile:
             raise NotReady(f"{self.who} says it is a CiA {kind} device (1000h), expected CiA {profile}")
@@ -126,6 +127,15 @@ class Node:
         vendor, product, revision, serial = (self.read_uint(0x1018, sub, default=0) for sub in (1, 2, 3, 4))
         model = name or f"vendor {vendor:#x} product {product:#x}"
         return Identity(model, str(serial or ""), version or f"{revision:#x}")
+
+    def _await(self) -> None:
+        """Until it answers at all, or has had the time to boot."""
+        for _ in range(TRIES - 1):
+            try:
+                self.read(0x1000, 0, b"")
+            except NotReady:
+                continue
+            return
 
     def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
         """An object's bytes; `default` where the node will not tell, whatever code it says so with: nodes do not agree
@@ -188,27 +198,6 @@ class Node:
         except (SdoCommunicationError, can.CanError) as why:
             raise NotReady(f"{self.who} does not answer (writing {index:04X}h:{sub}: {why})") from None
 
-    def map_pdo(self, communication: int, identifier: int, kind: int, objects: Iterable[Mapped]) -> None:
-        """Set up one PDO: off, emptied, mapped, on      [cia301, 7.5.2.36-38]
-
-        `communication` 1400h… or 1800h…, `kind` its transmission type. Raises NotReady, naming what is refused.
-        """
-        mapping, entries = communication + 0x200, list(objects)
-        self.put(communication, 1, struct.pack("<I", identifier | INVALID))
-        self.write(communication, 2, bytes((kind,)))
-        self.put(mapping, 0, b"\0")  # many drives refuse entries while the number is not zero
-        for place, (index, sub, bits, _) in enumerate(entries, 1):
-            self.write(mapping, place, struct.pack("<I", index << 16 | sub << 8 | bits))
-        self.write(mapping, 0, bytes((len(entries),)))
-        self.write(communication, 1, struct.pack("<I", identifier))
-
-    def switch_off_pdo(self, communication: int) -> None:
-        """A PDO not wanted on the bus; nothing when the node has none such. Raises NotReady."""
-        present = self.read(communication, 1, b"")
-        if present and not int.from_bytes(present, "little") & INVALID:
-            with contextlib.suppress(Refused):  # then it is sent: unread, and told by the load of the bus
-                self.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))
-
     def produce_heartbeat(self) -> None:
         """Have the node tell that it lives. One that cannot is told by the age of its PDOs alone. Raises NotReady."""
         try:
@@ -218,8 +207,13 @@ class Node:
             self.remarks.append(f"{self.who} has no heartbeat ({why}): only the age of its PDOs shows that it lives")
 
     def start(self) -> None:
-        """Operational, confirmed by its heartbeat. Raises NotReady."""
+        """Operational, confirmed by its heartbeat; an error it shows is remarked on. Raises NotReady."""
         self._nmt(START, OPERATIONAL)
+        if register := self.read_uint(0x1001, default=0):
+            told = f", {self.emergency.rpartition(': ')[2]}" if self.emergency else ""
+            self.remarks.append(
+                f"{self.who} shows an error, 1001h = {register:02X}h{told}: look at it before you trust it"
+            )
 
     def pause(self) -> None:
         """Pre-operational: PDOs off, while it is being configured. Raises NotReady."""
@@ -237,16 +231,19 @@ class Node:
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
 
     def answered(self, frame: Frame) -> None:
-        """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error."""
+        """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error.
+
+        Who was held up answers several at once, a few at a time: what it owed is taken off.
+        """
         answers, syncs = frame.number - self._number, self.bus.syncs - self._syncs
-        self._twice = self._twice + 1 if answers > syncs else 0
+        self._excess = max(self._excess + answers - syncs, -OWED)
         self._number, self._syncs = frame.number, self.bus.syncs
 
     def trouble(self, now: float) -> str:
         """What is wrong with the node as such, in words; "" when nothing is."""
         if self.bus.dead:
             return self.bus.dead
-        if self._twice > TWICE:
+        if self._excess > TWICE:
             return f"every SYNC is answered twice for {self.who}: are there two nodes of this number?"
         if self.rebooted:
             return f"{self.who} rebooted: its configuration and position are lost"

@@ -13,12 +13,13 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from drivers.bus import Frame
-from drivers.node import INVALID, Mapped, Node, Refused
+from drivers.mapping import EVENTS, EXTENDED, INVALID, keep_sending, map_pdo, switch_off_pdo
+from drivers.node import Mapped, Node, Refused
 from rig.core.errors import NotReady
 
 NEVER = -1e9  # s, before all of its frames are there
 MOST = 8  # PDOs looked at each way
-EACH_SYNC, EVENTS = 1, (254, 255)  # transmission types
+EACH_SYNC, AFTER_CHANGE = 1, 0  # transmission types
 AT_ONCE = 255  # of an RPDO: taken when it comes
 LATCHED: Callable[[Frame], float] = attrgetter("latched")
 ARRIVED: Callable[[Frame], float] = attrgetter("arrived")
@@ -51,7 +52,7 @@ def present(node: Node, first: int) -> Iterator[tuple[int, int, int, list[Mapped
     """(communication object, identifier, transmission type, mapped objects) of the node's PDOs that are switched on."""
     for communication in range(first, first + MOST):
         identifier = node.read_uint(communication, 1, default=INVALID)
-        if identifier & INVALID:
+        if identifier & (INVALID | EXTENDED):
             continue
         count = node.read_uint(communication + 0x200, 0, default=0)
         entries = [node.read_uint(communication + 0x200, n + 1, default=0) for n in range(min(count, 64))]
@@ -63,7 +64,7 @@ def ours(node: Node, communication: int, identifier: int, kind: int, objects: Se
     """One PDO as we want it; as it was when the node refuses. Raises Refused, NotReady."""
     before = node.read(communication, 1, b"")
     try:
-        node.map_pdo(communication, identifier, kind, objects)
+        map_pdo(node, communication, identifier, kind, objects)
     except Refused:
         if before:
             node.restore(communication, 1, before)
@@ -73,8 +74,9 @@ def ours(node: Node, communication: int, identifier: int, kind: int, objects: Se
 class Inputs:
     """The objects a device tells, from whatever PDOs they come in. `values` are the newest, in the order asked for."""
 
-    def __init__(self, node: Node, base: Sequence[int] = (0x180, 0x280)) -> None:
+    def __init__(self, node: Node, period: float = 0.001, base: Sequence[int] = (0x180, 0x280)) -> None:
         self.node = node
+        self.period = period  # s between frames of one that follows no SYNC, where it takes a timer
         self.values: list[float] = []
         self.wrong = ""  # what is wrong with its frames, in words
         self._identifiers = [b + node.number for b in base]
@@ -93,7 +95,7 @@ class Inputs:
             self._layouts = self._as_they_are(wanted, optional, str(why))
             return
         for n in range(len(groups), 4):
-            self.node.switch_off_pdo(0x1800 + n)
+            switch_off_pdo(self.node, 0x1800 + n)
         made = [layout(self._identifiers[n], group, wanted) for n, group in enumerate(groups)]
         self._layouts = [one for one in made if one is not None]
 
@@ -118,9 +120,9 @@ class Inputs:
             self.node.write(communication, 2, bytes((EACH_SYNC,)))
         except Refused as why:
             if kind not in EVENTS:
-                raise NotReady(
-                    f"{why}: it sends on another count of SYNCs (type {kind}), expected after each"
-                ) from None
+                how = "only after a change" if kind == AFTER_CHANGE else "on another count of SYNCs"
+                raise NotReady(f"{why}: it sends {how} (type {kind}), expected after each SYNC") from None
+            keep_sending(self.node, communication, self.period)
             self.node.remarks.append(
                 f"{self.node.who} does not follow SYNC: its readings are stamped when they come, not when they are made"
             )
@@ -143,14 +145,16 @@ class Inputs:
             self.node.bus.frames.pop(identifier, None)
         self.node.bus.sync()
         if not self.node.bus.wait(seconds, lambda: self.there):
-            raise NotReady(f"{self.node.who} sent no PDOs after a SYNC: is anything else mapped or filtered?")
+            unasked = any(one.time is ARRIVED for one in self._layouts)
+            why = "does it tell changes only? Then set its event timer 180xh:5" if unasked else "is it filtered?"
+            raise NotReady(f"{self.node.who} sent no PDOs within {seconds:g} s: {why}")
 
     def take(self) -> float:
         """The newest numbers into `values`; the time [s] of the oldest frame among them, NEVER before all are there.
 
         A frame of another length than mapped is `wrong`, and changes nothing.
         """
-        frame: Frame | None = None
+        answer: Frame | None = None
         frames, oldest = self.node.bus.frames, math.inf
         for identifier, packing, slots, time in self._layouts:
             frame = frames.get(identifier)
@@ -164,8 +168,10 @@ class Inputs:
             for slot, number in zip(slots, packing.unpack(frame.data), strict=True):
                 self.values[slot] = number
             oldest = min(oldest, time(frame))
-        if frame is not None:
-            self.node.answered(frame)
+            if time is LATCHED:
+                answer = frame
+        if answer is not None:
+            self.node.answered(answer)
         return oldest
 
 
@@ -187,7 +193,7 @@ class Outputs:
             self._layouts = self._as_they_are(needed, [*needed, *known], str(why))
             return
         for n in range(1, 4):
-            self.node.switch_off_pdo(0x1400 + n)
+            switch_off_pdo(self.node, 0x1400 + n)
         made = layout(identifier, needed, needed)
         self._layouts = [made] if made else []
 

@@ -21,6 +21,7 @@ from rig.core.procedure import Setting
 from rig.core.sample import Mode
 from rig.guard import DEG, RPM, Limits
 from rig.instruments import Instruments
+from rig.twin_hand import TwinHand
 
 BENCHES = Path(__file__).parent / "benches"  # benches that ship with hdrig
 ClockName = Literal["virtual", "wall"]
@@ -39,6 +40,11 @@ class Bench:
     def simulated(self) -> bool:
         """True when every device is the twin's. A mixture is refused when the bench is read."""
         return self.file.devices.drive.type.startswith("twin.")
+
+    @property
+    def by_person(self) -> bool:
+        """Weights and pin are a person's to change; a twin has a hand of its own, also over a wire."""
+        return not self.simulated and self.file.hand is None
 
     @property
     def gains(self) -> Gains:
@@ -83,7 +89,17 @@ class Bench:
         optional = {key: getattr(f.gear, key) for key in ("T_rated", "T1", "T2")} | f.path.model_dump()
         declared |= {key: value for key, value in optional.items() if value is not None}
         backend = "sim" if self.simulated else f.devices.drive.type.partition(".")[0]
-        return {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
+        own = {"backend": backend, "bench": f.name, "gear": gear, "declared": declared, "encoders": encoders}
+        return own | ({"latch_skew": skew} if (skew := self._latch_skew()) else {})
+
+    def _latch_skew(self) -> dict[str, dict[str, float]]:
+        """What `hdrig run skew` has measured on this bench, of the channels where it has; s."""
+        sections = {"theta_l": self.file.load_encoder, "tau_l": self.file.torque_sensor}
+        return {
+            channel: {"value": section.skew, "half_width": section.skew_half_width}
+            for channel, section in sections.items()
+            if section is not None and section.skew is not None and section.skew_half_width is not None
+        }
 
     def open(self, clock: ClockName) -> Instruments:
         """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
@@ -117,8 +133,9 @@ class Bench:
         speed = SpeedFilter(self.file.loop.speed_filter)
         wiring = Wiring(timer, {name: bus.model_dump() for name, bus in self.file.bus.items()}, **connect)
         made = {role: self._device(role, wiring, self._place(role)) for role in ROLES if self._has(role)}
+        hand = TwinHand(self.file.hand.control) if self.file.hand else None
         return Instruments(
-            made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed,
+            made["drive"], made.get("load_encoder"), made.get("torque_sensor"), timer, speed, hand,
             latch=wiring.latch, lead=self.file.loop.latch_lead,
         )  # fmt: skip
 

@@ -27,12 +27,16 @@ def wait_for_rest(instruments: Instruments) -> None:
     instruments.safe()
     clock, quiet, speed = instruments.clock, 0, math.inf
     give_up = clock.now() + PATIENCE
-    before = instruments.read(clock.wait_until(clock.now()))
+    before = instruments.look()
     while quiet < QUIET:
-        sample = instruments.read(clock.wait_until(clock.now() + WINDOW))
-        speed = (sample.theta_m - before.theta_m) / (sample.t - before.t)
+        clock.wait_until(clock.now() + WINDOW)
+        sample = instruments.look()
+        passed = sample.t - before.t
+        speed = (sample.theta_m - before.theta_m) / passed if passed > 0.0 else math.inf  # nothing new is no rest
         quiet = quiet + 1 if abs(speed) < STILL else 0
         before = sample
+        if clock.now() > give_up and math.isinf(speed):
+            raise NotReady(f"the drive tells no new motor angle for {WINDOW:g} s: whether it is at rest is not known")
         if clock.now() > give_up:
             raise NotReady(
                 f"the motor still turns at {speed * 30 / math.pi:.1f} rpm {PATIENCE:g} s after its torque went off: "

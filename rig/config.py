@@ -50,6 +50,7 @@ class DeviceSection(Strict):
     direction: Literal[1, -1] = 1  # -1 turns the sign of its readings (and commands) over
     watchdog: Annotated[float | None, quantity("s", ge=0.01, le=10)] = None  # the drive stops this long after its host
     torque_constant: Annotated[float | None, quantity("N·m/A", **Positive)] = None  # where a drive tells current only
+    unit_code: int | None = Field(default=None, ge=0, lt=2**32)  # what 6131h holds when it means N·m, by its manual
     delay: Annotated[float, quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
 
     def options(self) -> dict[str, Any]:
@@ -100,16 +101,29 @@ class MotorSection(Strict):
     counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
 
 
-class EncoderSection(Strict):
-    """[load_encoder]"""
+class LatchedSection(Strict):
+    """A channel whose latch skew `hdrig run skew` has measured: both numbers, or neither."""
+
+    skew: Annotated[float | None, quantity("s", ge=-0.1, le=0.1)] = None
+    skew_half_width: Annotated[float | None, quantity("s", ge=0, le=0.1)] = None  # of its 95 % interval
+
+    @model_validator(mode="after")
+    def _both(self) -> LatchedSection:
+        if (self.skew is None) is not (self.skew_half_width is None):
+            raise ValueError("skew and skew_half_width belong together: a skew without its interval is no measurement")
+        return self
+
+
+class EncoderSection(LatchedSection):
+    """[load_encoder]; `skew`: latched so much later than the motor angle"""
 
     counts_per_turn: Annotated[int, quantity("counts", gt=0, le=2**40)]
     calibrated: date | None = None
     calibration_due: date | None = None
 
 
-class TorqueSensorSection(Strict):
-    """[torque_sensor]"""
+class TorqueSensorSection(LatchedSection):
+    """[torque_sensor]; `skew`: latched so much later than the load angle"""
 
     range: Annotated[float, quantity("N·m", **Positive)]
     calibrated: date | None = None
@@ -129,6 +143,12 @@ class LimitsSection(Strict):
     stale_s: Annotated[float, quantity("s", **Positive)]
 
 
+class HandSection(Strict):
+    """[hand]: of a twin in another process; a person is the hand of every other bench."""
+
+    control: str = Field(min_length=1)  # socket of the twin's command channel
+
+
 class ControlSection(Strict):
     """[control]: gains of the host's position loop, motor side; `mode` says which loop the drive closes by itself."""
 
@@ -139,6 +159,13 @@ class ControlSection(Strict):
     Kd: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
     integrator_limit: Annotated[float, quantity("N·m", **NotNegative)]
     feedforward: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
+
+
+class ConsoleSection(Strict):
+    """[console]: what becomes of a run whose page is lost, chosen beforehand. For `hdrig serve` alone."""
+
+    page_lost: Literal["continue", "stop"] = "stop"  # stop: category 1, brought to rest, torque off
+    page_lost_s: Annotated[float, quantity("s", ge=0.5, le=3600)] = 3.0  # without a sign of life of any page
 
 
 class TwinKinematicError(Strict):
@@ -207,6 +234,8 @@ class BenchFile(Strict):
     torque_sensor: TorqueSensorSection | None = None
     limits: LimitsSection
     control: ControlSection
+    console: ConsoleSection = Field(default_factory=ConsoleSection)
+    hand: HandSection | None = None
     twin: TwinSection | None = None
 
 

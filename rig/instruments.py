@@ -9,11 +9,13 @@ from rig.control.filter import SpeedFilter
 from rig.core.channels import Flag
 from rig.core.clock import Clock
 from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
-from rig.core.errors import HdrigError
+from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Operator
 from rig.core.sample import NAN, Sample, Setpoint
+from rig.latching import LatchOffsets
 
 FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
+ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 NEVER = -1e9  # s, a latch time older than any
 
 
@@ -33,6 +35,7 @@ class Instruments:
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
+        self.offsets = (LatchOffsets(), LatchOffsets())  # of load angle and torque, against the motor angle, as told
         self._mark = 0  # flags every row carries
         self._tau, self._tau_since = NAN, 0.0  # the torque sensor's last value, and when it was first that [s]
 
@@ -60,6 +63,9 @@ class Instruments:
             raise
         if any(identity.simulated for identity in found.values()):
             self._mark = int(Flag.SIMULATED)  # the twin over a wire, whose drivers cannot know
+        elif self.operator is not None:
+            self.close()
+            raise NotReady("the bench file has a [hand], as a twin has, and no device here says that it is simulated")
         return found
 
     def causes(self) -> str:
@@ -70,6 +76,7 @@ class Instruments:
         """From here time counts from zero, and nothing read before is news."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock
         self._last = [NEVER, NEVER, NEVER]
+        self.offsets = (LatchOffsets(), LatchOffsets())
         self._tau = NAN
         self.speed_filter = SpeedFilter(self.speed_filter.time_constant)
 
@@ -92,6 +99,7 @@ class Instruments:
             if t_l == last[1]:
                 flags |= Flag.STALE_L
             last[1] = t_l
+            self.offsets[0].add(t_l - t_m)
             if t_l < oldest:
                 oldest = t_l
         if self.torque_sensor is not None:
@@ -105,12 +113,26 @@ class Instruments:
             elif t_tau - self._tau_since > FROZEN:
                 flags |= Flag.FROZEN_TAU
             last[2] = t_tau
+            self.offsets[1].add(t_tau - t_m)
             if t_tau < oldest:
                 oldest = t_tau
         t = t_m - self.started
         age = now - oldest
         omega = self.speed_filter.step(t, motor[1])
         return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), fault)
+
+    def look(self) -> Sample:
+        """A sample outside of a run: devices that read when they are asked are asked, and given time to answer."""
+        asked = self.clock.now()
+        if self.latch is None:
+            return self.read(self.clock.wait_until(asked))
+        self.latch()
+        return self.read(self.clock.wait_until(asked + ANSWER))
+
+    def told(self) -> dict[str, dict[str, float | int]]:
+        """Latch times against the motor angle's since `start`, of the channels that are there, as drivers tell them."""
+        named = zip(("theta_l", "tau_l"), self.offsets, strict=True)
+        return {name: offsets.summary() for name, offsets in named if offsets.count}
 
     def write(self, setpoint: Setpoint) -> float:
         """Command the drive; returns what it could be given [N·m]."""

@@ -1,4 +1,7 @@
-"""Ctrl-C once = stop, twice = halt, at any moment of a session; a hold is asked for apart. Looked at every tick."""
+"""Ctrl-C once = stop, twice = halt, at any moment of a session; a hold is asked for apart. Looked at every tick.
+
+A key asks for each by name; asking for a stop twice is not a halt then.
+"""
 
 from __future__ import annotations
 
@@ -15,22 +18,45 @@ class Interrupts:
     SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
     def __init__(self) -> None:
-        self.count = 0
+        self._signals = 0
+        self._keyed = 0  # 1 stop, 2 halt, by a key: written by one thread alone, so that no request can be lost
         self.held = False  # somebody asked for the motor to be held; a stop asked for later goes before
         self._before: dict[signal.Signals, Any] = {}
+
+    @property
+    def count(self) -> int:
+        """1 stop, 2 or more halt."""
+        return max(self._signals, self._keyed)
+
+    @count.setter
+    def count(self, value: int) -> None:
+        self._signals = value
 
     @property
     def exit(self) -> Exit:
         """What the command ends with when this is why: stopped, halted, or PASS when nobody asked."""
         return (Exit.PASS, Exit.STOPPED, Exit.HALTED)[min(self.count, 2)]
 
+    @property
+    def who(self) -> str:
+        """Who asked, for a sentence that says that something was ended."""
+        return "by the operator"
+
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end; also what a button calls."""
-        self.count += 1
+        self._signals += 1
 
     def hold(self) -> None:
         """Bring the motor to rest and hold it there, torque on; what a key calls."""
         self.held = True
+
+    def stop(self) -> None:
+        """What a key calls; asked for twice it is still a stop."""
+        self._keyed = max(self._keyed, 1)
+
+    def halt(self) -> None:
+        """What a key calls: torque off at once."""
+        self._keyed = 2
 
     def __enter__(self) -> Interrupts:
         for sig in self.SIGNALS:

@@ -73,7 +73,7 @@ class Loop:
         only after the drive was made safe.
         """
         if self.interrupts.count:
-            why = "stopped by the operator before anything was energised"
+            why = f"stopped {self.interrupts.who} before anything was energised"
             return Ending("stopped", why, self.interrupts.exit)
         try:
             # locking memory takes its time: done before anything is energised
@@ -87,6 +87,7 @@ class Loop:
             raise
         finally:
             confirmed = self.instruments.safe()
+            self.timing.offsets = self.instruments.told()
         return self._leave(ending, confirmed)
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
@@ -127,12 +128,12 @@ class Loop:
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
+            if self.interrupts.count > 1:
+                self.instruments.safe()  # before any word about it is written down
+                self._last_row(sample, asked)
+                return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
             if self.interrupts.count or self.interrupts.held:
                 steps = self._course(steps, procedure, setting)
-            if self.interrupts.count > 1:
-                self.instruments.safe()
-                self._last_row(sample, asked)
-                return Ending("stopped", "halted by the operator: torque off at once", Exit.HALTED)
             try:
                 asked = steps.send(sample)
             except NotReady:
@@ -143,7 +144,8 @@ class Loop:
                 self.instruments.safe()
                 self._last_row(sample, asked)
                 if self.supervisor.state is State.STOPPING:
-                    return Ending("stopped", "stopped by the operator: brought to rest, torque off", Exit.STOPPED)
+                    why = f"stopped {self.interrupts.who}: brought to rest, torque off"
+                    return Ending("stopped", why, Exit.STOPPED)
                 return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
             put(sample, asked[0], write(allowed(asked)), asked.theta_ref)
             self.rows += 1
@@ -155,7 +157,7 @@ class Loop:
         """What is stepped on with: something else once the operator has asked for a hold or a stop."""
         state = self.supervisor.state
         if self.interrupts.count and state is not State.STOPPING:
-            self.supervisor.act(Act.STOP, "asked by the operator")
+            self.supervisor.act(Act.STOP, f"asked {self.interrupts.who}")
             steps = self.setpoints.to_rest(procedure, setting)
             next(steps)
         elif self.interrupts.held and state is State.RUNNING:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 CEILING = 100_000  # µs; later ticks share the last bin, the maximum is kept apart
 
 
@@ -16,6 +18,7 @@ class LoopTiming:
         self.late_events = 0  # times at least one cycle was skipped
         self.worst = 0.0  # s
         self.scheduling = ""  # what the operating system granted, in words
+        self.offsets: dict[str, dict[str, float | int]] = {}  # latch times of channels, as their drivers tell
         self._bins = [0] * (CEILING + 1)
 
     def add(self, lateness: float) -> None:
@@ -40,7 +43,7 @@ class LoopTiming:
                 return micro / 1e6
         return 0.0
 
-    def summary(self) -> dict[str, float | int | str]:
+    def summary(self) -> dict[str, Any]:
         """What `timing.json` holds; times in s."""
         return {
             "clock": "virtual" if self.virtual else "wall",
@@ -53,6 +56,8 @@ class LoopTiming:
             "lateness_p999": self.quantile(0.999),
             "lateness_max": self.worst,
             "scheduling": self.scheduling,
+            "latch_offsets": self.offsets,
+            "latch_offsets_are": "s after theta_m, as the drivers tell; what they cannot know, only a skew run shows",
             "how": "a virtual clock is never late"
             if self.virtual
             else "wake-up against the absolute deadline on the monotonic clock, every tick, 1 µs bins",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from rig.core.errors import NotReady
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
 from sim.world import World
@@ -9,6 +11,8 @@ from sim.world import World
 
 class TwinOperator(Operator):
     """Acts on the twin's `world` directly."""
+
+    begins_anew: ClassVar[bool] = True
 
     def __init__(self, world: World) -> None:
         self.world = world

@@ -1,5 +1,6 @@
 """Configuration is read strictly: the sentence names file, key, value with unit, and what was expected."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -73,3 +74,23 @@ def test_a_file_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b"name = '\xe9'")
     with pytest.raises(UsageError, match="not UTF-8"):
         load_text(tmp_path / "latin.toml")
+
+
+def test_a_bench_without_a_console_table_stops_a_run_whose_page_is_lost() -> None:
+    older = re.sub(r"\[console\].*?(?=\n\[)", "", TEXT, flags=re.S)
+    assert "page_lost" not in older
+    console = read_bench(older, "x").console
+    assert (console.page_lost, console.page_lost_s) == ("stop", 3.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('page_lost = "stop"', 'page_lost = "coast"', ["console.page_lost", "'continue' or 'stop'"]),
+        ("page_lost_s = { value = 3.0", "page_lost_s = { value = 0.1", ["console.page_lost_s = 0.1 s", "0.5"]),
+        ('page_lost = "stop"', 'page_loss = "stop"', ["console.page_loss", "page_lost"]),
+    ],
+)
+def test_what_becomes_of_a_lost_page_is_read_strictly(old: str, new: str, words: list[str]) -> None:
+    said = refusal(TEXT.replace(old, new))
+    assert all(word in said for word in words), said

@@ -7,10 +7,20 @@ import re
 import pytest
 
 from rig.bench import BENCHES, ROLES, device_class
-from rig.config import BenchFile, BusSection, ControlSection, DeviceSection, LimitsSection, LoopSection, read_bench
+from rig.config import (
+    BenchFile,
+    BusSection,
+    ConsoleSection,
+    ControlSection,
+    DeviceSection,
+    LimitsSection,
+    LoopSection,
+    read_bench,
+)
 
 PAGE = (BENCHES / "WIRING.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, re.S)
+SECTIONS = (BusSection, DeviceSection, LoopSection, LimitsSection, ControlSection, ConsoleSection)
 
 
 @pytest.mark.parametrize(
@@ -28,7 +38,7 @@ def test_each_example_is_a_whole_bench_file_with_the_devices_it_is_about(number:
     )
 
 
-def test_every_key_of_bus_devices_loop_limits_and_control_is_explained() -> None:
+def test_every_key_of_bus_devices_loop_limits_control_and_console_is_explained() -> None:
     told = set(re.findall(r"`(\w+)`", PAGE)) | set(re.findall(r"\] (\w+)`", PAGE))
-    keys = {k for s in (BusSection, DeviceSection, LoopSection, LimitsSection, ControlSection) for k in s.model_fields}
+    keys = {k for s in SECTIONS for k in s.model_fields}
     assert keys <= told, keys - told

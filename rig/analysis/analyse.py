@@ -14,6 +14,8 @@ from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
 from rig.analysis.friction import add_friction
 from rig.analysis.full_turn import add_full_turn
+from rig.analysis.latch_skew_words import LABEL as SKEW
+from rig.analysis.latch_skew_words import add_latch_skew
 from rig.analysis.overview import add_overview
 from rig.analysis.result import Result
 from rig.analysis.source import Motion, Source, motion_of
@@ -157,6 +159,8 @@ def _analyse(run: Tame, reference: Source | None) -> Result:
     add_overview(found, run, motion, speed)
     if run.procedure == "stiffness_lock":
         add_stiffness(found, run, motion, reference)
+    elif run.manifest.get("label") == SKEW:
+        add_latch_skew(found, run, motion)
     else:
         PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
     if run.procedure in AT_SPEED and not found.rejected:

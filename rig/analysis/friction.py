@@ -9,7 +9,7 @@ import numpy as np
 from rig.analysis.angle import RPM
 from rig.analysis.findings import Findings
 from rig.analysis.identify.friction import MotorFriction, load_friction, motor_friction, total_friction
-from rig.analysis.identify.means import Mean, mean_of, variances
+from rig.analysis.identify.means import Mean, Sides, mean_of, variances
 from rig.analysis.identify.recording import Recording, plateaus, recording
 from rig.analysis.identify.slow import slow_series
 from rig.analysis.identify.solve import Solved
@@ -37,7 +37,7 @@ def add_friction(found: Findings, run: Source, motion: Motion) -> None:
         found.inconclusive = found.sentence
         return
     series = _series(rec)
-    means = [mean_of(p, series, 0.0, 0.0) for p in level]
+    means = [mean_of(p, series, Sides()) for p in level]
     motor, load, total = motor_friction(means), load_friction(means, rec.ratio), total_friction(means)
     if total is not None:
         _lines(found, total, "", "all the rig, seen at the motor", "the drive's torque")
@@ -123,7 +123,7 @@ def _warming(found: Findings, means: Sequence[Mean]) -> None:
     if not pairs:
         return
     change = np.array([(b.total - a.total) / a.total for a, b in pairs])
-    noise = variances([m.total_scatter for m in means], [m.pieces for m in means], [m.duration for m in means])
+    noise = variances([m.all_sides.pieces for m in means], [m.duration for m in means])
     own = {id(m): v for m, v in zip(means, noise, strict=True)}
     u = np.array([np.sqrt(own[id(a)] + own[id(b)]) / abs(a.total) for a, b in pairs])
     u = np.where(np.isfinite(u) & (u > 0), u, 1.0)

@@ -10,6 +10,7 @@ from rig.analysis.angle import DEG, RPM, TURN
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import amplitude_interval
 from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.latch_skew_words import add_skew_error
 from rig.analysis.orders import Line, find_lines, fit_lines, spectrum
 from rig.analysis.result import Array, Check
 from rig.analysis.revolutions import TERMS, trend_degree
@@ -92,6 +93,7 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     output = str(run.manifest.get("gear", {}).get("output", ""))
     words.add_limits_of_the_run(found, ke, motion.ratio, output, slow)
     found.sentence = headline(found, ke, slow)
+    add_skew_error(found, run, ke.speed_rpm)
     if slow and not np.isfinite(ke.profile.peak_to_peak()[1][0]):
         found.inconclusive = "Too few revolutions for an interval."
     others = [(g, measure(run, motion, g, slow)) for g in worthy if g is not main]

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rig.campaign.changes import ByHand, Deed, Measure, deeds
-from rig.campaign.planner import RPM, Campaign
+from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
-from rig.campaign.swing import declared_gear, resonance_speed
+from rig.campaign.swing import RPM, declared_gear, resonance_speed
 from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
@@ -124,7 +124,7 @@ def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
     ]
     checking = sum(check.envelope(setting).duration for check in checks)
     duration = sum(f.duration for f in found)
-    hand = 0.0 if bench.simulated else CHANGE * len(by_hand)
+    hand = CHANGE * len(by_hand) if bench.by_person else 0.0
     size = sum(f.bytes for f in found) + rows_bytes(checking * bench.file.loop.rate)
     yield f"total       {len(found)} runs, {len(by_hand)} changes by hand, {len(checks)} checks"
     yield (

@@ -88,7 +88,7 @@ def plan_of(procedure: str, parameters: Mapping[str, Any]) -> Plan:
     """The plan of one step, for a sweep asked for by name."""
     step = {"procedure": procedure, "with": dict(parameters)}
     text = tomlkit.dumps({"schema": "hdrig.plan/1", "name": procedure, "step": [step]})
-    return parse_plan(text, procedure)
+    return parse_plan(text, f"run {procedure}")  # no name of a plan that ships
 
 
 def parse_plan(text: str, source: str) -> Plan:

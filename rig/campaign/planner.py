@@ -10,12 +10,11 @@ from rig.bench import Bench
 from rig.campaign.order import shuffled, with_sentinels
 from rig.campaign.plan import Plan
 from rig.campaign.steps import Item, extra_items, items_of
-from rig.campaign.swing import ARCMIN, CLEAR, declared_gear, resonance_speed, swing
+from rig.campaign.swing import ARCMIN, declared_gear, into_resonance, swing
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope
 from rig.refusals import refuse_beyond_limits, refuse_endless
 
-RPM = math.pi / 30
 ROLE = {"theta_l": "load_encoder", "tau_l": "torque_sensor"}  # which device gives which channel
 
 
@@ -92,10 +91,6 @@ def refuse(campaign: Campaign, item: Item) -> None:
 def _refuse_resonance(campaign: Campaign, item: Item) -> None:
     if item.rigging.output_locked or item.allow_resonance:
         return
-    speed, at = campaign.envelope(item).speed, resonance_speed(declared_gear(campaign.bench))
-    if speed > CLEAR * at:
-        raise NotReady(
-            f"{item.words()}: order 2 meets the torsional resonance at {at / RPM:.0f} rpm, this run goes up to "
-            f"{speed / RPM:.0f} rpm, where the shaft torque is expected to swing by ±{campaign.swing(item):.1f} N·m; "
-            f"expected at most {CLEAR * at / RPM:.0f} rpm, or allow_resonance = true in the step"
-        )
+    amplitude = campaign.plan.file.order_2_arcmin * ARCMIN
+    if words := into_resonance(campaign.bench, campaign.envelope(item).speed, amplitude):
+        raise NotReady(f"{item.words()}: {words}, or allow_resonance = true in the step")

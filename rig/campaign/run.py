@@ -16,6 +16,7 @@ from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operat
 from rig.interrupts import Interrupts
 from rig.runfile.folder import create_in
 from rig.session import Done, Session, Watch
+from rig.session.observer import Observer
 from rig.supervisor import State
 
 
@@ -46,9 +47,20 @@ def open_session(
     interrupts: Interrupts,
     note: str = "",
     hand: Operator | None = None,
+    observer: Observer | None = None,
 ) -> Session:
     """The campaign's runs directly in its folder; proofs and weighings, which are no part of the data, beside them."""
-    return Session(campaign.bench, clock, journal.folder, interrupts, note, hand, create=create_in, checks="checks")
+    return Session(
+        campaign.bench,
+        clock,
+        journal.folder,
+        interrupts,
+        note,
+        hand,
+        create=create_in,
+        checks="checks",
+        observer=observer or Observer(),
+    )
 
 
 def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
@@ -157,7 +169,7 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
     rig_time = journal.begin(index, session.instruments.clock.now())
     session.facts = {"campaign": {
         "uid": journal.book["uid"], "run": index + 1, "kind": item.kind, "repeat": item.repeat, "of": item.of,
-        "rig_time_s": round(rig_time, 3),
+        "rig_time_s": round(rig_time, 3), "session": len(journal.book["sessions"]),
     }}  # fmt: skip
     try:
         with desk.watching(item, campaign.envelope(item).duration) as watch:

@@ -14,6 +14,7 @@ from rig.model.resonance import worst_swing
 ORDER = 2  # the wave generator is an ellipse: twice a turn is what it does most
 CLEAR = 0.85  # of the resonance's speed: nearer, a run would swing over 3.6 times as far as its spring alone lets it
 ARCMIN = math.pi / 180 / 60
+RPM = math.pi / 30
 
 
 def declared_gear(bench: Bench) -> Gear:
@@ -35,3 +36,26 @@ def swing(gear: Gear, amplitude: float, omega_m: float) -> float:
     `amplitude` C_2 of the pure kinematic error, rad at the output; its phase does not matter.
     """
     return worst_swing(gear, FourierSeries((0.0, amplitude), (0.0, 0.0)), omega_m)[0] if omega_m else 0.0
+
+
+def into_resonance(bench: Bench, speed: float, amplitude: float) -> str:
+    """What happens on the way to `speed` rad/s of a free output, in words; "" where it stays clear of the resonance."""
+    gear = declared_gear(bench)
+    at = resonance_speed(gear)
+    if speed <= CLEAR * at:
+        return ""
+    return (
+        f"order 2 meets the torsional resonance at {at / RPM:.0f} rpm, this run goes up to {speed / RPM:.0f} rpm, "
+        f"where the shaft torque is expected to swing by ±{swing(gear, amplitude, speed):.1f} N·m; expected at most "
+        f"{CLEAR * at / RPM:.0f} rpm"
+    )
+
+
+def predicted(bench: Bench, speed: float, amplitude: float) -> str:
+    """The line of a dry run: how far order 2 is expected to swing the shaft torque up to `speed` rad/s."""
+    gear = declared_gear(bench)
+    return (
+        f"predicted   the shaft torque swings by ±{swing(gear, amplitude, speed):.2f} N·m at most, from the declared "
+        f"gear (order 2 resonates at {resonance_speed(gear) / RPM:.0f} rpm of the motor) and {amplitude / ARCMIN:g} "
+        "arcmin of order 2, zero to peak"
+    )

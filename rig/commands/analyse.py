@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
-from rig.commands.reference import reference_beside, reference_named
+from rig.commands.reference import reference_beside, reference_named, reference_of_one_zero
 from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
@@ -27,7 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--reference",
         type=Path,
         metavar="RUN",
-        help="slow run (kinematic-error) to split runs at speed with; without it the one beside them is taken",
+        help="slow run (kinematic-error) to split runs at speed with and to take off the wind-up of lock tests; "
+        "without it the one beside them is taken",
     )
 
 
@@ -56,10 +57,10 @@ def targets(folders: list[Path], out: Path | None) -> list[Path]:
 def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> tuple[Result, bool]:
     """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself.
 
-    `reference` is the slow run to split a run at speed with; without it the one in the same folder is taken. Returns
-    the result, and whether the run is simulated.
+    `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
+    in the same folder is taken. Returns the result, and whether the run is simulated.
     """
-    from rig.analysis.analyse import AT_SPEED, analyse
+    from rig.analysis.analyse import analyse
     from rig.report.page import write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
@@ -68,8 +69,8 @@ def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> 
 
     run = Run.open(folder)
     refuse_changed(folder, run.manifest)
-    if run.procedure in AT_SPEED:
-        reference = reference or reference_beside(run)
+    if reference is None:
+        reference = BESIDE.get(run.procedure, without)(run)
     result = analyse(run, reference)
     try:
         target.mkdir(parents=True, exist_ok=True)
@@ -82,6 +83,19 @@ def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> 
     if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
         add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
     return result, run.simulated
+
+
+def without(run: Run) -> None:
+    """What most procedures are compared with."""
+
+
+BESIDE: Mapping[str, Callable[[Run], Run | None]] = {
+    "constant_torque": reference_beside,
+    "constant_speed": reference_beside,
+    "sentinel": reference_beside,
+    "stiffness_lock": reference_of_one_zero,
+}
+"""Where a procedure finds the slow run it is analysed with, where none is named."""
 
 
 def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
@@ -102,6 +116,7 @@ def exit_of(result: Result) -> Exit:
 
 def print_result(result: Result, target: Path, folder: Path, simulated: bool) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
+    from rig.analysis.latch_skew_words import bench_lines
     from rig.report.numbers import estimate
 
     said = {"MEASURED": "no limit set"}.get(result.verdict, str(result.verdict))
@@ -114,4 +129,6 @@ def print_result(result: Result, target: Path, folder: Path, simulated: bool) ->
             print(f"  not met: {check.sentence}")
     for sentence in result.cannot:
         print(f"  cannot tell: {sentence}")
+    for line in bench_lines(result):
+        print(line)
     print(f"report {target / 'report.html'}")

@@ -19,13 +19,16 @@ from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
-from rig.commands.options import bench_arguments
+from rig.commands.options import bench_arguments, show_argument
+from rig.commands.perform import let_be
 from rig.commands.person import Person
-from rig.commands.progress import Progress
+from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.onlookers import Onlookers
+from rig.commands.show.show import Show, showing
+from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.operator import Rigging
-from rig.interrupts import Interrupts
-from rig.session import Watch
+from rig.session.done import Watch, nobody
 from rig.software import operator
 
 DEFAULT = "twin"
@@ -49,7 +52,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     ships = ", ".join(sorted(p.stem for p in PLANS.glob("*.toml")))
     parser.add_argument("plan", nargs="?", metavar="PLAN", help=f"plan file, or the name of one that ships: {ships}")
     bench_arguments(parser)
-    parser.set_defaults(bench=None)
+    parser.set_defaults(bench=None, before=let_be)
+    show_argument(parser)
+    view_argument(parser)
     parser.add_argument("--resume", type=Path, metavar="FOLDER", help="go on with the campaign in this folder")
     parser.add_argument(
         "--skip", type=_numbers, default=[], metavar="N,…", help="with --resume: runs, by number, that are not made"
@@ -78,7 +83,8 @@ def begin(plan: Plan, args: argparse.Namespace) -> int:
         return 0
     refuse_nobody(campaign, range(len(campaign.items)))
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
-    return make(campaign, new_journal(args.out, campaign, clock, overrides), clock, args.note)
+    with showing(args.json) as show:
+        return make(campaign, new_journal(args.out, campaign, clock, overrides), clock, args, show)
 
 
 def _resume(args: argparse.Namespace) -> int:
@@ -101,50 +107,70 @@ def _resume(args: argparse.Namespace) -> int:
             raise UsageError(f"--skip {number}: the campaign has runs 1 to {len(campaign.items)}")
         if number - 1 in journal.open_runs():
             journal.skip(number - 1, operator() or "the operator")
-    return make(campaign, journal, args.clock or book["clock"], args.note)
+    with showing(args.json) as show:
+        return make(campaign, journal, args.clock or book["clock"], args, show)
 
 
-def make(campaign: Campaign, journal: Journal, clock: ClockName, note: str) -> int:
+def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.Namespace, show: Show) -> int:
     """Every run that is open, then the summary on stdout; the exit code."""
-    if campaign.bench.simulated:
-        print(f"SIMULATED: bench '{campaign.bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    print(f"campaign folder {journal.folder}", file=sys.stderr)
-    with Interrupts() as interrupts:
-        person = Person(interrupts)
-        with open_session(campaign, journal, clock, interrupts, note, person) as session:
-            exit = conduct(session, campaign, journal, Terminal(campaign.bench, person))
+    show.bench(campaign.bench, clock)
+    show.say(f"campaign folder {journal.folder}")
+    with (
+        view(args.view) as looking_on,
+        at_the_rig(show) as (interrupts, person),
+        open_session(campaign, journal, clock, interrupts, args.note, person, Onlookers(show, looking_on)) as session,
+    ):
+        args.before(session, show)
+        exit = conduct(session, campaign, journal, Terminal(campaign.bench, person, show))
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    show.tell("campaign", folder=str(journal.folder), status=journal.book["status"], runs=journal.count())
+    show.leave(exit)
     print(f"{text}campaign folder {journal.folder}")
     if exit:
         print(f"hdrig campaign --resume {journal.folder} goes on with it", file=sys.stderr)
-    return int(exit)
+        return int(exit)
+    return LAST.get(str(journal.book["name"]), nothing)(journal.folder)
+
+
+def nothing(folder: Path) -> int:
+    """What follows most campaigns."""
+    return 0
+
+
+def to_gear_file(folder: Path) -> int:
+    """Parameters with intervals, on stdout and in the campaign's folder."""
+    from rig.commands.identify import identify
+
+    return identify([folder], folder / "gear.toml")
+
+
+LAST = {"identify": to_gear_file}  # what follows the last run of a campaign, by the name of its plan
 
 
 def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:
     """Raises NotReady when there is something to be changed by hand and nobody to be asked, before anything moves."""
     todo = deeds([(k, campaign.items[k]) for k in runs], Rigging())
     first = next((deed.change for deed in todo if isinstance(deed, ByHand)), None)
-    if first is not None and not campaign.bench.simulated and not sys.stdin.isatty():
+    if first is not None and campaign.bench.by_person and not sys.stdin.isatty():
         raise NotReady(f"the campaign needs somebody to {first.words()}: standard input is no terminal")
 
 
 class Terminal(Desk):
-    """Lines and a bar on stderr."""
+    """What is said and asked at the terminal; the session's observer shows the runs."""
 
-    def __init__(self, bench: Bench, person: Person) -> None:
-        self.bench, self.person = bench, person
+    def __init__(self, bench: Bench, person: Person, show: Show) -> None:
+        self.bench, self.person, self.show = bench, person, show
 
     def say(self, text: str) -> None:
-        print(text, file=sys.stderr)
+        self.show.say(text)
 
     @contextlib.contextmanager
     def watching(self, item: Item, duration: float) -> Iterator[Watch]:
-        with Progress(item.title, duration, self.bench.file.gear.N) as progress:
-            yield progress.watch
+        yield nobody
 
     def again(self, why: str) -> bool:
-        return not self.bench.simulated and self.person.again(why)
+        return self.bench.by_person and self.person.again(why)
 
     def figure(self, folder: Path) -> str:
         """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""

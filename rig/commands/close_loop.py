@@ -17,10 +17,10 @@ from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import open_session
 from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
-from rig.commands.options import bench_arguments
-from rig.commands.person import Person
+from rig.commands.options import bench_arguments, show_argument
+from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.show import Show, showing
 from rig.core.errors import Exit
-from rig.interrupts import Interrupts
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.result import Trace
@@ -36,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plan", default=PLAN, metavar="PLAN", help=f"what to begin with ({PLAN}); ships: {ships}")
     bench_arguments(parser)
     parser.set_defaults(bench=None)
+    show_argument(parser)
     parser.add_argument(
         "--budget-minutes", type=float, default=BUDGET, metavar="M", help=f"of rig time, at most ({BUDGET:g})"
     )
@@ -59,7 +60,8 @@ def _begin(args: argparse.Namespace) -> int:
     journal = new_journal(args.out, campaign, clock, overrides)
     story = Story(journal.folder.name, bench.simulated, args.budget_minutes)
     write_story(journal.folder, story)
-    return _make(campaign, journal, clock, args.note, story)
+    with showing(args.json) as show:
+        return _make(campaign, journal, clock, args.note, story, show)
 
 
 def _resume(args: argparse.Namespace) -> int:
@@ -76,26 +78,29 @@ def _resume(args: argparse.Namespace) -> int:
     campaign = regrown(campaign, journal, story)
     refuse_nobody(campaign, journal.open_runs())
     again = replace(story, end=End.OPEN, sentence="", budget_minutes=max(story.budget_minutes, args.budget_minutes))
-    return _make(campaign, journal, args.clock or book["clock"], args.note, again)
+    with showing(args.json) as show:
+        return _make(campaign, journal, args.clock or book["clock"], args.note, again, show)
 
 
-def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, story: Story) -> int:
+def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, story: Story, show: Show) -> int:
     from rig.closing.loop import Closing
     from rig.closing.run import conduct
 
     bench = campaign.bench
-    if bench.simulated:
-        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    print(f"campaign folder {journal.folder}", file=sys.stderr)
+    show.bench(bench, clock)
+    show.say(f"campaign folder {journal.folder}")
     before = float(journal.book["rig_time_s"])
-    with Interrupts() as interrupts:
-        person = Person(interrupts)
-        with open_session(campaign, journal, clock, interrupts, note, person) as session:
-            closing = Closing(
-                session, campaign, journal, Terminal(bench, person), look,
-                lambda: (before + session.instruments.clock.now()) / 60, story,
-            )  # fmt: skip
-            exit = conduct(closing)
+    with (
+        at_the_rig(show) as (interrupts, person),
+        open_session(campaign, journal, clock, interrupts, note, person, show) as session,
+    ):
+        closing = Closing(
+            session, campaign, journal, Terminal(bench, person, show), look,
+            lambda: (before + session.instruments.clock.now()) / 60, story,
+        )  # fmt: skip
+        exit = conduct(closing)
+    show.tell("campaign", folder=str(journal.folder), status=str(closing.story.end), runs=journal.count())
+    show.leave(exit)
     _tell(journal.folder, closing.story, bench, exit)
     return int(exit)
 

@@ -6,8 +6,10 @@ import argparse
 from pathlib import Path
 
 from rig.bench import read
-from rig.commands.perform import perform
+from rig.commands.perform import Job, perform
+from rig.commands.show.show import showing
 from rig.procedures.kinematic_error import KinematicError
+from rig.session.observer import Observer
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,4 +20,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """The paper's slow measurement with its defaults: ±1440° at 0.01 Hz, two cycles, 1 kHz."""
-    return perform(read("twin", [f"twin.seed={args.seed}"]), "virtual", KinematicError(), args.out, "demo")
+    bench = read("twin", [f"twin.seed={args.seed}"])
+    with showing(json=False) as show:
+        return perform(Job(bench, "virtual", KinematicError(), args.out, "demo"), show, Observer())

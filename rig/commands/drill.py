@@ -17,28 +17,30 @@ WIDTH = 52
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig drill`."""
     parser.add_argument("--only", default="", metavar="WORDS", help="faults whose name contains this")
+    parser.add_argument("--drive", choices=("cia402", "odrive"), default="cia402", help="which drive is on the rig")
     parser.add_argument("--phase", default="", metavar="NAME", help="idle, enabling, tracking, reversal … (all)")
 
 
 def run(args: argparse.Namespace) -> int:
     """One line a fault: reaction in ms per phase; exit 1 when something was not as it has to be."""
-    from rig.drill.causes import CAUSES
+    from rig.drill.catalogue import RIGS
     from rig.drill.drill import drill
     from rig.drill.phase import PHASES
 
-    causes = [c for c in CAUSES if args.only in c.name]
+    kind = RIGS[args.drive]
+    causes = [c for c in kind.causes if args.only in c.name]
     phases = [p for p in PHASES if args.phase in p.name]
     if not causes or not phases:
-        known = "; phases: ".join(", ".join(x.name for x in kind) for kind in (CAUSES, PHASES))
+        known = "; phases: ".join(", ".join(x.name for x in some) for some in (kind.causes, PHASES))
         raise UsageError(f"no such drill; faults: {known}")
-    print("SIMULATED: the drivers of real devices against the twin's CANopen nodes, virtual time, 1 kHz, 1 Mbit/s")
+    print(f"SIMULATED: the drivers of real devices against the twin's {kind.words}, virtual time, 1 kHz, 1 Mbit/s")
     print(
         "ms from the cause to the last torque commanded; – none commanded, ok went on as it has to, ✗ not as expected"
     )
     print(f"{'':{WIDTH}s}{'allowed':>9s}" + "".join(f"{p.name:>18s}" for p in phases), flush=True)
     outcomes: list[Outcome] = []
     for cause in causes:
-        row = [drill(cause, phase) for phase in phases]
+        row = [drill(cause, phase, kind.made) for phase in phases]
         outcomes += row
         print(f"{cause.name:{WIDTH}s}{_allowed(row[0])}" + "".join(f"{_cell(o):>18s}" for o in row), flush=True)
     for line in _summary(outcomes):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 TERMS = 15  # orders of the paper's series
 MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
 ARCSEC = 206264.80624709636  # in a radian
+SHOWN = {"rad": (ARCSEC / 60.0, "arcmin"), "J": (1e3, "mJ")}  # SI to what people read
 UNITS_BESIDE = {
     "B_sum": "N·m·s/rad",
     "omega_n": "rad/s",
@@ -58,27 +61,34 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Report on stdout, gear file where asked for."""
+    if not 1 <= args.terms <= MOST_TERMS:
+        raise UsageError(f"--terms {args.terms}: expected 1 to {MOST_TERMS} orders")
+    return identify(args.runs, args.out, args.terms)
+
+
+def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
+    """Report of all runs below `paths` on stdout, gear file at `out`. Raises UsageError when that is there already."""
     from rig.analysis.identify import fit, identified, predictions
     from rig.model import gearfile
 
-    if not 1 <= args.terms <= MOST_TERMS:
-        raise UsageError(f"--terms {args.terms}: expected 1 to {MOST_TERMS} orders")
-    if args.out is not None and args.out.exists():
-        raise UsageError(f"{args.out} exists already; give the name of a new file")
-    runs, recordings = open_runs(args.runs)
-    found = identified(fit(recordings, args.terms, say), runs[0].manifest)
+    if out is not None and out.exists():
+        raise UsageError(f"{out} exists already; give the name of a new file")
+    runs, recordings = open_runs(paths)
+    found = identified(fit(recordings, terms, say), runs[0].manifest)
     simulated = any(r.simulated for r in runs)
     print("\n".join(report(found, simulated, len(recordings), len(runs))))
     gear = runs[0].manifest.get("gear") or {}
     file = found.gear_file(
         str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
     )
-    print("\n".join(comparison(predictions(recordings, file.gear(), args.terms))))
+    print("\n".join(comparison(predictions(recordings, file.gear(), terms))))
     print("\n".join(coasting(runs, found)))
+    file = replace(file, characteristics=beside(runs))
+    print("\n".join(characteristic_lines(file.characteristics)))
     print("\n".join(f"  cannot tell: {sentence}" for sentence in found.cannot))
-    if args.out is not None:
-        gearfile.write(args.out, file)
-        print(f"gear file {args.out}")
+    if out is not None:
+        gearfile.write(out, file)
+        print(f"gear file {out}")
     return int(Exit.PASS)
 
 
@@ -184,6 +194,31 @@ def coasting(runs: list[Run], found: Identified) -> list[str]:
                     f"  {run.name} coasts with {estimate(e.value, e.ci95, e.unit)}, J_m + J_l/N² is "
                     f"{estimate(value, (value - half, value + half), e.unit)}: they {agree}"
                 )
+    return lines
+
+
+def beside(runs: list[Run]) -> dict[str, Parameter]:
+    """What lock tests and friction runs say that the model has no parameter for, each analysed as by itself."""
+    from rig.analysis import analyse
+    from rig.analysis.characteristics import characteristics
+    from rig.commands.reference import reference_of_one_zero
+
+    told = [r for r in runs if r.procedure in ("stiffness_lock", "friction")]
+    if told:
+        say("lock tests and breakaway")
+    return characteristics([(r.name, analyse(r, reference_of_one_zero(r))) for r in told])
+
+
+def characteristic_lines(found: Mapping[str, Parameter]) -> list[str]:
+    """One line each."""
+    from rig.model.gearfile import CHARACTERISTICS
+    from rig.report.numbers import estimate
+
+    lines = []
+    for name, p in found.items():
+        scale, unit = SHOWN.get(CHARACTERISTICS[name], (1.0, CHARACTERISTICS[name]))
+        value = estimate(scale * p.value, (scale * p.interval[0], scale * p.interval[1]), unit)
+        lines.append(f"  {name:17s} {value:36s} {p.note} ({len(p.runs)} {'run' if len(p.runs) == 1 else 'runs'})")
     return lines
 
 

@@ -3,40 +3,61 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
-from rig.core.errors import UsageError
+from rig.catalogue.filter import ORDERS, STATUSES, VERDICTS, asked
+from rig.catalogue.row import UNREADABLE, Row
+from rig.catalogue.scan import runs
+
+HEAD = f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig list`."""
     parser.add_argument("root", nargs="?", type=Path, default=Path("runs"), metavar="FOLDER", help="default: runs")
+    parser.add_argument("--gear", default="", metavar="SERIAL", help="serial of the gear; * and ? stand for anything")
+    parser.add_argument("--procedure", default="", metavar="NAME", help="as in hdrig run, for example kinematic-error")
+    parser.add_argument("--verdict", default="", metavar="WORD", help=", ".join(VERDICTS))
+    parser.add_argument("--status", default="", metavar="WORD", help=", ".join(STATUSES))
+    parser.add_argument("--since", default="", metavar="DATE", help="from this day on, UTC: 2026-11-20, or with a time")
+    parser.add_argument("--until", default="", metavar="DATE", help="up to and with this day, UTC")
+    parser.add_argument("--sort", default="started", metavar="BY", help=f"{', '.join(ORDERS)}; default: started")
+    parser.add_argument("--reverse", action="store_true", help="the other way round: newest first")
+    parser.add_argument("--json", action="store_true", help="one JSON object per line and run")
 
 
 def run(args: argparse.Namespace) -> int:
-    """One line a run, oldest first."""
-    from rig.runfile.listing import list_runs
-
-    if not args.root.is_dir():
-        raise UsageError(f"{args.root} is no folder; give the folder that holds the runs")
-    rows = list_runs(args.root)
-    if not rows:
-        print(f"no runs in {args.root}")
+    """One line a run, oldest first unless told otherwise; a damaged manifest has a line that says what is wrong."""
+    names = ("gear", "procedure", "verdict", "status", "since", "until", "sort", "reverse")
+    rows = runs(args.root, asked(**{name: getattr(args, name) for name in names}))
+    if args.json:
+        for row in rows:
+            print(json.dumps(row.as_json(), allow_nan=False))  # ASCII: names of folders may be anything
         return 0
-    _say(f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run")
+    if not rows:
+        print(f"no such runs in {args.root}")
+        return 0
+    say(HEAD)
     for row in rows:
-        duration = "–" if row.duration is None else f"{row.duration:.1f} s"
-        mark = " SIMULATED" if row.simulated else ""
-        _say(
-            f"{row.started_utc[:19]:19s} {row.procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
-            f"{row.verdict or '–':12s} {row.path}{mark}"
-        )
+        say(_line(row))
     return 0
 
 
-def _say(line: str) -> None:
+def _line(row: Row) -> str:
+    if row.status == UNREADABLE:
+        return f"{'–':19s} {UNREADABLE:18s} {row.problem}"
+    duration = "–" if row.duration is None else f"{row.duration:.1f} s"
+    return (
+        f"{row.started_utc[:19]:19s} {row.procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
+        f"{row.verdict or '–':12s} {row.path}{' SIMULATED' if row.simulated else ''}"
+    )
+
+
+def say(line: str) -> None:
     """Print what a terminal can take: names of folders and words of manifests may be anything."""
-    shown = "".join(c if c.isprintable() else "\ufffd" for c in line)
+    spaced = line.translate({0xA0: " ", 0x202F: " "})  # what holds a number and its unit on one line of a page
+    shown = "".join(c if c.isprintable() else "\ufffd" for c in spaced)
     encoding = sys.stdout.encoding or "utf-8"
     print(shown.encode(encoding, "replace").decode(encoding))

@@ -10,6 +10,7 @@ from rig.bench import Bench, ClockName, read, toml_value
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
 from rig.parameters import make
+from rig.preview import plan_lines as plan_lines  # for the verbs that dry-run
 
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,6 +25,13 @@ def bench_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
     parser.add_argument("--note", default="", metavar="TEXT", help="kept in the run's manifest")
+
+
+def show_argument(parser: argparse.ArgumentParser) -> None:
+    """--json."""
+    parser.add_argument(
+        "--json", action="store_true", help="every event as a JSON line on stdout; keys in rig/commands/show/show.py"
+    )
 
 
 def open_bench(args: argparse.Namespace) -> tuple[Bench, ClockName]:
@@ -59,28 +67,3 @@ def parameters_of(assignments: list[str]) -> dict[str, Any]:
             raise UsageError(f"--with {assignment}: expected name=value, for example cycles=1")
         values[name] = toml_value(text)
     return values
-
-
-def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
-    """What a dry run prints: travel, speed, torque, energy, duration, bytes, and the margins to every limit."""
-    from rig.core.channels import CHANNELS
-    from rig.refusals import margins
-
-    envelope = procedure.envelope(bench.setting(lambda text: None))
-    rows = int(envelope.duration * bench.file.loop.rate)
-    size = rows * 8 * len(CHANNELS) * 1.4 / 1e6  # journal as it is, archive at about 0.4 of it
-    gear = bench.file.gear
-    inertia = gear.J_m + gear.J_l / gear.N**2
-    lines = [
-        f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
-        f"duration    {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
-        f"energy      {0.5 * inertia * envelope.speed**2:.4f} J in motion, at the motor's speed",
-    ]
-    for what, asked, limit, unit, scale in margins(bench, procedure):
-        if what == "torque":  # the loop is clamped there: what it will need is known only once it runs
-            lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
-            continue
-        lines.append(
-            f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
-        )
-    return [*lines, *procedure.remarks(bench.setting(lambda text: None))]

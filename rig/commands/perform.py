@@ -2,54 +2,95 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.bench import Bench, ClockName
 from rig.commands.analyse import analyse_folder, exit_of, print_result
-from rig.commands.person import Person
-from rig.commands.progress import Progress
+from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.onlookers import Onlookers
+from rig.commands.show.show import Show
 from rig.core.errors import Exit
 from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
-from rig.interrupts import Interrupts
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
 from rig.procedures.weigh import Weigh
+from rig.report.record import as_json
 from rig.session import Done, Session
+from rig.session.observer import Observer
+from rig.supervisor import State
 
 if TYPE_CHECKING:
     from rig.analysis.step_response import StepResponse
 
 
-def perform(bench: Bench, clock: ClockName, procedure: Procedure, root: Path, note: str) -> int:
-    """One procedure to the end, its figures on stdout; the exit code. Ctrl-C once = stop, twice = halt."""
-    if bench.simulated:
-        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    with Interrupts() as interrupts, Session(bench, clock, root, interrupts, note, Person(interrupts)) as session:
-        session.check(procedure)
-        if procedure.closes_loop:
-            print("the motor is about to turn: sign-and-scale proof, one turn forth and back", file=sys.stderr)
-            print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
-        if procedure.output_locked:
-            print(session.change(LockOutput()), file=sys.stderr)
-        for remark in procedure.remarks(bench.setting(lambda text: None)):
-            print(remark, file=sys.stderr)
-        done = _watched(session, procedure)
+def let_be(session: Session, show: Show) -> None:
+    """Nothing is done before the run."""
+
+
+def clear(session: Session, show: Show) -> None:
+    """Leave a latched fault, because somebody has looked and says so. Energises nothing. Raises NotReady."""
+    if session.supervisor.state is State.FAULT:
+        show.say(f"{session.bench.file.name} is in fault: {session.supervisor.fault}")
+        session.reset()
+        show.say(f"{session.bench.file.name}: reset, no device is in fault any more; every check is made anew")
+
+
+@dataclass(frozen=True)
+class Job:
+    """One procedure on one bench."""
+
+    bench: Bench
+    clock: ClockName
+    procedure: Procedure
+    root: Path
+    note: str
+    before: Callable[[Session, Show], None] = let_be  # what is done once connected, before anything moves
+
+
+def perform(job: Job, show: Show, looking_on: Observer) -> int:
+    """One procedure to the end, its figures on stdout; the exit code."""
+    done = _recorded(job, show, looking_on)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
-    print(f"run {done.ending.status}: {done.ending.reason}", file=sys.stderr)
-    if done.ending.exit is Exit.PASS and (told := finding(procedure, done)):
+    show.say(f"run {done.ending.status}: {done.ending.reason}")
+    if done.ending.exit is Exit.PASS and (told := finding(job.procedure, done)):
+        show.tell("figure", folder=str(done.folder), text=told)
+        show.leave(Exit.PASS)
         print(f"{told}\nrun folder {done.folder}")
         return int(Exit.PASS)
     try:
         result, simulated = analyse_folder(done.folder, done.folder)
     except KeyboardInterrupt:
-        print(f"the run is complete in {done.folder}; hdrig analyse makes its report", file=sys.stderr)
+        show.say(f"the run is complete in {done.folder}; hdrig analyse makes its report")
         raise
+    show.result(done.folder, as_json(result), simulated)
+    code = show.leave(done.ending.exit or exit_of(result) or Exit.PASS)
     print_result(result, done.folder, done.folder, simulated)
-    return int(done.ending.exit or exit_of(result) or Exit.PASS)
+    return code
+
+
+def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
+    """Proof, changes by hand, the run. Ctrl-C once = stop, twice = halt; keys as in `show.keys`."""
+    show.bench(job.bench, job.clock)
+    observer = Onlookers(show, looking_on)
+    with (
+        at_the_rig(show) as (interrupts, person),
+        Session(job.bench, job.clock, job.root, interrupts, job.note, person, observer=observer) as session,
+    ):
+        job.before(session, show)
+        session.check(job.procedure)
+        if job.procedure.closes_loop:
+            show.say("the motor is about to turn: sign-and-scale proof, one turn forth and back")
+            show.say(f"sign and scale: {session.prove().sentence}")
+        if job.procedure.output_locked:
+            show.say(session.change(LockOutput()))
+        for remark in job.procedure.remarks(job.bench.setting(lambda text: None)):
+            show.say(remark)
+        return session.run(job.procedure)
 
 
 def finding(procedure: Procedure, done: Done) -> str:
@@ -70,9 +111,3 @@ def response_of(folder: Path) -> StepResponse:
 
     run = Run.open(folder)
     return step_response(run.need("t"), run.need("theta_m"), run.need("tau_applied"))
-
-
-def _watched(session: Session, procedure: Procedure) -> Done:
-    envelope = procedure.envelope(session.bench.setting(lambda text: None))
-    with Progress(procedure.title(), envelope.duration, session.bench.file.gear.N) as progress:
-        return session.run(procedure, progress.watch)

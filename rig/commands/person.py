@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import select
 import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, Operator
@@ -20,34 +23,48 @@ class NotMade(HdrigError):
         self.exit = exit
 
 
-class Person(Operator):
-    """Prompts on stderr, reads stdin. `interrupts` counts Ctrl-C meanwhile."""
+def aloud(text: str) -> None:
+    """On stderr."""
+    print(text, file=sys.stderr, flush=True)
 
-    def __init__(self, interrupts: Interrupts) -> None:
-        self.interrupts = interrupts
+
+class Person(Operator):
+    """Asks by `ask`, reads stdin by lines: `quiet` keeps whoever else reads it away meanwhile.
+
+    `interrupts` counts Ctrl-C meanwhile.
+    """
+
+    def __init__(
+        self,
+        interrupts: Interrupts,
+        ask: Callable[[str], None] = aloud,
+        quiet: Callable[[], AbstractContextManager[None]] = contextlib.nullcontext,
+    ) -> None:
+        self.interrupts, self.ask, self.quiet = interrupts, ask, quiet
 
     def make(self, change: Change) -> None:
         """Raises NotReady without a terminal or when the person says no, NotMade after Ctrl-C."""
         if not sys.stdin.isatty():
             raise NotReady(f"nobody can be asked to {change.words()}: standard input is no terminal")
-        print(f"\nthe motor is without torque. Now {change.words()}.", file=sys.stderr)
-        print("Enter when it is done, n and Enter when it cannot be: ", end="", file=sys.stderr, flush=True)
-        if self._answer().strip().lower().startswith("n"):
+        said = f"the motor is without torque. Now {change.words()}."
+        answer = self._answer(f"{said}\nEnter when it is done, n and Enter when it cannot be:")
+        if answer.strip().lower().startswith("n"):
             raise NotReady(f"the operator could not do this: {change.words()}")
 
     def again(self, why: str) -> bool:
         """Ask whether a change that could not be shown is made once more."""
         if not sys.stdin.isatty():
             return False
-        print(f"\n{why}", file=sys.stderr)
-        print("Enter to do it once more, n and Enter to end here: ", end="", file=sys.stderr, flush=True)
-        return not self._answer().strip().lower().startswith("n")
+        answer = self._answer(f"{why}\nEnter to do it once more, n and Enter to end here:")
+        return not answer.strip().lower().startswith("n")
 
-    def _answer(self) -> str:
-        while not select.select([sys.stdin], [], [], LOOK)[0]:
-            if self.interrupts.count:
-                raise NotMade("stopped by the operator, asked for a change by hand", self.interrupts.exit)
-        line = sys.stdin.readline()
+    def _answer(self, question: str) -> str:
+        with self.quiet():
+            self.ask(f"\n{question}")
+            while not select.select([sys.stdin], [], [], LOOK)[0]:
+                if self.interrupts.count:
+                    raise NotMade("stopped by the operator, asked for a change by hand", self.interrupts.exit)
+            line = sys.stdin.readline()
         if not line:
             raise NotReady("standard input was closed before the change was made")
         return line

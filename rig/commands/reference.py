@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,13 +31,24 @@ def reference_beside(run: Run) -> Run | None:
 
     None when there is none: another gear's error would be subtracted without a word.
     """
+    return _beside(run, _alike)
+
+
+def reference_of_one_zero(run: Run) -> Run | None:
+    """The same, of the same session of the same campaign: a lock test turns too little to show that the motor's encoder
+    was switched off in between, and then the slope of another part of the error would be taken off.
+    """
+    return _beside(run, _one_zero)
+
+
+def _beside(run: Run, fits: Callable[[Mapping[str, Any], Mapping[str, Any]], bool]) -> Run | None:
     from rig.runfile import manifest
     from rig.runfile.run import Run
 
     found: list[Run] = []
     for path in sorted(run.path.resolve().parent.glob(f"*/{manifest.NAME}")):
         try:
-            if path.parent.name != run.path.name and _alike(run.manifest, manifest.read(path.parent)):
+            if path.parent.name != run.path.name and fits(run.manifest, manifest.read(path.parent)):
                 found.append(Run.open(path.parent))
         except HdrigError:  # somebody else's folder, or a damaged one: not the one to compare with
             continue
@@ -49,6 +60,12 @@ def _apart(run: Run, other: Run) -> float:
     if run.started is None or other.started is None or (run.started.tzinfo is None) != (other.started.tzinfo is None):
         return 0.0
     return abs((run.started - other.started).total_seconds())
+
+
+def _one_zero(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    mine, theirs = run.get("campaign") or {}, other.get("campaign") or {}
+    one = all(mine.get(key) == theirs.get(key) for key in ("uid", "session"))
+    return bool(mine.get("uid")) and one and _alike(run, other)
 
 
 def _alike(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:

@@ -18,9 +18,9 @@ from rig.campaign.planner import planned
 from rig.campaign.run import conduct, open_session
 from rig.commands.campaign import Terminal, refuse_nobody
 from rig.commands.options import bench_arguments
-from rig.commands.person import Person
+from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.show import showing
 from rig.core.errors import Exit, HdrigError, UsageError
-from rig.interrupts import Interrupts
 
 if TYPE_CHECKING:
     from rig.analysis.reproduction.gather import Entry
@@ -57,13 +57,15 @@ def make(args: argparse.Namespace) -> tuple[Path, Exit]:
     refuse_nobody(campaign, range(len(campaign.items)))
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out or Path("runs"), campaign, clock, overrides)
-    if bench.simulated:
-        print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    print(f"campaign folder {journal.folder}", file=sys.stderr)
-    with Interrupts() as interrupts:
-        person = Person(interrupts)
-        with open_session(campaign, journal, clock, interrupts, args.note, person) as session:
-            exit = conduct(session, campaign, journal, Recording(bench, person))
+    with showing(json=False) as show:
+        show.bench(bench, clock)
+        show.say(f"campaign folder {journal.folder}")
+        with (
+            at_the_rig(show) as (interrupts, person),
+            open_session(campaign, journal, clock, interrupts, args.note, person, show) as session,
+        ):
+            exit = conduct(session, campaign, journal, Recording(bench, person, show))
+        show.leave(exit)
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     return journal.folder, exit

@@ -96,6 +96,8 @@ class TorqueSensor(Device):
 class Drive(Device):
     """The servo drive with its motor encoder."""
 
+    voltage: bool | None = None  # at its power stage, as it told with the last reading; None: it does not tell
+
     @abstractmethod
     def enable(self, mode: Mode = Mode.TORQUE) -> None:
         """Energise for setpoints of `mode`: with zero torque, at rest, or held where it is. Idempotent.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 
 @dataclass(frozen=True)
@@ -119,6 +119,8 @@ class ClearFault(Change):
 
 class Operator(ABC):
     """Whoever makes changes by hand."""
+
+    begins_anew: ClassVar[bool] = False  # each time it is connected the rig is as made: a twin within the process
 
     @abstractmethod
     def make(self, change: Change) -> None:

@@ -12,6 +12,7 @@ from rig.doctor.devices import check_devices
 from rig.doctor.disk import check_disk
 from rig.doctor.finding import Finding
 from rig.doctor.governor import check_governor
+from rig.doctor.latch_skew import check_latch_skew
 from rig.doctor.latency import check_latency
 from rig.doctor.scheduling import check_scheduling
 
@@ -23,5 +24,6 @@ CHECKS: tuple[Callable[[Bench], list[Finding]], ...] = (
     check_disk,
     check_bus_load,
     check_calibration,
+    check_latch_skew,
     check_devices,
 )

@@ -32,7 +32,7 @@ def _back_with_queue(rig: DrillRig) -> None:
     rig.assembly.agenda.after(0.05, join)
 
 
-def _stall(rig: DrillRig) -> None:
+def stall(rig: DrillRig) -> None:
     rig.wire.stall(0.03)
 
 
@@ -80,5 +80,5 @@ CAUSES: tuple[Cause, ...] = (
     Cause(
         "SDO answers 0.4 s late", verb("slow_sdo", "drive", 0.4), 0.0, Expected.GO_ON, or_stops=frozenset({"stopping"})
     ),
-    Cause("host stalls for 30 ms", _stall, 0.0, Expected.GO_ON),
+    Cause("host stalls for 30 ms", stall, 0.0, Expected.GO_ON),
 )

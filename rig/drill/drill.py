@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 from rig.core.errors import Exit, HdrigError, NotReady
+from rig.drill.canopen_rig import CanopenRig
 from rig.drill.cause import Cause, Expected
 from rig.drill.phase import Phase
 from rig.drill.rig import DrillRig
 from rig.supervisor import Act, State
-from sim.wire.states402 import DriveState
 
 PERIODS = 3  # control periods allowed beside the declared detection time
 AFTERWARDS = 0.5  # s watched when the run is over: nothing may come back, and the drive's own watchdog has acted
@@ -36,9 +37,9 @@ class Outcome:
         return not self.wrong
 
 
-def drill(cause: Cause, phase: Phase) -> Outcome:
-    """Strike, and look. Raises nothing of the run's own."""
-    rig = DrillRig()
+def drill(cause: Cause, phase: Phase, made: Callable[[], DrillRig] = CanopenRig) -> Outcome:
+    """Strike, and look, on a rig `made` for it. Raises nothing of the run's own."""
+    rig = made()
     struck: list[float] = []
 
     def strike() -> None:
@@ -94,7 +95,7 @@ def _in_time(cause: Cause, phase: Phase, ended: str, reaction: float, allowed: f
 def _rows_kept(rig: DrillRig, since: float) -> list[str]:
     """Every row before the cause is there, one a period."""
     before = [row[0].t for row in rig.rows.rows if rig.instruments.started + row[0].t < since]
-    gaps = [b - a for a, b in pairwise(before) if b - a > 1.5e-3]
+    gaps = [b - a for a, b in pairwise(before) if b - a > rig.longest_row]
     if not before:
         return ["no rows from before the cause"]
     return [f"{len(gaps)} gaps in the rows before the cause"] if gaps else []
@@ -104,7 +105,7 @@ def _stays_off(rig: DrillRig, over: float, ended: str) -> list[str]:
     wrong = []
     if rig.torque_commands(over):
         wrong.append("torque was commanded after the run was over")
-    if rig.assembly.drive.drive_state is DriveState.OPERATION_ENABLED:
+    if rig.energised:
         wrong.append("the drive is still energised half a second later")
     rig.assembly.world.advance_to(rig.wire.now())
     if abs(rig.assembly.world.truth().tau_m) > QUIET:

@@ -1,10 +1,10 @@
-"""The rig of a drill: real drivers, the twin's nodes, one virtual time, and a record of every command sent."""
+"""The rig of a drill: real drivers, the twin's devices, one virtual time, and a record of every command sent."""
 
 from __future__ import annotations
 
-import struct
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import can
 
@@ -24,11 +24,8 @@ from sim.wire.motor import Rating
 from sim.wire.reactor import Reactor
 from sim.wire.verbs import plant_verbs
 
-BENCH = "twin-canopen"
 STALE = "limits.stale_s=0.005"  # as on a machine with real-time scheduling: virtual time has no stalls of its own
-COMMAND = 0x201  # RPDO 1 of the drive
-MOTOR_CONSTANT = 0.5  # N·m/A, the twin's nameplate; nothing here depends on it
-ENERGISED = 0x0F  # controlword: operation enabled
+MOTOR_CONSTANT = 0.5  # N·m/A, the twin's nameplate
 
 
 class Rows:
@@ -60,26 +57,49 @@ class Recorded:
         return getattr(self._bus, name)
 
 
-class DrillRig:
-    """Connected, nothing energised. `verbs` are the faults, as on the twin's command channel."""
+class DrillRig(ABC):
+    """Connected, nothing energised. `verbs` are the faults, as on the twin's command channel; `sent` are the frames
+    (t [s], identifier, data) the host has sent to the drive.
+    """
+
+    longest_row: ClassVar[float] = 1.5e-3  # s between two rows of a run without a gap
 
     def __init__(self, seed: int = 7) -> None:
         twin = read("twin").file
         self.assembly = Assembly(twin_parameters(twin), seed, Rating(twin.motor.torque_rated, MOTOR_CONSTANT), 1e6)
         self.wire = VirtualWire(self.assembly)
-        self.wire.wait_until(0.1)  # s, the nodes have booted
-        self.bench: Bench = read(BENCH, [STALE])
-        self.sent: list[tuple[float, int, bytes]] = []  # (t, identifier, data) of every frame of the host
-        self.instruments = self.bench.wired(self.wire, connect=self._connect)
-        reactor = Reactor(self.assembly.agenda)
-        self.verbs = {**plant_verbs(self.assembly, reactor), **fault_verbs(self.assembly, reactor, {}, {})}
+        self.bench = self.read_bench()
+        self.sent: list[tuple[float, int, bytes]] = []
+        self.verbs: dict[str, Callable[..., Any]] = {
+            **plant_verbs(self.assembly, Reactor(self.assembly.agenda)),
+            **fault_verbs(self.assembly, Reactor(self.assembly.agenda), {}, {}),
+        }
+        self.instruments = self.bench.wired(self.wire, connect=self.connect, stamps=self.wire.now)
         self.supervisor, self.interrupts, self.rows = Supervisor(), Interrupts(), Rows()
         self.instruments.connect()
         self.supervisor.act(Act.CONNECT)
         self.supervisor.act(Act.CHECK)
 
-    def _connect(self, **options: Any) -> Recorded:
-        return Recorded(self.wire.connect(**options), self.sent, self.wire.now)
+    @abstractmethod
+    def read_bench(self) -> Bench:
+        """The bench that is drilled; its devices have booted when this returns."""
+
+    @abstractmethod
+    def connect(self, **options: Any) -> Any:
+        """In place of `can.Bus`."""
+
+    @abstractmethod
+    def torque_in(self, identifier: int, data: bytes) -> bool:
+        """Whether this frame asks an energised drive for a torque other than zero."""
+
+    @property
+    @abstractmethod
+    def energised(self) -> bool:
+        """The power stage is on, as the drive itself knows."""
+
+    def recorded(self, bus: InProcessBus) -> Recorded:
+        """`bus` with what the host sends written down."""
+        return Recorded(bus, self.sent, self.wire.now)
 
     def run(self, procedure: Procedure | None = None) -> Ending:
         """A procedure to its end, whatever that is. Raises what the loop raises."""
@@ -92,15 +112,9 @@ class DrillRig:
         )
 
     def torque_commands(self, since: float) -> list[float]:
-        """When the host sent a torque other than zero to an energised drive, after `since` s."""
-        out = []
-        for t, identifier, data in self.sent:
-            if identifier == COMMAND and t > since:
-                word, permille = struct.unpack("<Hh", data)
-                if word == ENERGISED and permille:
-                    out.append(t)
-        return out
+        """When the host asked for a torque, after `since` s."""
+        return [t for t, identifier, data in self.sent if t > since and self.torque_in(identifier, data)]
 
     def close(self) -> None:
-        """Let go of the bus."""
+        """Let go of the buses."""
         self.instruments.close()

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,10 @@ from rig.model.fourier import FourierSeries
 Array = npt.NDArray[np.float64]
 Shape = tuple[float, ...]
 """The parameters an effect depends on nonlinearly (a Stribeck speed, an order), in `shape_names`' order."""
+
+
+MEASURED: Final = frozenset({"t", "theta_m", "theta_l", "tau_m", "tau_l"})
+"""What a full campaign measures."""
 
 
 class Port(StrEnum):
@@ -117,6 +121,7 @@ class Reach:
     load_turns: float  # most output turns in one run
     counts_m: float  # encoder counts per turn; 0 when not said
     counts_l: float
+    has: frozenset[str] = MEASURED  # channels that any run measured
 
 
 @dataclass(frozen=True)
@@ -170,6 +175,8 @@ class Effect(ABC):
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
     remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
+    needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
+    each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
 
     @abstractmethod

@@ -40,7 +40,20 @@ UNITS = {
 }
 """The parameters of equations 5-7 and of the rig's friction, and the only unit each may have."""
 
-TOP = ("schema", "serial", "output", "simulated", "made", "cannot", "parameters", "kinematic_error")
+CHARACTERISTICS = {
+    "tau_break": "N·m",  # at the motor, from rest
+    "lost_motion": "rad",  # at the output
+    "hysteresis_loss": "rad",  # at the output, gap at zero torque
+    "hysteresis_energy": "J",  # per cycle
+    "K1": "N·m/rad",
+    "K2": "N·m/rad",
+    "K3": "N·m/rad",
+    "T1": "N·m",
+    "T2": "N·m",
+}
+"""What a gear may have beside them, where it was measured: the simulation does without."""
+
+TOP = ("schema", "serial", "output", "simulated", "made", "cannot", "parameters", "characteristics", "kinematic_error")
 KEYS = ("value", "low", "high", "unit", "from", "runs", "note")
 SERIES_KEYS = ("a", "b", "covariance", "unit", "from", "runs", "note")
 
@@ -83,6 +96,9 @@ class GearFile:
     simulated: bool = False
     made: str = ""  # when and with what, for people
     cannot: tuple[str, ...] = field(default=())
+    characteristics: Mapping[str, Parameter] = field(
+        default_factory=dict
+    )  # those of CHARACTERISTICS that were measured
 
     def gear(self) -> Gear:
         """The values alone, for simulation."""
@@ -124,6 +140,12 @@ def dumps(gear: GearFile) -> str:
         inline = tomlkit.inline_table()
         inline.update(_parameter(gear.parameters[name], unit))
         table[name] = inline
+    if gear.characteristics:
+        document["characteristics"] = beside = tomlkit.table()
+        for name, p in gear.characteristics.items():
+            inline = tomlkit.inline_table()
+            inline.update(_parameter(p, CHARACTERISTICS[name]))
+            beside[name] = inline
     e, k = gear.kinematic_error, len(gear.kinematic_error.series.a)
     document["kinematic_error"] = series = tomlkit.table()
     series.update({"a": list(e.series.a), "b": list(e.series.b), "unit": "rad", "from": e.origin})
@@ -176,6 +198,8 @@ def _gear(raw: dict[str, Any]) -> GearFile:
     missing = [name for name in UNITS if name not in numbers]
     if missing:
         raise DataError(f"'parameters.{missing[0]}' is missing; expected a table with a value in {UNITS[missing[0]]}")
+    beside = _table(raw, "characteristics") if "characteristics" in raw else {}
+    _only("characteristics", beside, CHARACTERISTICS)
     output = raw.get("output")
     if output not in SIGMA:
         raise DataError(f"output = {output!r}: expected {' or '.join(SIGMA)}")
@@ -183,7 +207,11 @@ def _gear(raw: dict[str, Any]) -> GearFile:
     if not isinstance(simulated, bool):
         raise DataError(f"simulated = {simulated!r}: expected true or false")
     return GearFile(
-        parameters={name: _read_parameter(name, numbers[name]) for name in UNITS},
+        parameters={name: _read_parameter(f"parameters.{name}", name, numbers[name], UNITS[name]) for name in UNITS},
+        characteristics={
+            name: _read_parameter(f"characteristics.{name}", name, value, CHARACTERISTICS[name])
+            for name, value in beside.items()
+        },
         kinematic_error=_read_series(_table(raw, "kinematic_error")),
         output=output,
         serial=_text(raw, "serial", ""),
@@ -193,16 +221,15 @@ def _gear(raw: dict[str, Any]) -> GearFile:
     )
 
 
-def _read_parameter(name: str, raw: Any) -> Parameter:
-    where = f"parameters.{name}"
+def _read_parameter(where: str, name: str, raw: Any, unit: str) -> Parameter:
     if not isinstance(raw, dict):
-        raise DataError(f'{where} = {raw!r}: expected {{ value = …, unit = "{UNITS[name]}", from = … }}')
+        raise DataError(f'{where} = {raw!r}: expected {{ value = …, unit = "{unit}", from = … }}')
     _only(where, raw, KEYS)
-    if raw.get("unit") != UNITS[name]:
-        raise DataError(f"{where}.unit = {raw.get('unit')!r}: expected '{UNITS[name]}'; units are never converted")
+    if raw.get("unit") != unit:
+        raise DataError(f"{where}.unit = {raw.get('unit')!r}: expected '{unit}'; units are never converted")
     value = _number(raw, "value", where)
     if value <= 0.0 if name in ("N", "J_m", "J_l", "K", "omega_s") else name.startswith("tau") and value < 0.0:
-        raise DataError(f"{where}.value = {value:g} {UNITS[name]}: expected more than 0")
+        raise DataError(f"{where}.value = {value:g} {unit}: expected more than 0")
     interval = (math.nan, math.nan)
     if "low" in raw or "high" in raw:
         interval = (_number(raw, "low", where), _number(raw, "high", where))

@@ -15,6 +15,8 @@ REFERENCES: dict[str, str] = {
     "paule1982": "R. C. Paule, J. Mandel, Consensus values and weighting factors, "
     "J. Research of the National Bureau of Standards 87 (1982) 377-385",
     "gum": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement",
+    "vonneumann1941": "J. von Neumann, R. H. Kent, H. R. Bellinson, B. I. Hart, The mean square successive difference, "
+    "Annals of Mathematical Statistics 12 (1941) 153-162",
     "tuttle1992": "T. D. Tuttle, Understanding and modeling the behavior of a harmonic drive gear transmission, "
     "MIT Artificial Intelligence Laboratory, Technical Report 1365 (1992)",
     "dahl1968": "P. R. Dahl, A solid friction model, The Aerospace Corporation, TOR-0158(3107-18)-1 (1968)",
@@ -39,5 +41,9 @@ REFERENCES: dict[str, str] = {
     "lawicel": "Lawicel AB, CANUSB, ASCII commands of its manual (the slcan protocol)",
     "odrive": "ODrive Robotics, CAN protocol (CANSimple) and firmware 0.5.6, odriverobotics.com/docs",
     "usdigital": "US Digital, QSB, list of commands, version 1.28",
+    "randall2011": "R. B. Randall, Vibration-based Condition Monitoring, Wiley (2011)",
+    "rife1974": "D. C. Rife, R. R. Boorstyn, Single-tone parameter estimation from discrete-time observations, "
+    "IEEE Trans. Information Theory 20 (1974) 591-598",
+    "anderson1965": "D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
 }

@@ -10,6 +10,7 @@ from rig.core.procedure import Procedure
 CATALOGUE: dict[str, str] = {
     "kinematic-error": "rig.procedures.kinematic_error:KinematicError",
     "sign-and-scale": "rig.procedures.sign_and_scale:SignAndScale",
+    "skew": "rig.procedures.skew:Skew",
     "step-test": "rig.procedures.step_test:StepTest",
     "weigh": "rig.procedures.weigh:Weigh",
     "lock-check": "rig.procedures.lock_check:LockCheck",
@@ -24,6 +25,7 @@ CATALOGUE: dict[str, str] = {
     "held-standstill": "rig.procedures.held_standstill:HeldStandstill",
     "stiffness-lock": "rig.procedures.stiffness_lock:StiffnessLock",
     "compensated": "rig.procedures.compensated:Compensated",
+    "jog": "rig.procedures.jog:Jog",
 }
 
 

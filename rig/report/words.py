@@ -138,6 +138,14 @@ SUFFIXES = {
 
 DEFINITIONS = (  # by the beginning of the estimate's name, first match
     (
+        "latch_skew_error",
+        "How far reading the two encoders at different times moves θ̃, forward one way, reverse the other",
+    ),
+    (
+        "latch_skew_",
+        "How much later one channel of a row was read than another",
+    ),
+    (
         "kinematic_error_peak_to_peak",
         "Per wave-generator turn, as in the paper. The maker’s transmission accuracy is over one output turn "
         "and is not the same.",

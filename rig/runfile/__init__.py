@@ -11,7 +11,7 @@
 | finalise | close a run in named, repeatable steps |
 | recover | what a killed program left → a readable run |
 | verify | does the folder keep its promises |
-| listing | the runs under a root, from their manifests alone |
+| listing | run folders below a folder |
 | process | who writes a run, and whether they live |
 | samples | archive or journal, one channel at a time |
 | run | `Run`: columns when asked for, whoever made the folder |

@@ -53,7 +53,8 @@ def parse(data: bytes) -> Any:
         found = json.loads(data)
     except RecursionError:
         raise ValueError("nested too deeply") from None
-    _refuse_depth(found)
+    if data.count(b"{") + data.count(b"[") > DEPTH:  # as many as can be in one another: looked at only then
+        _refuse_depth(found)
     if b"\\ud" in data.lower() or b"\xed" in data:  # perhaps half a surrogate pair, which no file can hold
         found = json.loads(json.dumps(found, ensure_ascii=False).encode(errors="replace"))
     return found

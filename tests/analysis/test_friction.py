@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis import analyse
 from rig.analysis.identify.friction import motor_friction
-from rig.analysis.identify.means import Mean
+from rig.analysis.identify.means import Mean, Torque
 from rig.bench import read, twin_parameters
 from rig.core.errors import UsageError
 from rig.procedures.friction import Friction
@@ -83,7 +83,8 @@ def rubbed(speeds: list[float], fall: float, omega_s: float) -> list[Mean]:
         for omega in (rpm * RPM, -rpm * RPM):
             tau = (0.3 + fall * np.exp(-((omega / omega_s) ** 2))) * np.sign(omega) + 0.003 * omega
             noise = 1e-3 * generator.standard_normal()
-            out.append(Mean("r", omega, 10.0, 10, tau + noise, 0.0, 3e-3, 1.0, tau, 3e-3, 0.0, 0.0))
+            motor, none = Torque(tau + noise, 3e-3 * generator.standard_normal(10)), Torque(0.0, np.zeros(10))
+            out.append(Mean("r", omega, 10.0, motor, none, motor, 0.0, 0.0))
     return out
 
 

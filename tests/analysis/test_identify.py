@@ -152,7 +152,7 @@ def test_a_motor_that_sticks_on_its_counts_widens_the_stiffness_of_a_lock_run() 
         made.manifest = {**made.manifest, "encoders": {"motor_counts_per_rev": 10000}}
         run = recording(made)
         assert run is not None
-        part = locked_rows(run, 1, 5, 2, np.zeros(5))
+        part = locked_rows(run, 1, 5, 2, np.zeros(5), 1)
         assert part is not None
         errors.append(part.g[2] / part.H[2, 2] * K - 1.0)
         halves.append(1.96 * K / np.sqrt(part.H[2, 2]))

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from rig.bench import read
+from rig.campaign.journal import new_journal, refuse_other_campaign
 from rig.campaign.plan import PLANS, plan_of, read_plan
+from rig.campaign.planner import planned
 from rig.campaign.steps import items_of
+from rig.commands.campaign import _plan_of
 from rig.core.errors import UsageError
+from rig.procedures.constant_torque import ConstantTorque
 from tests.campaign.plans import HEAD, REST, plan
 
 
@@ -71,6 +78,28 @@ def test_a_load_sweep_makes_every_weight_twice_once_up_and_once_down() -> None:
 def test_an_assembly_sweep_fits_the_reference_depth_anew_and_counts_assemblies() -> None:
     items = items_of(plan_of("assembly-sweep", {"weights": [0], "depths_mm": [0.3], "reference": 2}).file, "x")
     assert [(item.rigging.assembly, item.rigging.depth_mm) for item in items] == [(1, 0.0), (2, 0.0), (3, 0.3)]
+
+
+def test_identify_is_a_slow_run_friction_every_speed_both_ways_and_a_lock_test_last() -> None:
+    items = items_of(plan_of("identify", {"speeds_rpm": [300, 120], "revolutions": 25}).file, "identify")
+    assert [item.procedure.name for item in items] == [
+        "kinematic_error", "friction", *["constant_torque"] * 4, "stiffness_lock",
+    ]  # fmt: skip
+    told = [item.procedure for item in items if isinstance(item.procedure, ConstantTorque)]
+    assert [t.speed_rpm for t in told] == [120.0, 300.0, -120.0, -300.0]
+    assert {t.revolutions for t in told} == {25}
+    with pytest.raises(UsageError, match="at least two speeds"):
+        items_of(plan_of("identify", {"speeds_rpm": [300, -300]}).file, "identify")
+
+
+def test_what_was_run_by_name_is_taken_up_by_its_own_plan_though_one_of_that_name_ships(tmp_path: Path) -> None:
+    made = planned(plan_of("identify", {"revolutions": 25}), read("twin"), 1)
+    journal = new_journal(tmp_path, made, "virtual", [])
+    assert "identify" in {path.stem for path in PLANS.glob("*.toml")}
+    assert _plan_of(journal) == str(journal.folder / "plan.toml")
+    again = planned(read_plan(_plan_of(journal)), read("twin"), 1)
+    refuse_other_campaign(journal, again)
+    assert len(again.items) == len(made.items)
 
 
 def test_a_step_without_a_depth_stays_in_the_assembly_of_the_step_before() -> None:

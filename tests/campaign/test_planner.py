@@ -45,6 +45,27 @@ def test_a_run_into_the_resonance_of_order_2_is_refused_with_speed_and_swing() -
         assert word in str(refused.value)
 
 
+@pytest.mark.parametrize("how", [[], ["--dry-run"]])
+def test_a_single_run_into_the_resonance_is_refused_as_well(
+    how: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ["run", "constant-torque", "--with", "speed_rpm=700", "--set", "limits.speed_rpm=1500"]
+    asked += ["--set", "limits.travel_turns=2000", "--out", str(tmp_path / "runs"), *how]
+    assert main(asked) == 3
+    said = capsys.readouterr()
+    for word in ("resonance at 755 rpm", "805 rpm", "--allow-resonance", "±26.3 N·m"):
+        assert word in said.err
+    assert not (tmp_path / "runs").exists()
+    assert ("predicted   the shaft torque swings by ±26.30 N·m" in said.out) is bool(how)
+
+
+def test_a_single_run_through_the_resonance_can_be_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["run", "constant-torque", "--with", "speed_rpm=700", "--set", "limits.speed_rpm=1500", "--dry-run"]
+    assert main([*asked, "--allow-resonance"]) == 0
+    assert main(["run", "stiffness-lock", "--dry-run"]) == 0
+    assert "swings" not in capsys.readouterr().out.split("stiffness-lock", 1)[1], "a locked output swings nowhere"
+
+
 def test_it_is_made_where_the_plan_allows_it_and_the_swing_stays_within_the_sensor() -> None:
     found = campaign(turning(700, "allow_resonance = true"), bench=fast())  # type: ignore[arg-type]
     assert 20.0 < found.swing(found.items[0]) < 45.0

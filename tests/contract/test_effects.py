@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
-from rig.model.effects import CATALOGUE
+from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY
 from rig.model.fourier import FourierSeries
 from rig.model.references import REFERENCES
 
@@ -18,9 +18,10 @@ REACH = Reach(
     ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, band=72.0, load_turns=1.0,
     counts_m=65536, counts_l=1_296_000,
 )  # fmt: skip
+WITHIN = dataclasses.replace(REACH, duration=3.0)  # instants that fall into `motion`
 FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}
 ANGLE_LOCKED = {"output_once_per_rev", "flexspline_frame_error", "tooth_mesh_error", "load_dependent_kinematic_error"}
-every_effect = pytest.mark.parametrize("effect", CATALOGUE.values(), ids=list(CATALOGUE))
+every_effect = pytest.mark.parametrize("effect", LIBRARY.values(), ids=list(LIBRARY))
 
 
 def motion(sign: float = 1.0, n: int = 4000) -> Signals:
@@ -129,8 +130,9 @@ def test_an_elastic_law_is_odd_in_the_torque(name: str):
 def test_no_two_effects_have_the_same_footprint():
     runs = (motion(1.0), motion(-1.0))
     seen: list[tuple[str, dict[Port, np.ndarray]]] = []
-    for effect in CATALOGUE.values():
-        made = [effect.columns(s, effect.shapes(REACH)[0]) for s in runs]
+    for effect in LIBRARY.values():
+        reach = WITHIN if effect.name in EACH_RUN else REACH
+        made = [effect.columns(s, effect.shapes(reach)[0]) for s in runs]
         columns = {port: np.concatenate([m[port][:, 0] for m in made]) for port in made[0]}
         for other, theirs in seen:
             same = set(columns) == set(theirs) and all(
@@ -138,3 +140,25 @@ def test_no_two_effects_have_the_same_footprint():
             )
             assert not same, f"{effect.name} looks like {other}"
         seen.append((effect.name, columns))
+
+
+@pytest.mark.parametrize("name", sorted(EACH_RUN))
+def test_what_every_run_has_to_itself_is_said_to_be_so(name: str):
+    assert EACH_RUN[name].each_run
+    assert name not in CATALOGUE, "a coefficient that runs share would be sought for it"
+
+
+def test_lost_counts_are_a_step_at_their_instant_and_nothing_else():
+    effect, s = EACH_RUN["missed_counts"], motion()
+    for side, port in ((0.0, Port.READS_THETA_L), (1.0, Port.READS_THETA_M)):
+        (column,) = effect.columns(s, (side, 1.5)).values()
+        assert set(effect.columns(s, (side, 1.5))) == {port}
+        assert (column[s.t < 1.5 - DT] == 0).all()
+        assert (column[s.t > 1.5 + DT] == 1).all()
+
+
+def test_a_vibration_has_its_frequency_whatever_the_motor_does():
+    effect = EACH_RUN["external_vibration"]
+    for s in (motion(1.0), motion(-1.0)):
+        waves = effect.columns(s, (7.0,))[Port.LOAD_TORQUE]
+        np.testing.assert_allclose(waves, -np.stack([np.cos(14 * np.pi * s.t), np.sin(14 * np.pi * s.t)], 1))

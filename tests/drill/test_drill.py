@@ -7,11 +7,13 @@ import dataclasses
 import pytest
 
 from rig.commands import drill as verb
+from rig.drill import odrive_causes
+from rig.drill.canopen_rig import CanopenRig
 from rig.drill.cause import Cause, Expected
 from rig.drill.causes import CAUSES
 from rig.drill.drill import drill
+from rig.drill.odrive_rig import ODriveRig
 from rig.drill.phase import PHASES, Phase
-from rig.drill.rig import DrillRig
 
 TRACKING = next(p for p in PHASES if p.name == "tracking")
 
@@ -21,6 +23,16 @@ TRACKING = next(p for p in PHASES if p.name == "tracking")
 @pytest.mark.parametrize("cause", CAUSES, ids=lambda c: c.name)
 def test_every_fault_in_every_phase_ends_as_it_has_to(cause: Cause, phase: Phase) -> None:
     outcome = drill(cause, phase)
+    assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "phase", [p if p is TRACKING else pytest.param(p, marks=pytest.mark.long) for p in PHASES], ids=lambda p: p.name
+)
+@pytest.mark.parametrize("cause", odrive_causes.CAUSES, ids=lambda c: c.name)
+def test_every_fault_of_an_odrive_in_every_phase_ends_as_it_has_to(cause: Cause, phase: Phase) -> None:
+    outcome = drill(cause, phase, ODriveRig)
     assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"
 
 
@@ -53,7 +65,7 @@ def test_a_fault_that_was_to_be_ridden_out_fails_the_drill_when_it_trips() -> No
 
 
 def test_old_targets_queued_in_a_dead_bus_never_reach_the_drive() -> None:
-    rig = DrillRig()
+    rig = CanopenRig()
     heard: list[tuple[float, bytes]] = []
     rig.assembly.bus.attach("ear", lambda f, t: heard.append((t, f.data)) if f.identifier == 0x201 else None)
     struck = rig.wire.now() + 1.0
@@ -68,7 +80,7 @@ def test_old_targets_queued_in_a_dead_bus_never_reach_the_drive() -> None:
 def test_the_verb_prints_one_line_a_fault_and_says_the_worst(capsys: pytest.CaptureFixture[str]) -> None:
     from argparse import Namespace
 
-    assert verb.run(Namespace(only="safe torque off", phase="tracking")) == 0
+    assert verb.run(Namespace(only="safe torque off", phase="tracking", drive="cia402")) == 0
     told = capsys.readouterr().out
     assert told.startswith("SIMULATED")
     assert "2 drills, 0 not as expected" in told

@@ -20,6 +20,7 @@ from drivers.wiring import Place, Wiring
 from rig.core.clock import WallClock
 from rig.core.errors import NotReady
 from rig.core.sample import Mode, Torque
+from sim.wire.frame import Frame
 from sim.wire.inprocess import VirtualWire
 from tests.drivers.foreign import Peer, Tpdo
 from tests.drivers.virtual import wired
@@ -212,3 +213,33 @@ def test_canopen_s_own_node_is_read_and_mapped_as_it_stands():
     finally:
         host.close()
         network.disconnect()
+
+
+def held_up(wire: VirtualWire, encoder: Cia406, syncs: int, at_once: int) -> None:
+    """A node that answers late: silent for `syncs`, then `at_once` answers to each further SYNC until all are given."""
+    bus, port = encoder.bus, wire.assembly.bus.attach("late", lambda frame, t: None)
+    owed = 0
+    for k in range(4 * syncs):
+        owed += 1
+        bus.sync()
+        for _ in range(min(owed, at_once) if k >= syncs else 0):
+            port.send(Frame(0x180 + NODE, bytes(4)))
+            owed -= 1
+        wire.wait_until(wire.now() + 0.002)
+        encoder.read()
+
+
+def test_a_node_that_was_held_up_and_answers_several_syncs_at_once_is_no_second_one(wire: VirtualWire):
+    foreign = peer(wire, ENCODER, tpdos=[Tpdo(0, 0x180 + NODE, 1, [(0x6004, 0, 32)])], heartbeat=False)
+    encoder = Cia406(wiring(wire), place("load_encoder"))
+    encoder.connect()
+    foreign.port.disconnect(False)
+    held_up(wire, encoder, syncs=30, at_once=2)
+    assert encoder.trouble == ""
+    foreign.port.reconnect()
+    for _ in range(250):  # two answer each from now on
+        encoder.bus.sync()
+        wire.assembly.bus.attach("double", lambda frame, t: None).send(Frame(0x180 + NODE, bytes(4)))
+        wire.wait_until(wire.now() + 0.002)
+        encoder.read()
+    assert "are there two nodes of this number?" in encoder.trouble

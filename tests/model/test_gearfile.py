@@ -42,6 +42,23 @@ def test_what_is_written_is_read_again_bit_by_bit(tmp_path: Path) -> None:
     assert again.gear() == file.gear()
 
 
+def test_what_was_measured_beside_the_parameters_is_kept_with_its_unit() -> None:
+    loss = Parameter(1.6e-4, (1.5e-4, 1.7e-4), "measured", ("lock_1",), "gap at zero torque")
+    text = dumps(replace(made(), characteristics={"hysteresis_loss": loss}))
+    assert dict(loads(text, "gear.toml").characteristics) == {"hysteresis_loss": loss}
+    assert dict(loads(dumps(made()), "gear.toml").characteristics) == {}
+    with pytest.raises(UsageError, match="expected 'rad'; units are never converted"):
+        loads(
+            text.replace(
+                'hysteresis_loss = {value = 0.00016, low = 0.00015, high = 0.00017, unit = "rad"',
+                'hysteresis_loss = {value = 0.00016, unit = "arcmin"',
+            ),
+            "gear.toml",
+        )
+    with pytest.raises(UsageError, match="unknown key 'hysteresis_los' in characteristics; did you mean"):
+        loads(text.replace("hysteresis_loss =", "hysteresis_los ="), "gear.toml")
+
+
 def test_a_parameter_nobody_measured_has_no_interval() -> None:
     again = loads(dumps(made()), "gear.toml")
     assert math.isnan(again.parameters["J_m"].half)

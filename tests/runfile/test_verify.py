@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 from collections.abc import Callable
@@ -14,14 +13,14 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from rig.commands import list_ as list_command
+from rig.catalogue import runs as list_runs
+from rig.cli import main
 from rig.core.channels import Flag
 from rig.core.errors import HdrigError, UsageError
 from rig.runfile import manifest
 from rig.runfile.events import read_events
 from rig.runfile.export import export
 from rig.runfile.finalise import describe, finalise
-from rig.runfile.listing import list_runs
 from rig.runfile.process import this_process
 from rig.runfile.recover import recover
 from rig.runfile.run import Run
@@ -270,7 +269,7 @@ def test_an_odd_manifest_spoils_no_list(tmp_path: Path, about: bytes, capsys: py
     (tmp_path / "odd").mkdir()
     (tmp_path / "odd" / "manifest.json").write_bytes(about)
     assert {row.path.name for row in list_runs(tmp_path)} > {"odd"}
-    assert list_command.run(argparse.Namespace(root=tmp_path)) == 0
+    assert main(["list", str(tmp_path)]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 3
 
 

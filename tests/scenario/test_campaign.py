@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
+from rig.catalogue import runs as list_runs
 from rig.cli import main
-from rig.runfile.listing import list_runs
 from rig.runfile.verify import verify
 
 PLAN = """

@@ -115,6 +115,51 @@ def test_the_kinematic_error_found_over_the_wire_is_that_of_the_plant(twin: Twin
     assert float(told[1]) == pytest.approx(TRUE_C2, abs=0.8)
 
 
+PLAN = """
+schema = "hdrig.plan/1"
+name = "by-hand"
+[[step]]
+procedure = "constant-torque"
+with = { speed_rpm = 120, revolutions = 8 }
+weight = 3.0
+[[step]]
+procedure = "lock-check"
+"""
+
+
+def test_a_campaign_has_its_weight_hung_and_its_pin_fitted_by_the_hand_of_the_twin(twin: Twin, tmp_path: Path) -> None:
+    plan = tmp_path / "plan.toml"
+    plan.write_text(PLAN, encoding="utf-8")
+    patient = [
+        "--set",
+        "limits.stale_s=0.6",
+        "--set",
+        "devices.drive.watchdog=0.7",
+    ]  # a busy machine is not the subject
+    command = [*HDRIG, "campaign", str(plan), "--bench", str(twin.bench("twin-canopen")), "--out", str(tmp_path)]
+    done = subprocess.run([*command, *patient], capture_output=True, text=True, timeout=400, check=False)
+    assert "completed: 2 done" in done.stdout, done.stderr
+    for change in ("hang 3 N·m on the output", "take the weight off", "fit the lock pin", "remove the lock pin"):
+        assert f"by hand: {change}" in done.stdout
+    weighed = re.search(r"pulling forward: ([+\d.]+) N·m on the output", done.stdout)
+    assert weighed
+    assert float(weighed[1]) == pytest.approx(3.0, abs=0.1)
+
+
+def test_latch_skew_over_a_bus_and_a_serial_line_is_told_with_its_interval(twin: Twin, tmp_path: Path) -> None:
+    patient = ["--set", "limits.stale_s=0.6", "--set", "devices.drive.watchdog=0.7"]
+    done = run(twin, "twin-can", "skew", tmp_path, "--with", "speeds_rpm=60,240", *patient)
+    told = re.search(
+        r"latched ([−\d.]+) ± ([\d.]+) µs after its motor angle, the shaft torque ([−\d.]+) ±", done.stdout
+    )
+    assert told, done.stdout + done.stderr
+    late, half, torque = (float(x.replace("−", "-")) for x in told.groups())
+    assert abs(late - 2.0) < half + 10.0  # µs: both latch at one SYNC, the twin's encoder 2 µs later
+    assert half < 60.0
+    assert -12_000.0 < torque < -500.0  # lines come a hundred times a second, and are held until the next
+    assert "[load_encoder]" in done.stdout
+
+
 def test_a_program_that_is_killed_leaves_a_drive_without_torque_and_a_run_to_recover(
     twin: Twin, tmp_path: Path
 ) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from rig.procedures.stiffness_lock import StiffnessLock
-from tests.studies import campaign
-from tests.studies.campaign import SLOW, STAIRS, at, random_bench
+from tests.studies import campaign, identification
+from tests.studies.campaign import SLOW, STAIRS, MemoryRun, at, random_bench
 from tests.studies.identification import Outcome, one, table
 
 PLAN = (SLOW, STAIRS, StiffnessLock(cycles=1, rate=3.0, rates=(1.0,)), at(200.0), at(300.0), at(400.0), at(-300.0))
@@ -51,3 +53,26 @@ def test_the_table_has_a_line_for_every_parameter_and_a_share_covered(outcomes: 
 def test_a_rigs_number_is_all_that_makes_it() -> None:
     assert random_bench(3).text == random_bench(3).text
     assert random_bench(3).text != random_bench(4).text
+
+
+def test_a_study_that_was_stopped_goes_on_from_its_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[int] = []
+
+    def taken(number: int, plan: str) -> tuple[list[MemoryRun], float, list[str]]:
+        made.append(number)
+        return [], 0.0, []
+
+    def outcome(number: int, taken: object) -> Outcome:
+        none = np.zeros(0)
+        return Outcome(number, {}, none, none, none, none, (str(len(made)),), ())
+
+    monkeypatch.setattr(identification, "take", taken)
+    monkeypatch.setattr(identification, "random_bench", lambda number: number)
+    monkeypatch.setattr(identification, "judged", outcome)
+    first = [one(n, "paper", tmp_path) for n in (0, 1)]
+    both = [one(n, "paper", tmp_path) for n in (0, 1, 2)]
+    assert made == [0, 1, 2], "each rig's runs are made once"
+    assert [o.failed for o in both[:2]] == [o.failed for o in first]
+    assert one(0, "paper", tmp_path, again=True).failed == ("3",), "identified again, from the runs in the store"
+    assert made == [0, 1, 2]
+    assert not list(tmp_path.glob("*.part"))

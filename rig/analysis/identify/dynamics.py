@@ -76,7 +76,7 @@ def load_fit(windows: Sequence[Projected], drag: tuple[float, float] | None) -> 
     """J_l, B_l and T − δ; `drag` (value, 1 σ) of B_l from the means: what its slope is for small swings, nearly."""
     rows = [
         Rows(
-            w.run,
+            w.stretch,
             np.stack((w.load_acceleration, w.load_speed, -w.shaft_rate, -w.shaft_acceleration), axis=2),
             w.shaft,
             w.inflation,
@@ -104,7 +104,7 @@ def spring_fit(
         stretch = w.column_rates @ series - w.bending_rate  # φ̇
         X = np.concatenate((w.columns, np.stack((torque, stretch, w.load_speed), axis=2)), axis=2)
         assert X.shape[2] == size == at_K + 3
-        rows.append(Rows(w.run, X, w.error, w.inflation))
+        rows.append(Rows(w.stretch, X, w.error, w.inflation))
     return solve(rows, fixed, size)
 
 
@@ -120,7 +120,7 @@ def motor_fit(
         y = w.motor_torque - w.levered - (sensor.true(w) - w.shaft) / ratio + mesh.levered(w, ratio, series)
         columns = (w.motor_acceleration, w.motor_speed) + (() if free else (-w.motor_torque_rate,))
         if np.isfinite(y).all():
-            rows.append(Rows(w.run, np.stack(columns, axis=2), y, w.inflation))
+            rows.append(Rows(w.stretch, np.stack(columns, axis=2), y, w.inflation))
     size = 2 if free else 3
     return solve(rows, [_held("means", B_M, size, *drag)], size) if rows else None
 

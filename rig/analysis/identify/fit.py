@@ -21,11 +21,12 @@ from rig.analysis.identify.dynamics import (
     spring_columns,
 )
 from rig.analysis.identify.friction import LoadFriction, MotorFriction, load_friction, motor_friction
-from rig.analysis.identify.means import Mean, mean_of
+from rig.analysis.identify.means import Mean, Sides, mean_of
 from rig.analysis.identify.recording import Plateau, Recording, plateaus
 from rig.analysis.identify.slow import SlowSeries, slow_series
 from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.spring import SpringRuns
+from rig.analysis.identify.stretches import stretches
 from rig.analysis.identify.windows import Projected, project
 from rig.analysis.result import Array
 from rig.model.fourier import FourierSeries
@@ -89,7 +90,8 @@ def _once(
     terms: int, ratio: float, progress: Callable[[str], None],
 ) -> Fits:  # fmt: skip
     progress(f"{len(level)} stretches of constant speed")
-    means = [mean_of(p, series, 0.0, 0.0) for p in level]
+    spans = stretches(level)
+    means = [mean_of(p, series, Sides()) for p in spans]
     friction_l = load_friction(means, ratio)
     slopes = {id(r): series.slope(r.theta_m) for r in runs}
     windows = [w for p in level if (w := project(p, terms, slopes[id(p.run)])) is not None]
@@ -116,12 +118,19 @@ def _once(
         drag_m = (friction_m.solved.coefficients[friction_m.B], friction_m.solved.u(friction_m.B))
         motor = motor_fit(windows, ratio, sensor, mesh, np.array([*series.a, *series.b]), drag_m)
         J_m = motor.coefficients[J_M] if motor is not None else 0.0
-    means = [mean_of(p, series, J_m, J_l) for p in level]
+    means = [mean_of(p, series, _sides(J_m, friction_m, J_l, friction_l)) for p in spans]
     used = tuple(r.name for r in locked if r.tau_l is not None)
     return Fits(
         terms, ratio, series, slow, tuple(means), tuple(windows), spring, lock_only, running_only, load, motor,
         motor_friction(means), load_friction(means, ratio), used, mesh,
     )  # fmt: skip
+
+
+def _sides(J_m: float, motor: MotorFriction | None, J_l: float, load: LoadFriction | None) -> Sides:
+    """What the first means and the windows have told, for the second means."""
+    B = 0.0 if motor is None else float(motor.solved.coefficients[motor.B])
+    B_l = 0.0 if load is None else float(load.solved.coefficients[load.B_l])
+    return Sides(J_m, B, J_l, B_l)
 
 
 def _mesh(run: Recording, friction: MotorFriction | None) -> Mesh:

@@ -58,7 +58,7 @@ def motor_friction(means: Sequence[Mean]) -> MotorFriction | None:
     rows = [m for m in unloaded(means) if np.isfinite(m.motor)]
     if not _speeds_differ(rows):
         return None
-    v = variances([m.motor_scatter for m in rows], [m.pieces for m in rows], [m.duration for m in rows])
+    v = variances([m.motor_side.pieces for m in rows], [m.duration for m in rows])
     if not np.isfinite(v).all():
         return None
     omega, y = np.array([m.omega for m in rows]), np.array([m.motor for m in rows])
@@ -87,7 +87,7 @@ def total_friction(means: Sequence[Mean]) -> MotorFriction | None:
 
     Its slope is B_m + B_ml·(1 + σ/N)² + B_l/N², its Coulomb part τ_c + F_cl/N.
     """
-    return motor_friction([replace(m, motor=m.total, motor_scatter=m.total_scatter) for m in means])
+    return motor_friction([replace(m, motor_side=m.all_sides) for m in means])
 
 
 def load_friction(means: Sequence[Mean], ratio: float) -> LoadFriction | None:
@@ -95,7 +95,7 @@ def load_friction(means: Sequence[Mean], ratio: float) -> LoadFriction | None:
     rows = [m for m in means if m.tau_ext == 0.0 and np.isfinite(m.load)]
     if not _speeds_differ(rows):
         return None
-    v = variances([m.load_scatter for m in rows], [m.pieces for m in rows], [m.duration for m in rows])
+    v = variances([m.load_side.pieces for m in rows], [m.duration for m in rows])
     if not np.isfinite(v).all():
         return None
     omega_l, y = np.array([m.omega for m in rows]) / ratio, np.array([m.load for m in rows])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +15,15 @@ Complex = npt.NDArray[np.complex128]
 BAND = 2  # orders on either side whose noise is taken as the same: one run has few windows, its noise is smooth
 PASSES = 4  # solve, take the noise from what is left, solve again
 SURE = 3.0  # standard errors by which runs must disagree before intervals are widened for it
+ENOUGH = 30  # independent windows: their scatter is then good to an eighth of itself
 FLOOR = 1e-12  # of the rows' own mean square: noise is never taken as less (noiseless data)
 
 
 @dataclass(frozen=True)
 class Rows:
-    """One run's equations at its orders: X (W, n, p), y (W, n), phasors; variance of W windows is `inflation` up."""
+    """One stretch's equations at its orders, phasors: X (W, n, p), y (W, n); variance of W windows `inflation` up."""
 
-    run: str
+    stretch: str
     X: Complex
     y: Complex
     inflation: float
@@ -62,9 +63,10 @@ def solve(rows: Sequence[Rows], fixed: Sequence[Known], size: int) -> Solved | N
     covariance = _inverse(H)
     birge = _disagreement(parts, c, covariance)
     count = sum(2.0 * r.y.size / r.inflation for r in rows) + 30.0 * len(fixed)
-    scale = np.sqrt(birge)
+    influence = {r.stretch: _influence(r, v, c, covariance) for r, v in zip(rows, noise, strict=True)}
+    scale = np.sqrt(birge * _seen(covariance, fixed, rows, influence))
     widened = covariance * np.outer(scale, scale)
-    return Solved(c, widened, max(count - size, 1.0), 0.0, float(np.sqrt(np.max(birge))))
+    return Solved(c, widened, max(count - size, 1.0), 0.0, float(np.sqrt(np.max(birge))), influence)
 
 
 def _inverse(H: Array) -> Array:
@@ -81,7 +83,34 @@ def _reduced(rows: Rows, noise: Array) -> Known:
     X, y = rows.X.mean(axis=0), rows.y.mean(axis=0)
     w = 2.0 * rows.y.shape[0] / (noise * rows.inflation)
     weighted = (np.conj(X) * w[:, None]).T
-    return Known(rows.run, (weighted @ X).real, (weighted @ y).real)
+    return Known(rows.stretch, (weighted @ X).real, (weighted @ y).real)
+
+
+def _seen(covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influence: Mapping[str, Array]) -> Array:
+    """(p,) variance of each coefficient as the windows scatter, over what the noise of the orders says.
+
+    The noise of an order is pooled with that of its neighbours, and orders in one window are not independent: the
+    windows, which are, say what both come to      [liang1986]. Believed where there are enough of them.
+    """
+    windows = sum(max(r.y.shape[0] / r.inflation - 1.0, 0.0) for r in rows)
+    own = np.maximum(np.diag(covariance), 1e-300)
+    known = sum((np.einsum("ij,jk,ki->i", covariance, k.H, covariance) for k in fixed), np.zeros(own.size))
+    scatter = sum((np.sum(i**2, axis=0) for i in influence.values()), np.zeros(own.size))
+    ratio = (known + scatter) / own
+    return np.asarray(ratio if windows >= ENOUGH else np.maximum(ratio, 1.0))
+
+
+def _influence(rows: Rows, noise: Array, c: Array, covariance: Array) -> Array:
+    """(W, p): what each window's own residuals, about those of its stretch, did to the coefficients (see Solved).
+
+    W windows that overlap have W/`inflation` means to be off by, and the mean of the stretch takes one of them.
+    """
+    windows = rows.y.shape[0]
+    left = rows.y - rows.X @ c
+    left = left - left.mean(axis=0)
+    weighted = np.conj(rows.X.mean(axis=0)) * (2.0 / (noise * rows.inflation))[:, None]
+    scale = np.sqrt(rows.inflation / max(1.0 - rows.inflation / windows, 1.0 / windows))
+    return np.asarray(scale * (left @ weighted).real @ covariance)
 
 
 def _noise(rows: Rows, c: Array, size: int, runs: int) -> Array:

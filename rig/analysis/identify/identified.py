@@ -12,6 +12,7 @@ import numpy as np
 from rig.analysis.flexibility import declared
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
+from rig.analysis.identify.mode import add_mode, damping_gradient
 from rig.analysis.identify.solve import Solved
 from rig.analysis.intervals import t95
 from rig.core.errors import DataError
@@ -68,7 +69,7 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
         note = "no fall of friction with speed was seen: none assumed"
         found["tau_s"] = Parameter(BREAKAWAY * found["tau_c"].value, origin="assumed", note=note)
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
-    _mode(found)
+    add_mode(found, fits)
     cannot += _always(found)
     return Identified(found, _series(fits, cannot), tuple(cannot), fits)
 
@@ -88,9 +89,7 @@ def _spring(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
     running = tuple(dict.fromkeys(w.run for w in fits.windows))
     found["K"] = _stiffness(fits, K, cannot, (*fits.locked, *running))
     if fits.windows and fits.load is not None:
-        grad = np.zeros(c.size)
-        grad[[at_damping, at_delay]] = K
-        grad[at_K] = -c[at_damping] * K * K
+        grad = damping_gradient(fits)
         u = float(np.sqrt(grad @ spring.covariance @ grad + _of_mesh(fits) ** 2))
         found["B_sp"] = _measured(c[at_damping] * K, u, spring, running)
         found["skew"] = _measured(c[at_delay] + fits.taken_off, spring.u(at_delay), spring, running)
@@ -181,29 +180,6 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
         found["J_m"] = _measured(fits.motor.coefficients[J_M], fits.motor.u(J_M), fits.motor, running)
     else:
         cannot.append(f"J_m: it takes {NEEDS['J_m']}.")
-
-
-def _mode(found: dict[str, Parameter]) -> None:
-    """ω_n and ζ of the free-free mode with what their parts leave uncertain      [ghorbel2001, Eqs. 6-7]"""
-    if not {"J_m", "J_l", "K"} <= found.keys():
-        return
-
-    def mode(p: Mapping[str, float]) -> tuple[float, float]:
-        reflected = found["N"].value ** 2 * p["J_m"]
-        inertia = p["J_l"] * reflected / (p["J_l"] + reflected)
-        omega = math.sqrt(p["K"] / inertia)
-        return omega, p["B_sp"] / (2.0 * omega * inertia)
-
-    values = {name: found[name].value for name in ("J_m", "J_l", "K", "B_sp")}
-    best, variance = mode(values), [0.0, 0.0]
-    for name in values:
-        half = found[name].half
-        if math.isfinite(half):
-            up = mode({**values, name: values[name] + half})
-            variance = [v + (b - a) ** 2 for v, a, b in zip(variance, best, up, strict=True)]
-    for name, value, square in zip(("omega_n", "zeta"), best, variance, strict=True):
-        half = math.sqrt(square) if square else math.nan
-        found[name] = Parameter(value, (value - half, value + half), "measured", found["K"].runs)
 
 
 def _series(fits: Fits, cannot: list[str]) -> MeasuredSeries:

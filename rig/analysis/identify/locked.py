@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
+from collections.abc import Sequence
 
-from rig.analysis.angle import transmission_error
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.angle import TURN, transmission_error
 from rig.analysis.identify.gram import Known, known
 from rig.analysis.identify.recording import Recording
 from rig.analysis.intervals import Z95, t95
@@ -14,13 +18,16 @@ from rig.analysis.sums import harmonics
 BLOCK = 0.2  # s averaged to one row: noise of the sensor in the regressor is then far below the torque's range
 FEWEST = 20  # rows
 SWING = 1.0  # N·m at least between the ends, else there is nothing to see
+NEAR = math.radians(3.0)  # of the motor: half of what 15 N·m wind the paper's gear up by, so most counts are the same
 PARTS = 12  # of the run: a few seconds each
 
 
-def locked_rows(run: Recording, terms: int, size: int, at_K: int, c: Array) -> Known | None:
+def locked_rows(run: Recording, terms: int, size: int, at_K: int, c: Array, alike: int) -> Known | None:
     """θ̃ = θ̃_p(θ_m) + T/K + constant in columns of the spring's fit: (a_n, b_n) first, 1/K at `at_K`, (size,) in all.
 
-    `c` are the coefficients so far, zeros at first: they say what the kinematic error does to the wind-up.
+    `c` are the coefficients so far, zeros at first: they say what the kinematic error does to the wind-up. `alike` runs
+    of the campaign, this one among them, wind up about the same angle: they share the errors of the encoder's counts,
+    and all of them together know those no better than one.
     """
     if not run.locked or run.tau_l is None or np.ptp(run.tau_l) < SWING:
         return None
@@ -28,19 +35,26 @@ def locked_rows(run: Recording, terms: int, size: int, at_K: int, c: Array) -> K
     count = run.t.size // rows
     if count < FEWEST:
         return None
-    error = _averaged(transmission_error(run.theta_m, run.theta_l, run.ratio)[None], rows, count)[0]
-    X = np.zeros((count, size))
-    X[:, : 2 * terms] = _averaged(harmonics(run.theta_m, terms), rows, count).T
-    X[:, at_K] = _averaged(run.tau_l[None], rows, count)[0]
+    stand = _stands(run.theta_m[: count * rows].reshape(count, rows), run.count_m)
+    error = _once(_averaged(transmission_error(run.theta_m, run.theta_l, run.ratio)[None], rows, count), stand)[:, 0]
+    X = np.zeros((error.size, size))
+    X[:, : 2 * terms] = _once(_averaged(harmonics(run.theta_m, terms), rows, count), stand)
+    X[:, at_K] = _once(_averaged(run.tau_l[None], rows, count), stand)[:, 0]
     X, y = X - X.mean(axis=0), error - error.mean()
     start = c if c[at_K] > 0 else np.zeros(size)
     torque = X[:, at_K]
     left = y - X @ start + torque * start[at_K]  # what torque alone has to explain
     power = max(float(torque @ torque), 1e-300)
-    moved = np.ptp(run.theta_m[: count * rows].reshape(count, rows), axis=1)
     scatter = _slope_variance(torque, left) * (t95(PARTS - 1) / Z95) ** 2
-    variance = max(scatter, _counts_variance(torque, moved, run.count_m) / run.ratio**2) * power
+    counts = alike * (run.count_m / run.ratio) ** 2 / 12.0 / power
+    variance = max(scatter, counts) * power
     return known(run.name, X, y, max(variance, 1e-20))
+
+
+def about_the_same_angle(run: Recording, others: Sequence[Recording]) -> int:
+    """How many of `others` wind the motor up about the angle at which `run` does, `run` among them."""
+    apart = [math.remainder(float(np.mean(run.theta_m) - np.mean(other.theta_m)), TURN) for other in others]
+    return max(sum(abs(a) < NEAR for a in apart), 1)
 
 
 def _slope_variance(x: Array, y: Array) -> float:
@@ -55,14 +69,24 @@ def _slope_variance(x: Array, y: Array) -> float:
     return float((PARTS - 1) / PARTS * np.sum((without - without.mean()) ** 2))
 
 
-def _counts_variance(x: Array, moved: Array, count: float) -> float:
-    """Variance [rad²/unit²] of a slope against `x` because the encoder counts: ±½ count, the same as long as it stands.
+def _stands(theta: Array, one: float) -> npt.NDArray[np.int64]:
+    """(rows,) number of the stand each row of `theta` (rows, samples) belongs to; `one` rad a count, 0 unknown."""
+    if one <= 0.0:
+        return np.arange(theta.shape[0])
+    moved = np.ptp(theta, axis=1) >= one
+    moved[1:] |= np.abs(np.diff(theta.mean(axis=1))) >= 0.5 * one
+    moved[0] = False
+    return np.cumsum(moved)
 
-    `moved`: rad the motor moved within each row; rows without motion share their error with the row before.
+
+def _once(rows: Array, stand: npt.NDArray[np.int64]) -> Array:
+    """(stands, columns): one row for as long as the motor stood within a count, where all have the same error.
+
+    A loop that holds an angle stops where the count turns over, on the side it came from: at both ends of a wind-up
+    that is the outer one. Rows that repeat it for seconds would pull the slope, and one row hardly does.
     """
-    stand = np.cumsum(moved >= count) if count > 0.0 else np.arange(x.size)
-    together = np.bincount(stand, x, minlength=int(stand[-1]) + 1)
-    return float(count**2 / 12.0 * np.sum(together**2) / max(float(x @ x), 1e-300) ** 2)
+    lasts = np.bincount(stand)
+    return np.array([np.bincount(stand, row) / lasts for row in rows]).T
 
 
 def _averaged(rows: Array, each: int, count: int) -> Array:

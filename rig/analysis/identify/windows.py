@@ -34,6 +34,7 @@ class Projected:
     """
 
     run: str
+    begin: float  # s, of the plateau
     omega: float  # rad/s of the motor, mean
     tau_ext: float
     followed: bool  # a loop held the speed
@@ -53,6 +54,11 @@ class Projected:
     levered: Complex  # τ_l·(1/N − θ̃_p′) with the slope given
     motor_torque: Complex  # τ_m
     motor_torque_rate: Complex
+
+    @property
+    def stretch(self) -> str:
+        """Its name among all of a campaign."""
+        return f"{self.run} from {self.begin:.3f} s"
 
     @property
     def windows(self) -> int:
@@ -105,8 +111,9 @@ def project(plateau: Plateau, terms: int, slope: Array) -> Projected | None:
     made = [_one(tests, [s[a : a + size] for s in signals], run.ratio, terms, orders) for a in starts]
     stacked = [np.stack(x) for x in zip(*made, strict=True)]
     return Projected(
-        run.name, plateau.omega, run.tau_ext, plateau.followed, orders, overlap_inflation(int(starts.size)), *stacked
-    )
+        run.name, float(t[0]), plateau.omega, run.tau_ext, plateau.followed, orders,
+        overlap_inflation(int(starts.size)), *stacked,
+    )  # fmt: skip
 
 
 def _tests(size: int, dt: float, omega: Array) -> tuple[Complex, Complex, Complex]:

@@ -48,6 +48,7 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
         found.sentence = "No ramp of torque long enough for a slope was found."
         found.cannot.append(found.sentence)
         return
+    less = f", less the kinematic error of {reference.name}" if reference is not None and s.share is not None else ""
     K, half = _add_secant(found, s, motion)
     add_lines(found, s)
     add_cubic(found, s)
@@ -58,7 +59,8 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
     add_creep(found, s)
     _add_path(found, path_of(run.declared), K, half)
     _doubts(found, s)
-    found.sentence = f"System torsional stiffness {K:.0f} N·m/rad ({K - half:.0f} to {K + half:.0f}){gap}; {_law(s)}."
+    interval = f"({K - half:.0f} to {K + half:.0f}{less})"
+    found.sentence = f"System torsional stiffness {K:.0f} N·m/rad {interval}{gap}; {_law(s)}."
     add_curves(found, s)
 
 

@@ -40,7 +40,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
     pieces = [p for run in runs for p in run.pieces]
     speeds = np.concatenate([np.abs(p.omega_m[p.way != 0]) for p in pieces]) if pieces else np.zeros(0)
     torque = np.concatenate([np.abs(p.torque) for p in pieces])
-    turns = [np.ptp(p.theta_l if np.isfinite(p.theta_l).all() else p.theta_m / p.ratio) for p in pieces]
+    turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
     return Reach(
         ratio=runs[0].ratio,
         fastest=float(np.percentile(speeds, 99.9)) if speeds.size else 0.0,
@@ -52,12 +52,14 @@ def reach(runs: Sequence[Recording]) -> Reach:
         load_turns=float(np.nanmax(turns)) / (2 * np.pi),
         counts_m=runs[0].counts_m,
         counts_l=runs[0].counts_l,
+        has=frozenset().union(*(run.knows for run in runs)),
     )
 
 
 def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered: Reach) -> Bank:
-    """Columns of all shapes of `effects` for those runs."""
-    terms = tuple(Term(effect, shape) for effect in effects for shape in effect.shapes(covered))
+    """Columns of all shapes of those `effects` that the channels measured can show, for those runs."""
+    able = [effect for effect in effects if effect.needs <= covered.has]
+    terms = tuple(Term(effect, shape) for effect in able for shape in effect.shapes(covered))
 
     def of(run: int) -> _Filled:
         return _filled(eq, run, terms)

@@ -9,8 +9,14 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
 tenth of a millisecond stands above the noise of L. The torque sensor's zero z wanders from run to run, and c_0 may: how
 far is read from repeats. B_ml shows in
-A only when the torque sensor sits behind the mesh's own drag; it is known to be small. Without a torque sensor T comes
-from L with what is declared, and L is no equation any more.
+A only when the torque sensor sits behind the mesh's own drag; it is known to be small.
+
+A sensor that is not there takes one equation away, and what it would have said is put into the others:
+
+no torque sensor   T = J_l·ω̇_l − τ_ext from L with the inertia declared, and what else L says stands in A and M
+no load angle      θ_l = θ_m/N − θ̃ from A, in L: J_l·(ω̇_m/N − d²θ̃/dt²)
+no motor angle     θ_m = N·(θ_l + θ̃) from A, in M: J_m·N·(ω̇_l + d²θ̃/dt²)
+no time            rows have no known distance: whatever is a rate belongs to each run alone
 """
 
 from __future__ import annotations
@@ -23,9 +29,10 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.counts import FREE, LOCKED, one_a_stay, resting
-from rig.analysis.tracing.recording import Recording
+from rig.analysis.tracing.recording import UNKNOWN, Recording
 from rig.analysis.tracing.smoothing import Smoother
 from rig.model.effect import Array, Known, Port, Signals
+from rig.model.fourier import FourierSeries
 
 ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
 CHANNELS: Final = ("A", "M", "L")
@@ -48,25 +55,30 @@ BASELINE: Final = (
     "lag",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
+RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
+"""Coefficients of derivatives by time."""
+HIGHEST: Final = 3  # derivative the low-pass makes
 ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
 SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
 @dataclass(frozen=True)
 class Rows:
-    """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE they are."""
+    """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE they are. `own` are
+    columns (n, q) whose coefficients no other run shares."""
 
     y: Array
     z: Array
     at: tuple[int, ...]
     keep: Array  # bool, before masking
     theta_m: Array  # rad, (n,)
+    own: Array
 
 
 def is_measured(run: Recording, channel: str) -> bool:
-    """Whether this run can say anything in that channel."""
-    need = {"A": {"theta_m", "theta_l"}, "M": {"theta_m", "tau_m"}, "L": {"theta_l", "tau_l"}}[channel]
-    return need <= run.has and not (run.locked and channel == "L") and run.procedure != "standstill"
+    """Whether this run can say anything in that channel; one angle will do for a torque."""
+    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "L": {"tau_l"}}[channel]
+    return need <= run.knows and not (run.locked and channel == "L") and run.procedure != "standstill"
 
 
 def rows(run: Recording, channel: str) -> Rows:
@@ -75,13 +87,28 @@ def rows(run: Recording, channel: str) -> Rows:
     keep = np.concatenate([valid(piece, run, channel) for piece in run.pieces])
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
-    return Rows(y[keep], z[keep], at, keep, theta_m[keep])
+    shared = shared_columns(run, channel, at)
+    places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
+    return Rows(y[keep], z[keep][:, shared], places, keep, theta_m[keep], z[keep][:, ~shared])
+
+
+def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Which baseline columns all runs share, (b,): all where there is time."""
+    if "t" in run.has:
+        return np.ones(len(at), dtype=np.bool_)
+    rates = set(RATES) | (set(SERIES) | {"compliance"} if _derived(run, channel) else set())
+    return np.array([BASELINE[i] not in rates for i in at], dtype=np.bool_)
+
+
+def _derived(run: Recording, channel: str) -> bool:
+    """Whether this channel stands in for an angle that was not measured."""
+    return (channel == "L" and "theta_l" not in run.knows) or (channel == "M" and not {"theta_m", "tau_l"} <= run.knows)
 
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
-    alone = _angle if "tau_l" in run.has else _angle_alone
-    made = [{"A": alone, "M": _motor, "L": _load}[channel](piece, run.smoother) for piece in run.pieces]
+    make = {"A": _angle, "M": _motor, "L": _load}[channel]
+    made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
     y = np.concatenate([m[0] for m in made])
     z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
     return y, z, tuple(INDEX[name] for name in made[0][1])
@@ -110,32 +137,48 @@ def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
     return one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
 
 
-def _angle(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+Columns = tuple[Array, dict[str, Array]]
+Has = frozenset[str]
+
+
+def _angle(s: Signals, f: Smoother, has: Has) -> Columns:
     y = f(s.theta_m / s.ratio - s.theta_l)
     columns = dict(zip(SERIES, f(series(s.theta_m)).T, strict=True))
     columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "damping_2": f(s.tau_l, 2)}
     columns |= {"mesh": f(s.theta_m, 1), "c_0": np.ones_like(y)}
+    if "tau_l" not in has:  # what the load's bearings take is missing in T
+        columns |= {"B_l": f(s.theta_l, 1) / s.gear.K, "tau_cl": f(s.way) / s.gear.K}
     return y, columns
 
 
-def _angle_alone(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
-    """A without a torque sensor: what the load's bearings take is missing in T and stands beside it."""
-    y, columns = _angle(s, f)
-    return y, columns | {"B_l": f(s.theta_l, 1) / s.gear.K, "tau_cl": f(s.way) / s.gear.K}
-
-
-def _motor(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
     y = f(s.tau_m - s.tau_l / s.ratio)
-    columns = dict(zip(SERIES, f(-s.tau_l[:, None] * slopes(s.theta_m)).T, strict=True))
+    lever = f(-s.tau_l[:, None] * slopes(s.theta_m))
+    columns = dict(zip(SERIES, lever.T, strict=True))
+    if "theta_m" not in has:
+        columns = _with_angle(columns, s, f, has, s.gear.J_m * s.ratio)
+    elif "theta_l" not in has and "tau_l" not in has:
+        columns = _with_angle(columns, s, f, has, -s.gear.J_l / s.ratio)
     columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
     return y, columns
 
 
-def _load(s: Signals, f: Smoother) -> tuple[Array, dict[str, Array]]:
+def _load(s: Signals, f: Smoother, has: Has) -> Columns:
     y = f(s.tau_l + s.tau_ext)
     columns = {"J_l": f(s.theta_l, 2), "B_l": f(s.theta_l, 1), "tau_cl": f(s.way), "tau_l0": np.ones_like(y)}
+    if "theta_l" not in has:
+        columns = _with_angle(columns, s, f, has, -s.gear.J_l)
     columns |= {"lag": -f(s.tau_l, 1)}
     return y, columns
+
+
+def _with_angle(columns: dict[str, Array], s: Signals, f: Smoother, has: Has, inertia: float) -> dict[str, Array]:
+    """With inertia·d²θ̃/dt² of A, in the place of an angle that was not measured."""
+    waves = dict(zip(SERIES, inertia * f(series(s.theta_m), 2).T, strict=True))
+    out = columns | {name: columns[name] + wave if name in columns else wave for name, wave in waves.items()}
+    if "tau_l" not in has:
+        return out
+    return out | {"compliance": inertia * f(s.tau_l, 2), "damping": inertia * f(s.tau_l, 3)}
 
 
 def series(theta: Array) -> Array:
@@ -158,47 +201,49 @@ def slopes(theta: Array) -> Array:
     return np.asarray(out)
 
 
-Footprint = Callable[[Array, Signals, Smoother], Iterator[tuple[str, Array]]]
+Mark = tuple[str, Array, int]
+"""Channel, column (n, k) before the low-pass, and which derivative of it by time shows there."""
 
 
-def _motor_torque(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "M", f(c)
+def _motor_torque(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", c, 0
 
 
-def _load_torque(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "L", f(c)
+def _load_torque(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "L", c, 0
 
 
-def _kinematic_error(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "A", f(c)
+def _kinematic_error(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", c, 0
 
 
-def _lever(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "M", f(-s.torque[:, None] * c)
+def _lever(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", -s.torque[:, None] * c, 0
 
 
-def _reads_theta_m(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "A", f(c * (1 / s.ratio - s.series_slope)[:, None])
-    yield "M", -s.gear.J_m * f(c, 2)
+def _reads_theta_m(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", c * (1 / s.ratio - s.series_slope)[:, None], 0
+    yield "M", -s.gear.J_m * c, 2
 
 
-def _reads_theta_l(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "A", -f(c)
-    yield "L", -s.gear.J_l * f(c, 2)
+def _reads_theta_l(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", -c, 0
+    yield "L", -s.gear.J_l * c, 2
 
 
-def _reads_tau_m(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
-    yield "M", f(c)
+def _reads_tau_m(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", c, 0
 
 
-def _reads_tau_l(c: Array, s: Signals, f: Smoother) -> Iterator[tuple[str, Array]]:
+def _reads_tau_l(c: Array, s: Signals) -> Iterator[Mark]:
     k = s.gear.K
-    yield "A", -f(c) / k + s.gear.B_sp / k**2 * f(c, 1)
-    yield "M", -f(c) / s.ratio
-    yield "L", f(c)
+    yield "A", -c / k, 0
+    yield "A", s.gear.B_sp / k**2 * c, 1
+    yield "M", -c / s.ratio, 0
+    yield "L", c, 0
 
 
-FOOTPRINTS: Final[Mapping[Port, Footprint]] = {
+FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
     Port.MOTOR_TORQUE: _motor_torque,
     Port.LOAD_TORQUE: _load_torque,
     Port.KINEMATIC_ERROR: _kinematic_error,
@@ -211,13 +256,34 @@ FOOTPRINTS: Final[Mapping[Port, Footprint]] = {
 }
 
 
-def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother) -> dict[str, Array]:
-    """Columns at ports (n, k) → columns in channels (rows, k)."""
+def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) -> dict[str, Array]:
+    """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`."""
     out: dict[str, Array] = {}
     for port, columns in ports.items():
-        for channel, made in FOOTPRINTS[port](columns, s, f):
-            out[channel] = out[channel] + made if channel in out else made
+        for first in FOOTPRINTS[port](columns, s):
+            for channel, column, order in _passed_on(first, s, has):
+                made = f(column, order)
+                out[channel] = out[channel] + made if channel in out else made
     return out
+
+
+def _passed_on(first: Mark, s: Signals, has: Has) -> Iterator[Mark]:
+    """A column, and where else it shows for want of a sensor; a fourth derivative would be noise alone.
+
+    Without time a derivative has no size that runs could share.
+    """
+    channel, column, order = first
+    if order and "t" not in has:
+        return
+    yield first
+    if channel == "A" and "t" in has and order < HIGHEST - 1:
+        if "theta_l" not in has:
+            yield from _passed_on(("L", -s.gear.J_l * column, order + 2), s, has)
+        if "theta_m" not in has:
+            yield "M", s.gear.J_m * s.ratio * column, order + 2
+    if channel == "L" and "tau_l" not in has:
+        yield "A", column / s.gear.K, order
+        yield "M", column / s.ratio, order
 
 
 def damping_of(coefficient: float, stiffness: float, lag: float) -> float:
@@ -225,16 +291,15 @@ def damping_of(coefficient: float, stiffness: float, lag: float) -> float:
     return (lag / stiffness - coefficient) * stiffness**2
 
 
-def known_of(values: Mapping[str, float]) -> Known:
-    """What effects may lean on, from the baseline's coefficients."""
-    from rig.model.fourier import FourierSeries
-
-    stiffness = 1 / values["compliance"]
+def known_of(values: Mapping[str, float], before: Known = UNKNOWN) -> Known:
+    """What effects may lean on, from the baseline's coefficients; what they do not say is as it was `before`."""
+    stiffness = 1 / values["compliance"] if values["compliance"] > 0 else before.K
+    measured = values["compliance"] > 0 and values["damping"] != 0.0
     return Known(
         K=stiffness,
-        B_sp=damping_of(values["damping"], stiffness, values["lag"]),
-        J_m=values["J_m"],
-        J_l=values["J_l"],
+        B_sp=damping_of(values["damping"], stiffness, values["lag"]) if measured else before.B_sp,
+        J_m=values["J_m"] if values["J_m"] > 0 else before.J_m,
+        J_l=values["J_l"] if values["J_l"] > 0 else before.J_l,
         torque_zero=values["tau_l0"],
         kinematic_error=FourierSeries(
             tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))

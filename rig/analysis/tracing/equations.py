@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from rig.analysis.tracing.campaign import WORKERS
-from rig.analysis.tracing.channels import CHANNELS, Rows, footprint, is_measured, rows, unmasked
+from rig.analysis.tracing.channels import CHANNELS, Rows, footprint, is_measured, rows, shared_columns, unmasked
 from rig.analysis.tracing.recording import Recording
-from rig.model.effect import Array, Effect, Known, Shape
+from rig.model.effect import MEASURED, Array, Effect, Known, Shape
 
 Key = tuple[int, str]  # run, channel
 FEWEST = 12  # rows of a run in a channel: a brisk lock test that sticks and slips is two dozen readings, and good ones
@@ -74,8 +74,10 @@ class Equations:
 
     @cached_property
     def local(self) -> dict[Key, Array]:
-        """`own` without the run's offset, orthonormal (n, q)."""
-        return {key: orthonormal(self.without_offset(key, x)) for key, x in self.own.items()}
+        """Columns of a run's own without its offset, orthonormal (n, q)."""
+        found = {key: r.own for key, r in self.rows.items() if r.own.shape[1]}
+        both = {key: np.hstack([m[key] for m in (found, self.own) if key in m]) for key in {**found, **self.own}}
+        return {key: orthonormal(self.without_offset(key, x)) for key, x in both.items()}
 
     def without_offset(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) with as much of its mean gone as the run's offset is its own; all of it in A of a locked
@@ -101,8 +103,9 @@ class Equations:
         """What sensor noise does to the response (n,) and to the baseline's columns (n, b) of one run, bare."""
         noisy, out = self.noisy[run], {}
         for c, r in self.kept(run).items():
-            y, z, _ = unmasked(noisy, c)
-            out[c] = self.bare((run, c), y[r.keep] - r.y), self.bare((run, c), z[r.keep] - r.z)
+            y, z, at = unmasked(noisy, c)
+            shared = z[:, shared_columns(noisy, c, at)]
+            out[c] = self.bare((run, c), y[r.keep] - r.y), self.bare((run, c), shared[r.keep] - r.z)
         return out
 
     def spoilt_term(self, run: int, term: Term, clean: dict[str, Array]) -> dict[str, Array]:
@@ -115,6 +118,12 @@ class Equations:
         noisy = {i: run.knowing(known) for i, run in self.noisy.items()}
         return replace(self, runs=tuple(run.knowing(known) for run in self.runs), noisy=noisy)
 
+    def leaning_on_it(self) -> Equations:
+        """With the baseline's columns made again in runs that miss a sensor, whose part is made with what is known."""
+        missing = [i for i, run in enumerate(self.runs) if not run.knows >= MEASURED]
+        made = {(i, c): rows(self.runs[i], c) for i, c in self.rows if i in missing}
+        return replace(self, rows={**self.rows, **made})
+
 
 def orthonormal(x: Array) -> Array:
     """An orthonormal basis (n, q) of the columns of `x`."""
@@ -124,7 +133,7 @@ def orthonormal(x: Array) -> Array:
 
 def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:
     """Columns of `term` in each channel of `kept`, pieces joined, rows as in `kept`."""
-    made = [footprint(term.effect.columns(piece, term.shape), piece, run.smoother) for piece in run.pieces]
+    made = [footprint(term.effect.columns(piece, term.shape), piece, run.smoother, run.knows) for piece in run.pieces]
     joined = {c: np.concatenate([m[c] for m in made])[r.keep] for c, r in kept.items() if c in made[0]}
     # a column of something that was not measured explains nothing
     return {c: z if np.isfinite(z).all() else np.zeros_like(z) for c, z in joined.items()}

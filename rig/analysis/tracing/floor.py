@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.recording import Recording
@@ -15,6 +16,7 @@ from rig.model.effect import Array
 
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
 WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
+HOLE = 10.0  # usual distances between rows: further apart, there is nothing between them
 SOON = 3.0  # times the usual gap between repeats: later ones may have drifted
 
 
@@ -80,7 +82,7 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
         if sign != np.sign(theta_a[a][-1] - theta_a[a][0]):
             continue
         x, at = np.maximum.accumulate(sign * theta_b[b]), sign * theta_a[a]
-        inside = (at > x[0]) & (at < x[-1])
+        inside = (at > x[0]) & (at < x[-1]) & beside_a_row(at, x)
         if inside.sum() > 25:
             parts.append(e_a[a][inside] - np.interp(at[inside], x, e_b[b]))
     if not parts:
@@ -89,6 +91,13 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))
     # interpolation between two rows of correlation rho leaves 2/3 + rho/3 of their variance
     return np.asarray(d / np.sqrt(1 + 2 / 3 + rho / 3))
+
+
+def beside_a_row(at: Array, x: Array) -> npt.NDArray[np.bool_]:
+    """Which of the angles `at` (n,) lie between two rows of `x` (m,), rising, that follow each other, not in a hole."""
+    hole = HOLE * float(np.median(np.diff(x)))
+    above = np.clip(np.searchsorted(x, at), 1, x.size - 1)
+    return np.asarray(x[above] - x[above - 1] <= max(hole, 1e-12))
 
 
 def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channel: str) -> Scatter | None:

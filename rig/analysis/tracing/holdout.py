@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,9 +12,15 @@ import numpy as np
 from rig.analysis.tracing.floor import alike, strokes
 from rig.analysis.tracing.recording import Recording
 from rig.core.errors import UsageError
+from rig.model.effect import Signals
 
 LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
 KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
+SPARED = 3  # one stretch of so many is held out
+STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
+TURN = 2 * np.pi
+HELD_PART = "part held out"
+TOO_SHORT = "no run is long enough to hold a part of it out: at least two turns or strokes of the motor are needed"
 
 
 @dataclass(frozen=True)
@@ -27,13 +34,13 @@ class Split:
 
 
 def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
-    """By the names asked for, else whole repeats and levels, else the ends of all runs. Raises UsageError."""
+    """By the names asked for, else whole repeats and levels, else parts of all runs. Raises UsageError."""
     moving = [i for i, run in enumerate(runs) if run.procedure != "standstill"]
     if asked:
         return _asked(runs, moving, asked)
     groups = grouped(runs, moving)
     if sum(len(group) > 1 for group in groups) * 3 < len(groups):
-        return _ends(runs, moving)
+        return _parts(runs, moving)
     held = _levels_and_repeats(runs, groups)
     fitted = tuple(i for i in moving if i not in held)
     return Split(tuple(runs), fitted, tuple(sorted(held)), "whole repeats, and whole loads and speeds between others")
@@ -80,25 +87,56 @@ def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> s
     return held
 
 
-def _ends(runs: Sequence[Recording], moving: list[int]) -> Split:
-    """The last third of every run, cut where the motor turns back or has finished a turn."""
+def _parts(runs: Sequence[Recording], moving: list[int]) -> Split:
+    """A third of every run: every third stretch of one that turns on and on, else the last turns or strokes."""
     made = list(runs)
     held: list[int] = []
     for i in moving:
-        cut = _cut(runs[i])
-        if cut is None:
+        parts = _stretches(runs[i]) or _head_and_tail(runs[i])
+        if parts is None:
             continue
-        piece = runs[i].pieces[0]
-        head = replace(runs[i], pieces=(piece.part(slice(0, cut)),))
-        tail = replace(runs[i], pieces=(piece.part(slice(cut, None)), *runs[i].pieces[1:]))
-        made[i] = head
-        made.append(replace(tail, name=f"{runs[i].name} (last part)"))
+        made[i] = replace(runs[i], pieces=parts[0])
+        made.append(replace(runs[i], pieces=parts[1], name=f"{runs[i].name} ({HELD_PART})"))
         held.append(len(made) - 1)
     if not held:
-        raise UsageError("no run is long enough to hold a part of it out: at least two turns or strokes are needed")
-    return Split(
-        tuple(made), tuple(moving), tuple(held), "the last turns or strokes of every run: there are no repeats"
-    )
+        raise UsageError(TOO_SHORT)
+    how = "a third of every run, whole turns or strokes: there are no repeats"
+    return Split(tuple(made), tuple(moving), tuple(held), how)
+
+
+Parts = tuple[tuple[Signals, ...], tuple[Signals, ...]]
+
+
+def _stretches(run: Recording) -> Parts | None:
+    """Whole turns of the motor, long against the filters, every third stretch of them to test with.
+
+    Cut off at its end, a run of one turn of the output or less would be tested at output angles it was not fitted at.
+    """
+    stretches = [s for piece in run.pieces for s in _whole_turns(piece)]
+    if len(stretches) < SPARED + 1:
+        return None
+    held = range(SPARED // 2, len(stretches), SPARED)
+    return tuple(s for j, s in enumerate(stretches) if j not in held), tuple(stretches[j] for j in held)
+
+
+def _whole_turns(piece: Signals) -> list[Signals]:
+    theta = np.abs(piece.theta_m - piece.theta_m[0])
+    if len(strokes(piece.theta_m)) != 1 or theta[-1] < TURN:
+        return []
+    rows = max(1.0, theta.size * TURN / theta[-1])
+    turns = int(np.ceil(STRETCH / rows))
+    marks = np.arange(0.0, theta[-1], TURN * turns)
+    edges = [*np.searchsorted(np.maximum.accumulate(theta), marks), theta.size]
+    cut = [slice(int(lo), int(hi)) for lo, hi in itertools.pairwise(edges)]
+    return [piece.part(rows) for rows in cut if rows.stop - rows.start > STRETCH / 2]
+
+
+def _head_and_tail(run: Recording) -> Parts | None:
+    cut = _cut(run)
+    if cut is None:
+        return None
+    piece = run.pieces[0]
+    return (piece.part(slice(0, cut)),), (piece.part(slice(cut, None)), *run.pieces[1:])
 
 
 def _cut(run: Recording) -> int | None:

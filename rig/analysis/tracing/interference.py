@@ -14,10 +14,11 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
-from rig.analysis.tracing.local import LOWEST, clock
+from rig.analysis.tracing.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
 from rig.model.effect import Array
 
+LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside
 PADDED = 4  # finer than a window's own resolution
 FEWEST = 3  # windows of a run, each half over the next

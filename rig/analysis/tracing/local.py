@@ -10,15 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.tracing.equations import Equations, Key, orthonormal
+from rig.analysis.tracing.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STEP, STEP_AGAIN, STEP_ALIKE
 from rig.model.effect import Array, Parameter, parameter
+from rig.model.effects import EACH_RUN
+from rig.model.effects.external_vibration import ExternalVibration
+from rig.model.effects.missed_counts import LOAD, MOTOR
 
-IN_SHORT = {
-    "external_vibration": "a torque on the load at a fixed frequency whatever the speed",
-    "missed_counts": "permanent steps in one encoder",
-}
-LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
+VIBRATION, LOST = EACH_RUN["external_vibration"], EACH_RUN["missed_counts"]
+IN_SHORT = {name: effect.in_short for name, effect in EACH_RUN.items()}
 ZOOM = 4  # finer than a run's own resolution
 WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
 APART = 5.0  # usual steps between two rows: something was left out there
@@ -27,11 +27,13 @@ EDGE = 3  # rows over which the low-pass spreads a step
 
 @dataclass(frozen=True)
 class Vibration:
-    """A line at one frequency in runs of differing speed: amplitude by channel (median over runs)."""
+    """A line at one frequency in runs of differing speed: amplitude by channel (median over runs), and half the 95 %
+    intervals of the frequency [Hz] and of the torque [N·m]."""
 
     frequency_hz: float
     amplitude: dict[str, float]
-    runs: int
+    half_hz: float
+    half_torque: float
 
     def of_the_load(self, stiffness: float) -> bool:
         """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too."""
@@ -40,28 +42,27 @@ class Vibration:
 
     def parameters(self) -> tuple[Parameter, ...]:
         """Frequency and amplitude."""
-        spread = 1.0 / np.sqrt(max(self.runs, 1))
-        size = self.amplitude.get("L", 0.0)
         return (
-            parameter("frequency", self.frequency_hz, 0.01, "Hz"),
-            parameter("torque_amplitude", size, 0.1 * size * spread, "N·m"),
+            parameter("frequency", self.frequency_hz, self.half_hz, "Hz"),
+            parameter("torque_amplitude", self.amplitude.get("L", 0.0), self.half_torque, "N·m"),
         )
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Rows of A where a run jumps, and by how much [rad]."""
+    """Rows of A where a run jumps, by how much [rad], and the encoder that lost the counts (`missed_counts.LOAD` …)."""
 
     rows: dict[int, tuple[int, ...]]
     sizes: dict[int, tuple[float, ...]]
+    side: float = LOAD
 
     def parameters(self) -> tuple[Parameter, ...]:
-        """Number of steps and their usual size."""
+        """Number of steps and their usual size at the output."""
         sizes = np.abs(np.concatenate([np.array(s) for s in self.sizes.values()]))
         half = 1.96 * float(np.std(sizes)) / np.sqrt(sizes.size)
         return (
             parameter("steps", float(sizes.size), 0.0, "1"),
-            parameter("step", float(np.median(sizes)), half, "rad"),
+            parameter(f"step_theta_{'m' if self.side == MOTOR else 'l'}", float(np.median(sizes)), half, "rad"),
         )
 
 
@@ -78,7 +79,7 @@ def find_vibration(eq: Equations, e: Mapping[Key, Array]) -> Vibration | None:
     if len(keys) < 3:
         return None
     top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
-    grid = np.arange(LOWEST, 0.98 * top, 0.02)
+    grid = np.arange(ExternalVibration.LOWEST, 0.98 * top, ExternalVibration.STEP)
     heights = np.array([_heights(clock(eq, k), e[k], grid) for k in keys])
     speed = np.array([eq.runs[k[0]].turning for k in keys])
     hits = heights > LINE
@@ -88,8 +89,7 @@ def find_vibration(eq: Equations, e: Mapping[Key, Array]) -> Vibration | None:
             return None
         hit = speed[hits[:, at]]
         if hit.max() > LINE_SPEEDS * hit.min():
-            frequency = _sharpened(eq, e, keys, float(grid[at]))
-            return Vibration(frequency, _amplitudes(eq, e, frequency), int(hits[:, at].sum()))
+            return _vibration(eq, e, keys, _sharpened(eq, e, keys, float(grid[at])))
     return None
 
 
@@ -127,7 +127,31 @@ def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about
     return best
 
 
+def _vibration(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], frequency: float) -> Vibration:
+    """Amplitudes and intervals at that frequency."""
+    columns = vibration_columns(eq, frequency)
+    sizes = {key: _size(e[key], columns[key], eq.rows[key].z) for key in keys if key in columns}
+    amplitude = _amplitudes(eq, e, frequency) | ({"L": float(np.median([*sizes.values()]))} if sizes else {})
+    spread = float(np.std([*sizes.values()])) / np.sqrt(max(1, len(sizes))) if sizes else 0.0
+    information = 0.0
+    for key in keys:
+        t, n = clock(eq, key), e[key].size
+        x = 2 * np.pi * frequency * t
+        wave = _size(e[key], np.stack([np.cos(x), np.sin(x)], 1), np.ones((n, 1)))
+        noise = max(float(np.var(e[key])) - wave**2 / 2, 1e-300) * eq.noise.kappa[key[1]]
+        information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
+    return Vibration(frequency, amplitude, 1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300))), 1.96 * spread)
+
+
+def _size(e: Array, columns: Array, beside: Array) -> float:
+    """Amplitude of the wave that two columns make of a residual, beside what the baseline makes of the same wave: an
+    inertia that was fitted without the vibration is off."""
+    z = np.hstack([columns, beside / np.maximum(np.abs(beside).max(0), 1e-300)])
+    return float(np.hypot(*np.linalg.lstsq(z, e, rcond=None)[0][:2]))
+
+
 def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict[str, float]:
+    """Median over runs, by channel, in its unit, with what the low-pass takes put back."""
     out = {}
     for channel in "AML":
         sizes = []
@@ -135,20 +159,16 @@ def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict
             t = clock(eq, key)
             sizes.append(2 * abs(np.exp(-2j * np.pi * frequency * t) @ e[key]) / e[key].size)
         if sizes:
-            sigma = 36.0 if not eq.runs else eq.runs[0].smoother.sigma_hz
-            out[channel] = float(np.median(sizes)) * float(
-                np.exp(0.5 * (frequency / sigma) ** 2)
-            )  # the low-pass undone
+            sigma = eq.runs[0].smoother.sigma_hz
+            out[channel] = float(np.median(sizes)) * float(np.exp(0.5 * (frequency / sigma) ** 2))
     return out
 
 
 def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
-    """Cosine and sine in every block, (n, 2)."""
-    out = {}
-    for key in eq.rows:
-        x = 2 * np.pi * frequency * clock(eq, key)
-        out[key] = np.stack([np.cos(x), np.sin(x)], 1)
-    return out
+    """Cosine and sine in every block in which a torque on the load shows, (n, 2)."""
+    runs = sorted({i for i, _ in eq.rows})
+    made = {i: eq.term(i, Term(VIBRATION, (frequency,))) for i in runs}
+    return {(i, c): m for i in runs for c, m in made[i].items() if np.any(m)}
 
 
 def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
@@ -165,7 +185,26 @@ def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
         if found:
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
-    return Steps(rows, sizes)
+    return Steps(rows, sizes, side_of(eq, e, rows))
+
+
+def side_of(eq: Equations, e: Mapping[Key, Array], rows: Mapping[int, Sequence[int]]) -> float:
+    """The encoder whose torque channel jerks at the jumps: a reading that jumps seems to accelerate its inertia."""
+    gone = dict.fromkeys((LOAD, MOTOR), 0.0)
+    for side, channel in ((LOAD, "L"), (MOTOR, "M")):
+        for run, at in rows.items():
+            made = _columns(eq, run, at, side).get(channel)
+            if made is not None and (run, channel) in e and np.any(made):
+                basis = orthonormal(eq.without_offset((run, channel), made))
+                gone[side] += float(np.sum((basis.T @ e[run, channel]) ** 2)) * eq.noise.weight(channel)
+    return max(gone, key=lambda side: gone[side])
+
+
+def _columns(eq: Equations, run: int, rows: Sequence[int], side: float) -> dict[str, Array]:
+    """One column a jump in each channel of a run, (n, jumps)."""
+    t = clock(eq, (run, "A"))
+    made = [eq.term(run, Term(LOST, (side, 0.5 * (t[at] + t[max(at - 1, 0)])))) for at in rows]
+    return {c: np.hstack([m[c] for m in made]) for c in made[0]} if made else {}
 
 
 def _onward(eq: Equations, key: Key) -> Array:
@@ -227,12 +266,9 @@ def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -
 
 
 def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
-    """One column a jump in A, 0 before and 1 after it, (n, jumps)."""
-    out = {}
-    for run, rows in steps.rows.items():
-        n = eq.rows[run, "A"].y.size
-        out[run, "A"] = (np.arange(n)[:, None] >= np.array(rows)).astype(float)
-    return out
+    """One column a jump in every channel it shows in, (n, jumps)."""
+    made = {run: _columns(eq, run, rows, steps.side) for run, rows in steps.rows.items()}
+    return {(run, c): m for run, columns in made.items() for c, m in columns.items() if np.any(m)}
 
 
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:

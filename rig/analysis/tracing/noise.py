@@ -13,6 +13,7 @@ from rig.analysis.tracing.equations import Equations, Key, Noise
 from rig.analysis.tracing.floor import (
     Scatter,
     autocorrelation,
+    beside_a_row,
     compare,
     effective,
     repeats,
@@ -26,6 +27,7 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
+FEW = 25  # rows to compare: fewer have no spread worth the name
 STAYS = 0.1  # of the rows of a locked run: fewer are left where it was read stay by stay
 
 
@@ -130,14 +132,29 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
     if len(parts) >= 3:
         made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
     else:
-        made = [
-            compare(theta[p] - TURN * np.sign(theta[p][-1] - theta[p][0]), e[key][p], theta[p], e[key][p])
-            for p in parts
-        ]
+        made = [against_both(theta[p], e[key][p]) for p in parts]
     d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
     if d.size < FLOOR_LEAST / 4:
         return None
     return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d))
+
+
+def against_both(theta: Array, e: Array) -> Array:
+    """Differences of every row of one stroke to the mean of a motor turn before and one after, as if of one run; (n,).
+
+    What the output or the load does within a motor turn is nearly straight, and goes out.
+    """
+    x = np.maximum.accumulate(np.abs(theta - theta[0])) if theta.size else theta
+    inside = (x > TURN) & (x < x[-1:].sum() - TURN)
+    inside &= beside_a_row(x - TURN, x) & beside_a_row(x + TURN, x) if x.size > 1 else False
+    at = x[inside]
+    if at.size <= FEW:
+        return np.zeros(0)
+    both = 0.5 * (np.interp(at - TURN, x, e) + np.interp(at + TURN, x, e))
+    d = e[inside] - both
+    rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))
+    # interpolation between two rows of correlation rho leaves 2/3 + rho/3 of their variance, the mean of two half of it
+    return np.asarray(d / np.sqrt(1 + (2 / 3 + rho / 3) / 2))
 
 
 def floor_of(measured: Measured, eq: Equations, key: Key) -> float:

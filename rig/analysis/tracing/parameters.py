@@ -22,8 +22,6 @@ PLAIN = {
     "tau_cl": "N·m",
     "lag": "s",
 }
-TOGETHER = (("B_m", "B_ml"), ("B_l", "B_ml"))
-"""Viscous terms of equations 6 and 7 that stand before the same speed: what is given is B_m + B_ml, and B_l with it."""
 
 
 def baseline(s: Solution) -> tuple[Parameter, ...]:

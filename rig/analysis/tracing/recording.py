@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from rig.analysis.source import Motion, motion_of
 from rig.analysis.tracing.smoothing import Smoother, flat, flat_rate, thin
@@ -16,6 +17,7 @@ from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
+GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -38,6 +40,11 @@ class Recording:
     thinned: int  # rows of the file per row at the working rate
     noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
+
+    @property
+    def knows(self) -> frozenset[str]:
+        """Channels that are measured, or need not be: a locked output rests."""
+        return self.has | {"theta_l"} if self.locked else self.has
 
     @property
     def duration(self) -> float:
@@ -81,7 +88,7 @@ def record(run: Run, start: float) -> Recording:
         name=run.name,
         procedure=run.procedure,
         said=f"{run.procedure} {sorted((k, v) for k, v in run.conditions.items() if k != 'note')}",
-        locked=bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock",
+        locked=is_locked(run),
         start=start,
         ratio=run.ratio,
         pieces=tuple(piece for piece in made if piece is not None),
@@ -117,17 +124,19 @@ def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tu
     """Rows lo..hi without a gap or a new encoder reference between them."""
     cuts = set(motion.breaks if motion else ())
     if steady:
-        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > 1.8 * dt)}
+        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > GAP * dt)}
     edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
     return [(lo, hi) for lo, hi in itertools.pairwise(edges) if hi - lo > 50]
 
 
 def _uniform(t: Array, x: Array, dt: float) -> Array:
-    """`x` on a uniform grid of `dt`; left alone when it already is."""
+    """`x` on a uniform grid of `dt`; left alone when it already is. Cubic: a straight line between rows 4 ms apart
+    takes 6 % from an order at 27 Hz, a cubic 0.2 %."""
     even = t[0] + dt * np.arange(t.size)
     if np.max(np.abs(t - even)) < 0.02 * dt:
         return x
-    return np.interp(np.arange(t[0], t[-1], dt), t, x)
+    grid = np.arange(t[0], t[-1], dt)
+    return np.asarray(CubicSpline(t, x)(grid)) if np.isfinite(x).all() else np.interp(grid, t, x)
 
 
 def _piece(
@@ -157,7 +166,7 @@ def _piece(
         tau_ext=np.full(n, tau_ext),
         way=direction(smooth.same(c["theta_m"], 1), smooth.dt),
         temperature=c["temperature"],
-        gear=UNKNOWN,
+        gear=believed(run),
         **derived,
     )
 
@@ -165,16 +174,28 @@ def _piece(
 def _substituted(c: Mapping[str, Array], dt: float, run: Run, tau_ext: float) -> dict[str, Array]:
     """Stand-ins for readings that are not there, so that columns have something to lean on.
 
-    The shaft torque of a free load is what its declared inertia and weight take; the motor angle is the load's times N.
+    The shaft torque of a free load is what its declared inertia and weight take; one angle is the other's times N, and
+    a locked output rests.
     """
     out = dict(c)
     if not np.isfinite(out["theta_m"]).any():
         out["theta_m"] = out["theta_l"] * run.ratio
-    locked = bool(run.conditions.get("output_locked"))
-    if not np.isfinite(out["tau_l"]).any() and np.isfinite(out["theta_l"]).any() and not locked:
-        inertia = float(run.declared.get("J_l") or UNKNOWN.J_l)
-        out["tau_l"] = inertia * flat_rate(out["theta_l"], dt, 2) - tau_ext
+    if not np.isfinite(out["theta_l"]).any():
+        out["theta_l"] = np.zeros_like(out["theta_m"]) if is_locked(run) else out["theta_m"] / run.ratio
+    if not np.isfinite(out["tau_l"]).any() and not is_locked(run):
+        out["tau_l"] = believed(run).J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
     return out
+
+
+def is_locked(run: Run) -> bool:
+    """Whether the output is held."""
+    return bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock"
+
+
+def believed(run: Run) -> Known:
+    """The gear as declared, to begin with; a paper-sized one where nothing is."""
+    said = {name: float(run.declared.get(name) or getattr(UNKNOWN, name)) for name in ("K", "J_m", "J_l")}
+    return replace(UNKNOWN, K=said["K"], J_m=said["J_m"], J_l=said["J_l"])
 
 
 def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
@@ -220,5 +241,8 @@ def direction(omega: Array, dt: float) -> Array:
     """−1 or 1 while it slides, 0 around every reversal and stop; (n,)."""
     sign = np.where(np.abs(omega) > SLOWEST_TURNING, np.sign(omega), 0.0)
     width = max(1, round(SETTLING / dt))
-    rest = np.convolve((sign == 0) | (np.diff(sign, prepend=sign[:1]) != 0), np.ones(2 * width + 1), mode="same") > 0.5
-    return np.where(rest, 0.0, sign)
+    turns = np.flatnonzero((sign == 0) | (np.diff(sign, prepend=sign[:1]) != 0))
+    edges = np.zeros(omega.size + 1)
+    np.add.at(edges, np.maximum(turns - width, 0), 1.0)
+    np.add.at(edges, np.minimum(turns + width + 1, omega.size), -1.0)
+    return np.where(np.cumsum(edges[:-1]) > 0, 0.0, sign)

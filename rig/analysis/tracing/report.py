@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rig.analysis.tracing import parameters
+from rig.analysis.tracing.cannot import cannot, together
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.curves import curves
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import errors
+from rig.analysis.tracing.free import curves_of, free, with_free
 from rig.analysis.tracing.judge import Worth, unseen
 from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
@@ -50,6 +52,7 @@ def report(
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+    simulated = free(p, empty, s)
     words = p.own.parameters | dict(fitted)
     return Trace(
         campaign=p.campaign.name,
@@ -64,7 +67,7 @@ def report(
         ),
         baseline=parameters.baseline(empty),
         baseline_after=parameters.baseline(s),
-        cannot_be_told_apart=parameters.TOGETHER,
+        cannot_be_told_apart=together(p.campaign.runs),
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
@@ -74,28 +77,13 @@ def report(
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
         ),
-        before=errors(p.eq, p.court, before),
-        after=errors(p.eq, p.court, final),
+        before=with_free(errors(p.eq, p.court, before), simulated, 0),
+        after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
         notes=p.campaign.notes,
-        cannot=(*ruling.cannot, *absent(p)),
-        curves=curves(p, before, final) | pictures(p, before, final),
+        cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
+        curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
     )
-
-
-def absent(p: Prepared) -> tuple[str, ...]:
-    """What cannot be told for want of a channel."""
-    has = frozenset().union(*(run.has for run in p.campaign.runs))
-    return tuple(sentence for channel, sentence in WITHOUT.items() if channel not in has)
-
-
-WITHOUT = {
-    "t": "No run has a time column: speeds, inertias and damping have no scale; 250 rows a second were assumed.",
-    "theta_m": "No motor angle: neither the kinematic error nor the motor's torque balance can be looked at.",
-    "theta_l": "No load angle: the kinematic error, the stiffness and the load's torque balance cannot be looked at.",
-    "tau_l": "No shaft torque: it was taken from the declared load inertia; sensor effects of it cannot be seen.",
-    "tau_m": "No motor torque: friction and torque ripple of the motor side cannot be seen.",
-}
 
 
 def own_shares(p: Prepared, s: Solution) -> dict[str, float]:

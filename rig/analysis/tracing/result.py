@@ -58,6 +58,7 @@ class Errors:
     floor_kinematic_error_arcsec: float | None = None
     floor_tau_m: float | None = None
     floor_tau_l: float | None = None
+    free_kinematic_error_rms_arcsec: float | None = None  # of a simulation led by the motor's motion alone
 
 
 @dataclass(frozen=True)

@@ -81,8 +81,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     s = fit(design(eq, (), parts.fitted))
     measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
-    if s.value("compliance") > 0:
-        eq = eq.knowing(known_of(s.values))
+    eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
     own = find(fit(design(eq, (), parts.fitted)), parts)
     with_own = replace(eq, own=own.columns())
     s = fit(design(with_own, (), parts.fitted))

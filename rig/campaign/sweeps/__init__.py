@@ -11,6 +11,7 @@ from rig.campaign.plan import StepSection
 CATALOGUE: dict[str, str] = {
     "load-sweep": "rig.campaign.sweeps.load_sweep:LoadSweep",
     "assembly-sweep": "rig.campaign.sweeps.assembly_sweep:AssemblySweep",
+    "identify": "rig.campaign.sweeps.identify:Identify",
 }
 
 

@@ -13,7 +13,8 @@ How to write one: subclass `Effect` (rig/model/effect.py), `name` as the file, a
 - `parameters(fit)`: coefficients as the field names them, with unit and 95 % interval (`harmonic`, `parameter`).
 - `plausible(fit)`: signs that must hold (friction opposes motion).
 
-Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member.
+Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member. Effects whose coefficients every run has
+to itself (`each_run`) stand in EACH_RUN: they are looked for run by run, not in the search over shared coefficients.
 """
 
 from __future__ import annotations
@@ -23,12 +24,14 @@ from rig.model.effects.angle_dependent_stiffness import AngleDependentStiffness
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.cogging_torque import CoggingTorque
 from rig.model.effects.encoder_interpolation_error import EncoderInterpolationError
+from rig.model.effects.external_vibration import ExternalVibration
 from rig.model.effects.flexspline_frame_error import FlexsplineFrameError
 from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import LoadDependentKinematicError
 from rig.model.effects.lost_motion import LostMotion
+from rig.model.effects.missed_counts import MissedCounts
 from rig.model.effects.motor_encoder_eccentricity import MotorEncoderEccentricity
 from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
@@ -71,3 +74,6 @@ CATALOGUE: dict[str, Effect] = {
         SupportCompliance(),
     )
 }
+
+EACH_RUN: dict[str, Effect] = {effect.name: effect for effect in (ExternalVibration(), MissedCounts())}
+LIBRARY: dict[str, Effect] = CATALOGUE | EACH_RUN

@@ -23,6 +23,7 @@ class ChannelTimeSkew(Effect):
     name: ClassVar[str] = "channel_time_skew"
     in_short: ClassVar[str] = "one channel read later than another"
     source: ClassVar[str] = "ghorbel2001"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("side", "about")  # about: s, the skew the expansion is made at
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     LARGEST: Final = 7e-3  # s, a quarter of a period at 36 Hz

@@ -19,6 +19,7 @@ class MotorEncoderEccentricity(Effect):
     name: ClassVar[str] = "motor_encoder_eccentricity"
     in_short: ClassVar[str] = "once per motor turn, never amplified by the dynamics"
     source: ClassVar[str] = "ghorbel2001"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """None: once per turn."""

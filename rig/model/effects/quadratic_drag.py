@@ -16,6 +16,7 @@ class QuadraticDrag(Effect):
     name: ClassVar[str] = "quadratic_drag"
     in_short: ClassVar[str] = "drag with the square of speed"
     source: ClassVar[str] = "wolf2018"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("exponent",)
     loose: ClassVar[tuple[bool, ...]] = (True,)
     EXPONENTS: Final = (1.6, 2.0, 2.6)

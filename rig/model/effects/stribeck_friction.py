@@ -16,6 +16,7 @@ class StribeckFriction(Effect):
     name: ClassVar[str] = "stribeck_friction"
     in_short: ClassVar[str] = "friction falls with speed near rest"
     source: ClassVar[str] = "armstrong1994"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
     loose: ClassVar[tuple[bool, ...]] = (True, True)
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows

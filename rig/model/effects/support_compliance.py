@@ -20,6 +20,7 @@ class SupportCompliance(Effect):
     name: ClassVar[str] = "support_compliance"
     in_short: ClassVar[str] = "the housing moves"
     source: ClassVar[str] = "ghorbel2001"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("frequency", "zeta")
     loose: ClassVar[tuple[bool, ...]] = (True, True)
     LOWEST: Final = 15.0  # Hz

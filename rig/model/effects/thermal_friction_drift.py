@@ -19,6 +19,7 @@ class ThermalFrictionDrift(Effect):
     name: ClassVar[str] = "thermal_friction_drift"
     in_short: ClassVar[str] = "friction falls as the drive warms"
     source: ClassVar[str] = "wolf2018"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("t_w",)
     loose: ClassVar[tuple[bool, ...]] = (True,)
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min

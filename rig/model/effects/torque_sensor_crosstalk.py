@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -16,6 +16,8 @@ class TorqueSensorCrosstalk(Effect):
     name: ClassVar[str] = "torque_sensor_crosstalk"
     in_short: ClassVar[str] = "once or twice per output turn in the torque sensor alone"
     source: ClassVar[str] = "taghirad1999"
+    LARGEST: Final = 3e-4  # rad times K: 2 N·m in the paper's gear, whose sensor reaches some 100 N·m
+    needs: ClassVar[frozenset[str]] = frozenset({"tau_l"})
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
 
@@ -31,3 +33,8 @@ class TorqueSensorCrosstalk(Effect):
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""
         return harmonic(fit, f"order_{fit.shape[0]:g}", "N·m")
+
+    def plausible(self, fit: Fit) -> bool:
+        """No larger than what winds the gear up by LARGEST: sensors have tenths of a per cent of crosstalk, and what
+        is much larger and turns with the output is its weight."""
+        return bool(np.hypot(*fit.coefficients[:2]) < self.LARGEST * fit.known.K)

@@ -21,6 +21,7 @@ class TorsionalMode(Effect):
     name: ClassVar[str] = "torsional_mode"
     in_short: ClassVar[str] = "a second resonance beyond the gear's own"
     source: ClassVar[str] = "ghorbel2001"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta")
     loose: ClassVar[tuple[bool, ...]] = (False, True, True)
     LOWEST: Final = 20.0  # Hz

@@ -39,9 +39,11 @@ PARAMETERS = {  # of the baseline: symbol, what it is
     "B_m": ("B_m", "viscous friction, motor side"),
     "B_ml": ("B_ml", "viscous friction of the mesh"),
     "tau_c": ("τ_c", "constant friction, motor side"),
+    "tau_0": ("τ_0", "zero of the motor torque"),
     "J_l": ("J_l", "inertia, load side"),
     "B_l": ("B_l", "viscous friction, load side"),
     "tau_cl": ("τ_cl", "constant friction, load side"),
+    "tau_l0": ("z", "zero of the torque sensor"),
     "lag": ("δ", "lag of the torque sensor"),
 }
 

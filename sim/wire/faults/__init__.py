@@ -27,7 +27,7 @@ def fault_verbs(
     assembly: Assembly, reactor: Reactor, lines: Mapping[str, SerialLine], sensors: Mapping[str, Sensor]
 ) -> dict[str, Verb]:
     """All of them; `lines` and `sensors` are those of the serial devices there are."""
-    groups = (BusFaults(assembly), NodeFaults(assembly), LineFaults(lines), SensorFaults(assembly, sensors))
+    groups = (BusFaults(assembly.bus), NodeFaults(assembly), LineFaults(lines), SensorFaults(assembly, sensors))
     found: dict[str, Verb] = {}
     for group in groups:
         found |= {name: getattr(group, name) for name in dir(group) if not name.startswith("_") and name != "heal"}

@@ -6,8 +6,7 @@ import math
 from typing import final
 
 from rig.core.errors import UsageError
-from sim.wire.assembly import Assembly
-from sim.wire.bus import Port, Tamper
+from sim.wire.bus import Bus, Port, Tamper
 from sim.wire.faults.words import Number, number
 from sim.wire.frame import ERROR, EXTENDED, Frame
 from sim.wire.tampers import Delay, Drop, Duplicate, Reorder, Resize
@@ -20,8 +19,8 @@ BUS_OFF = Frame(ERROR | 0x40, bytes(8))  # CAN_ERR_BUSOFF of linux/can/error.h
 class BusFaults:
     """Of the wire: tampering with frames, cables, stations that should not be there."""
 
-    def __init__(self, assembly: Assembly) -> None:
-        self._bus = assembly.bus
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
         self._ghosts: list[Port] = []
 
     def heal(self) -> None:

@@ -200,7 +200,7 @@ def test_raw_counts_may_have_a_column_of_their_own(foreign: Foreign) -> None:
 
 
 def test_verify_and_list_take_an_imported_run(foreign: Foreign) -> None:
-    from rig.runfile.listing import list_runs
+    from rig.catalogue import runs as list_runs
     from rig.runfile.verify import verify
 
     run = foreign.imported(foreign.file())

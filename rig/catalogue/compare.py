@@ -1,0 +1,205 @@
+"""Runs side by side: every figure with its interval, its difference to the first run, and whether that is a change."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from rig.catalogue.figures import Figure, figures
+from rig.catalogue.repeats import COUNTS, Repeats
+from rig.catalogue.row import UNREADABLE, Row, finite
+from rig.catalogue.sameness import mounting, point
+from rig.catalogue.scan import row, rows
+from rig.catalogue.scatter import SHARE, Scatter, between
+from rig.core.errors import UsageError
+
+DATE = "2026-11-20"  # how folders by date are named
+
+
+class Mark(StrEnum):
+    """What a difference amounts to."""
+
+    CHANGED = "changed"  # larger than reproducibility, and its interval excludes zero
+    WITHIN = "within"
+    UNKNOWN = "unknown"  # no repeats to judge by
+    NONE = ""  # nothing to compare, or not to be compared
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A later run's figure less the first run's."""
+
+    value: float
+    low: float  # of the 95 % interval, from the intervals of both runs [gum]; NaN where one has none
+    high: float
+    limit: float  # reproducibility: what two unchanged runs differ by at most, 99 times of 100; NaN when not known
+    mark: Mark
+    how: str  # how reproducibility was estimated
+
+
+@dataclass(frozen=True)
+class Line:
+    """One figure over all runs; None where a run has none."""
+
+    name: str
+    label: str
+    unit: str
+    values: tuple[Figure | None, ...]
+    differences: tuple[Difference | None, ...]  # one per run; None for the first
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Runs side by side, the first of them the one the others are compared with."""
+
+    rows: tuple[Row, ...]
+    lines: tuple[Line, ...]
+    remarks: tuple[str, ...]  # what stands in the way of a fair comparison, one sentence each
+
+    def as_json(self) -> dict[str, Any]:
+        """Schema hdrig.comparison/1; numbers that are not finite as null."""
+        return {
+            "schema": "hdrig.comparison/1",
+            "runs": [row.as_json() for row in self.rows],
+            "remarks": list(self.remarks),
+            "marked_at": SHARE,
+            "figures": [
+                {
+                    "name": line.name,
+                    "label": line.label,
+                    "unit": line.unit,
+                    "values": [_figure(f) for f in line.values],
+                    "differences": [_difference(d) for d in line.differences],
+                }
+                for line in self.lines
+            ],
+        }
+
+
+def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
+    """Compare the runs in `paths` with the first of them. Repeats are looked for under `root`, or where the runs lie.
+
+    Raises UsageError for fewer than two runs, a path that is none, or a result that is damaged.
+    """
+    if len(paths) < 2:
+        raise UsageError("comparing needs at least two runs")
+    found = tuple(_run(path) for path in paths)
+    known = [figures(one.path) for one in found]
+    repeats = Repeats(rows(str(root or _home(paths))))
+    names = list(dict.fromkeys(name for one in known for name in one))
+    lines = tuple(_line(name, found, known, repeats) for name in names)
+    return Comparison(found, lines, tuple(_remarks(found, known)))
+
+
+def _run(path: Path) -> Row:
+    if not path.is_dir():
+        raise UsageError(f"{path} is no run folder")
+    found = row(path)
+    if found.status == UNREADABLE:
+        raise UsageError(found.problem)
+    return found
+
+
+def _home(paths: Sequence[Path]) -> Path:
+    """The folder that holds the runs, their repeats beside them: of folders by date the one above."""
+    parents = [path.resolve().parent for path in paths]
+    common = next(p for p in (parents[0], *parents[0].parents) if all(q.is_relative_to(p) for q in parents))
+    return common.parent if len(common.name) == len(DATE) and common.name.replace("-", "").isdigit() else common
+
+
+def _line(name: str, found: Sequence[Row], known: Sequence[Mapping[str, Figure]], repeats: Repeats) -> Line:
+    values = tuple(one.get(name) for one in known)
+    shown = next(v for v in values if v is not None)
+    differences = [_between(name, found[0], values[0], r, v, repeats) for r, v in zip(found, values, strict=True)]
+    return Line(name, shown.label, shown.unit, values, (None, *differences[1:]))
+
+
+def _between(name: str, a: Row, x: Figure | None, b: Row, y: Figure | None, repeats: Repeats) -> Difference | None:
+    """b less a; None where either has no number, they have different units, or one does not count."""
+    if x is None or y is None or x.unit != y.unit or x.rejected or y.rejected or not math.isfinite(x.value + y.value):
+        return None
+    value = y.value - x.value
+    # each end from the two ends of the runs that face it: intervals need not be even
+    low = value - math.hypot(y.value - y.low, x.high - x.value)
+    high = value + math.hypot(y.high - y.value, x.value - x.low)
+    of_a, of_b = _scatters(name, a, b, repeats)
+    limit = of_a.limit() if point(a) == point(b) else between(of_a, of_b)
+    mark = Mark.NONE if _counted(x) and _counted(y) else _mark(value, low, high, limit)
+    return Difference(value, low, high, limit, mark, _how(a, b, of_a, of_b, x.unit))
+
+
+def _counted(f: Figure) -> bool:
+    """Revolutions, terms: they say what was done, and no gear changes by them."""
+    return f.low == f.value == f.high
+
+
+def _scatters(name: str, a: Row, b: Row, repeats: Repeats) -> tuple[Scatter, Scatter]:
+    """Of both kinds of run. Two runs that are repeats of each other do not judge themselves."""
+    same = point(a) == point(b) and mounting(a) == mounting(b)
+    without = (a.path, b.path) if same else ()
+    of_a = repeats.scatter(point(a), name, without)
+    return of_a, of_a if point(a) == point(b) else repeats.scatter(point(b), name)
+
+
+def _mark(value: float, low: float, high: float, limit: float) -> Mark:
+    if math.isnan(limit):
+        return Mark.UNKNOWN
+    if low <= 0.0 <= high:  # false for NaN: without an interval the limit alone decides
+        return Mark.WITHIN
+    return Mark.CHANGED if abs(value) > limit else Mark.WITHIN
+
+
+def _how(a: Row, b: Row, of_a: Scatter, of_b: Scatter, unit: str) -> str:
+    if point(a) == point(b):
+        return of_a.words(unit)
+    return f"first run: {of_a.words(unit)}; other run: {of_b.words(unit)}"
+
+
+def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> list[str]:
+    first, said = found[0], []
+    for other in found[1:]:
+        if other.gear != first.gear:
+            said.append(f"{other.path.name} is of gear {other.gear or '?'}, {first.path.name} of {first.gear or '?'}")
+        if other.simulated != first.simulated:
+            said.append(f"one of {first.path.name} and {other.path.name} is simulated, the other is not")
+        if point(other)[1:] != point(first)[1:]:
+            said.append(
+                f"{other.path.name} was not taken at the conditions of {first.path.name}: {_unlike(first, other)}"
+            )
+    for one, names in zip(found, known, strict=True):
+        if one.status not in COUNTS:
+            said.append(f"{one.path.name} is {one.status}: its figures are from what was recorded")
+        if not names:
+            said.append(f"{one.path.name} has no figures; hdrig analyse makes them")
+    return said
+
+
+def _unlike(a: Row, b: Row) -> str:
+    """Procedure and conditions that differ, as "speed_rpm 9.6 and 300"."""
+    pairs = {"procedure": (a.procedure, b.procedure)}
+    for key in [*a.conditions, *(k for k in b.conditions if k not in a.conditions)]:
+        if key not in ("note", "assembly"):
+            pairs[key] = (a.conditions.get(key, "–"), b.conditions.get(key, "–"))
+    return ", ".join(f"{key} {x} and {y}" for key, (x, y) in pairs.items() if x != y) or "their kind"
+
+
+def _figure(f: Figure | None) -> dict[str, Any] | None:
+    if f is None:
+        return None
+    return {"value": finite(f.value), "ci95": [finite(f.low), finite(f.high)], "rejected": f.rejected}
+
+
+def _difference(d: Difference | None) -> dict[str, Any] | None:
+    if d is None:
+        return None
+    return {
+        "value": finite(d.value),
+        "ci95": [finite(d.low), finite(d.high)],
+        "reproducibility": finite(d.limit),
+        "mark": str(d.mark) or None,
+        "how": d.how,
+    }

@@ -1,0 +1,74 @@
+"""Which runs measure the same thing, and which of those were taken without anybody touching the rig in between."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, NamedTuple
+
+from rig.catalogue.row import Row
+
+NOT_THE_POINT = ("note", "assembly")  # conditions that do not change what is measured
+SAID = {
+    "speed_rpm": "{:g} rpm",
+    "tau_ext": "{:+g} N·m",
+    "depth_mm": "depth {:g} mm",
+    "tau_max": "up to {:g} N·m",
+}
+
+
+class Point(NamedTuple):
+    """Gear, procedure and operating point: runs of the same are comparable."""
+
+    gear: str
+    procedure: str
+    simulated: bool  # the twin and a real gear never are
+    conditions: str  # canonical
+
+
+class Mounting(NamedTuple):
+    """One assembly of the rig: a number within its campaign or, outside of one, within its day (UTC)."""
+
+    within: str
+    assembly: str
+
+
+def point(row: Row) -> Point:
+    """What `row` measures, and at which conditions."""
+    kept = {key: value for key, value in row.conditions.items() if key not in NOT_THE_POINT}
+    return Point(row.gear, row.procedure, row.simulated, json.dumps(_rounded(kept), sort_keys=True, default=str))
+
+
+def mounting(row: Row) -> Mounting:
+    """When two runs share it, nobody took the rig apart between them."""
+    assembly = row.conditions.get("assembly", "")
+    return Mounting(row.campaign or row.started_utc[:10], json.dumps(assembly, default=str))
+
+
+def words(at: Point) -> str:
+    """For people: "kinematic-error, 9.6 rpm, +5 N·m"."""
+    conditions = json.loads(at.conditions)
+    parts = [at.procedure.replace("_", "-")]
+    for key, value in conditions.items():
+        match value:
+            case bool():
+                parts += ["locked"] if key == "output_locked" and value else [] if key == "output_locked" else [key]
+            case int() | float() if key in SAID:
+                parts += [SAID[key].format(value)] if value or key == "speed_rpm" else []
+            case int() | float():
+                parts.append(f"{key} {value:g}")
+    return ", ".join(parts)
+
+
+def _rounded(value: Any) -> Any:
+    """Numbers to six digits: 0.1 + 0.2 and 0.3 are one speed."""
+    match value:
+        case bool() | str() | None:
+            return value
+        case int() | float():
+            return float(f"{value:.6g}")
+        case list():
+            return [_rounded(v) for v in value]
+        case dict():
+            return {k: _rounded(v) for k, v in value.items()}
+        case _:
+            return str(value)

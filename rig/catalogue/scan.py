@@ -1,0 +1,54 @@
+"""Every run below a folder, from its manifest alone; a damaged manifest is a row that says what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from rig.catalogue.filter import ALL, Filter
+from rig.catalogue.remembered import Remembered
+from rig.catalogue.row import UNREADABLE, Row, row_of
+from rig.core.errors import UsageError
+from rig.runfile import manifest
+from rig.runfile.listing import run_folders
+from rig.runfile.process import is_being_made
+
+RUNNING = "running"
+
+
+def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
+    """The runs under `root`, in folders by date or side by side, that pass the filter, in its order.
+
+    Raises UsageError without such a folder.
+    """
+    if not Path(root).is_dir():
+        raise UsageError(f"there is no folder {root}; give the folder that holds the runs")
+    return filter.of(rows(str(root)))
+
+
+def rows(root: str) -> Iterator[Row]:
+    """Every run under `root` as the disk has it."""
+    return (row(folder) for folder in run_folders(root))
+
+
+def row(folder: Path | str) -> Row:
+    """The run in `folder`; never raises."""
+    found, process = _read(f"{folder}/{manifest.NAME}")
+    if found.status == RUNNING and not is_being_made(process):  # asked each time: it may have died since
+        why = found.reason or "found dead; hdrig recover makes it readable"
+        return replace(found, status="interrupted", reason=why)
+    return found
+
+
+def _fresh(path: str) -> tuple[Row, dict[str, Any]]:
+    folder = Path(path).parent
+    try:
+        about = manifest.read(folder)
+    except UsageError as error:
+        return Row(folder, status=UNREADABLE, problem=str(error)), {}
+    return row_of(folder, about), {"process": about.get("process")}
+
+
+_read = Remembered(_fresh)

@@ -1,0 +1,174 @@
+"""One figure over days and assemblies, with a mark where it changed by more than its repeats scatter."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rig.catalogue.figures import Figure, figures, names_of, refuse_unknown
+from rig.catalogue.filter import Filter
+from rig.catalogue.repeats import figure_of
+from rig.catalogue.row import Row, finite
+from rig.catalogue.sameness import Mounting, Point, mounting, point, words
+from rig.catalogue.scan import runs
+from rig.catalogue.scatter import SHARE, Scatter, scatter
+from rig.core.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Spot:
+    """One run in a trend."""
+
+    row: Row
+    figure: Figure
+    assembly: int  # 1, 2, … in order of time; the same number: nobody took the rig apart between the runs
+    level: float  # mean of the runs before it since the last change; NaN for the first
+    limit: float  # how far from that level a run of an unchanged gear stays, 99 times of 100; NaN when not known
+    changed: bool
+
+
+@dataclass(frozen=True)
+class Series:
+    """Runs of one gear, procedure and operating point, in order of time."""
+
+    gear: str
+    procedure: str
+    simulated: bool
+    title: str
+    label: str  # of the figure
+    unit: str
+    spots: tuple[Spot, ...]
+    scatter: Scatter
+
+    @property
+    def sentence(self) -> str:
+        """What was seen, and by which measure."""
+        marked = [s for s in self.spots if s.changed]
+        if not self.scatter.known:
+            return f"changes cannot be judged, {self.scatter.words(self.unit)}"
+        seen = "no change larger than reproducibility"
+        if marked:
+            when = ", ".join(
+                f"{s.row.started_utc[:10]} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1")
+                for s in marked
+            )
+            seen = f"{len(marked)} change{'s' if len(marked) > 1 else ''} larger than reproducibility: {when}"
+        return f"{seen}; {self.scatter.words(self.unit)}"
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.3g}".replace("-", "−")
+
+
+@dataclass(frozen=True)
+class Trend:
+    """One figure of a catalogue of runs."""
+
+    figure: str
+    series: tuple[Series, ...]
+    left_out: int  # runs that have the figure and do not count: not completed, or rejected
+
+    def as_json(self) -> dict[str, Any]:
+        """Schema hdrig.trend/1; numbers that are not finite as null."""
+        return {
+            "schema": "hdrig.trend/1",
+            "figure": self.figure,
+            "left_out": self.left_out,
+            "marked_at": SHARE,
+            "series": [
+                {
+                    "gear": s.gear,
+                    "procedure": s.procedure,
+                    "simulated": s.simulated,
+                    "title": s.title,
+                    "label": s.label,
+                    "unit": s.unit,
+                    "scatter": {"sd": finite(s.scatter.sd), "dof": s.scatter.dof, "repeats": s.scatter.repeats,
+                                "assemblies": s.scatter.sets, "how": s.scatter.words(s.unit)},
+                    "sentence": s.sentence,
+                    "points": [_spot(p) for p in s.spots],
+                }
+                for s in self.series
+            ],
+        }  # fmt: skip
+
+
+def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
+    """`figure` (peak-to-peak, C_2, K1, hysteresis-loss, friction, or the name of an estimate) of every run under `root`
+    that was completed; `gear` is a serial, * and ? stand for anything.
+
+    Raises UsageError without such a folder, or when none of its runs has the figure.
+    """
+    found = runs(root, Filter(gear=gear))
+    kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
+    for row in found:
+        one = figure_of(row, names_of(figure))
+        if one is not None:
+            kept[point(row), one.name].append((row, one))
+    if not kept:
+        refuse_unknown(figure, _seen(found))
+    series = tuple(_series(at, members) for (at, _), members in kept.items())
+    return Trend(figure, series, _left_out(found, figure) - sum(len(s.spots) for s in series))
+
+
+def _seen(found: Sequence[Row]) -> set[str]:
+    return {name for row in found for name in _names(row)}
+
+
+def _left_out(found: Sequence[Row], figure: str) -> int:
+    wanted = set(names_of(figure))
+    return sum(1 for row in found if wanted & _names(row))
+
+
+def _names(row: Row) -> set[str]:
+
+    try:
+        return set(figures(row.path))
+    except UsageError:
+        return set()
+
+
+def _series(at: Point, members: Sequence[tuple[Row, Figure]]) -> Series:
+    sets: dict[Mounting, list[float]] = defaultdict(list)
+    for row, figure in members:
+        sets[mounting(row)].append(figure.value)
+    spread = scatter(sets.values())
+    numbers = {one: k + 1 for k, one in enumerate(sets)}
+    spots, since = [], [members[0]]
+    for k, (row, figure) in enumerate(members):
+        spot = _judged(row, figure, numbers[mounting(row)], [f for _, f in since], spread) if k else Spot(
+            row, figure, numbers[mounting(row)], math.nan, math.nan, False
+        )  # fmt: skip
+        spots.append(spot)
+        since = [(row, figure)] if spot.changed else [*since, (row, figure)] if k else since
+    last = members[-1][1]
+    title = f"{at.gear or 'gear without serial number'}, {words(at)}"
+    return Series(at.gear, at.procedure, at.simulated, title, last.label, last.unit, tuple(spots), spread)
+
+
+def _judged(row: Row, figure: Figure, assembly: int, before: Sequence[Figure], spread: Scatter) -> Spot:
+    """Against the mean of the runs since the last change, so that a slow drift is seen too, once it is large enough."""
+    n = len(before)
+    level, limit = sum(f.value for f in before) / n, spread.limit(1, n)
+    off = abs(figure.value - level)
+    halves = [f.half if math.isfinite(f.half) else 0.0 for f in before]
+    own = math.hypot(figure.half if math.isfinite(figure.half) else 0.0, math.sqrt(sum(h * h for h in halves)) / n)
+    return Spot(row, figure, assembly, level, limit, off > limit and off > own)
+
+
+def _spot(s: Spot) -> dict[str, Any]:
+    return {
+        "path": str(s.row.path),
+        "uid": s.row.uid or None,
+        "started_utc": s.row.started_utc or None,
+        "assembly": s.assembly,
+        "value": finite(s.figure.value),
+        "ci95": [finite(s.figure.low), finite(s.figure.high)],
+        "level": finite(s.level),
+        "reproducibility": finite(s.limit),
+        "changed": s.changed,
+    }

@@ -1,0 +1,107 @@
+"""hdrig compare RUN RUN…: figures side by side, and which of them changed by more than repeats scatter."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from rig.catalogue.compare import Comparison, Difference, Line, Mark, compare
+from rig.catalogue.figures import Figure
+from rig.catalogue.row import Row
+from rig.catalogue.sameness import point, words
+from rig.commands.list_ import say
+from rig.core.errors import NotReady
+from rig.runfile.manifest import told
+
+SHOWN = {
+    Mark.CHANGED: "CHANGED, more than reproducibility ({limit})",
+    Mark.WITHIN: "within reproducibility ({limit})",
+    Mark.UNKNOWN: "reproducibility not known",
+    Mark.NONE: "",
+}
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `hdrig compare`."""
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders; the others against the first")
+    parser.add_argument(
+        "--among", type=Path, metavar="FOLDER", help="where repeats are looked for; default: the folder the runs lie in"
+    )
+    parser.add_argument("--json", action="store_true", help="the comparison as JSON, schema hdrig.comparison/1")
+    parser.add_argument(
+        "--html", type=Path, metavar="FILE", help="a page of its own with the waveforms over one another as well"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Tables on stdout, or JSON; and the page."""
+    found = compare(args.runs, args.among)
+    if args.json:
+        print(json.dumps(found.as_json(), allow_nan=False, indent=1))
+    else:
+        for line in lines(found):
+            say(line)
+    if args.html is not None:
+        from rig.report.comparison.page import write
+
+        with told(NotReady, f"{args.html} cannot be written"):
+            write(args.html, found)
+        if not args.json:
+            print(f"page {args.html}")
+    return 0
+
+
+def lines(found: Comparison) -> list[str]:
+    """The comparison for a terminal."""
+    out = [f"{k + 1}  {named(row)}" for k, row in enumerate(found.rows)]
+    out += [f"note: {remark}" for remark in found.remarks]
+    for line in found.lines:
+        out += ["", line.label, *_of_runs(line)]
+    return [*out, "", *_how(found)]
+
+
+def named(row: Row) -> str:
+    """A run in one line."""
+    mark = "SIMULATED " if row.simulated else ""
+    return f"{mark}{row.path.name}  {words(point(row))}, gear {row.gear or '?'}, {row.started_utc[:16] or '?'}"
+
+
+def _of_runs(line: Line) -> list[str]:
+    rows = []
+    for k, (value, difference) in enumerate(zip(line.values, line.differences, strict=True)):
+        rows.append(f"  {k + 1}  {shown(value):28s} {changed(difference, line.unit)}".rstrip())
+    return rows
+
+
+def shown(value: Figure | None) -> str:
+    """A figure with its interval."""
+    from rig.report.numbers import ABSENT, estimate
+
+    if value is None:
+        return ABSENT
+    return estimate(value.value, (value.low, value.high), value.unit) + (" (rejected run)" if value.rejected else "")
+
+
+def changed(d: Difference | None, unit: str) -> str:
+    """A difference, its interval, and what it amounts to."""
+    from rig.report.numbers import estimate, plain
+
+    if d is None:
+        return ""
+    if d.value == 0:
+        return "no difference"
+    sign = "+" if d.value > 0 else ""
+    limit = f"{plain(d.limit, 2)} {unit}" if unit != "1" else plain(d.limit, 2)
+    return f"{sign}{estimate(d.value, (d.low, d.high), unit)}  {SHOWN[d.mark].format(limit=limit)}".rstrip()
+
+
+def _how(found: Comparison) -> list[str]:
+    """The estimate of reproducibility behind the first figure, which all of one point share but for its number."""
+    first = next((d for line in found.lines for d in line.differences if d is not None), None)
+    if first is None:
+        return ["nothing to compare: the runs share no figure"]
+    return [
+        "differences are to run 1, with 95 % intervals; two unchanged runs stay within reproducibility 99 times of 100",
+        f"{found.lines[0].label}: {first.how}",
+    ]

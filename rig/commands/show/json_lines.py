@@ -1,0 +1,31 @@
+"""Every event as a JSON line on stdout, and nothing else; the table of events is in `show`."""
+
+from __future__ import annotations
+
+import json
+import time
+from typing import Any, TextIO, final
+
+from rig.commands.show.screens import Screen
+
+PERIOD = 0.5  # s between two lines of progress
+
+
+@final
+class JsonLines(Screen):
+    """As they come; of progress two a second."""
+
+    def __init__(self, stream: TextIO) -> None:
+        super().__init__(stream)
+        self._told = -1e9
+
+    def take(self, event: dict[str, Any]) -> None:
+        if event["event"] == "progress":
+            now = time.monotonic()
+            if now - self._told < PERIOD:
+                return
+            self._told = now
+        self.write(json.dumps(event) + "\n")
+
+    def close(self) -> None:
+        return

@@ -1,0 +1,163 @@
+"""Hold, stop and halt by a key while a rig is worked on; the terminal as it was on every way out.
+
+A thread sleeps in `select` until a key is pressed and then only counts: the loop looks at the counts every tick, so a
+halt is one tick away, and a loop that nobody types at is never disturbed.
+
+| key | what it asks for |
+|---|---|
+| h | hold: to rest, held there, torque on (category 2) |
+| s | stop: to rest, then torque off (category 1) |
+| Space, x | halt: torque off at once (category 0); the largest key, since it is always safe to press |
+| Ctrl-C | stop, a second time halt |
+| Ctrl-Z | while the motor is energised a stop: a program that sleeps cannot guard it; else what it always is |
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import select
+import signal
+import sys
+import termios
+import threading
+import tty
+from collections.abc import Callable, Iterator
+from types import FrameType, TracebackType
+from typing import Any, final
+
+from rig.interrupts import Interrupts
+
+LOOK = 0.5  # s between two looks whether this program has come to the foreground again
+SEQUENCE = re.compile(rb"\x1b[\[O][0-9;]*[A-Za-z~]")  # Home ends in H, F4 in S: neither is a letter somebody typed
+IGNORED = (signal.SIGTTIN, signal.SIGTTOU)  # the shell's ways of stopping a program in the background, motor or not
+
+
+@final
+class Keys:
+    """While active, on a terminal, keys ask `interrupts`. Anywhere else it does nothing.
+
+    `energised` says whether torque may be on. Enter and leave in the main thread: signals are handled there.
+    """
+
+    def __init__(self, interrupts: Interrupts, energised: Callable[[], bool]) -> None:
+        self._energised = energised
+        self._acts = {b"h": interrupts.hold, b"s": interrupts.stop, b"x": interrupts.halt, b" ": interrupts.halt}
+        self._stop = interrupts.stop
+        self._terminal: int | None = None
+        self._modes: list[Any] = []  # of the terminal, as it was
+        self._listening = True
+        self._before: dict[signal.Signals, Any] = {}
+
+    def __enter__(self) -> Keys:
+        try:
+            terminal = sys.stdin.fileno()
+            self._modes = termios.tcgetattr(terminal)
+        except (AttributeError, OSError, ValueError, termios.error):  # no terminal
+            return self
+        self._terminal = terminal
+        self._woken, self._wake = os.pipe()
+        for quiet in IGNORED:
+            self._before[quiet] = signal.signal(quiet, signal.SIG_IGN)
+        self._before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, self._suspend)
+        self._before[signal.SIGCONT] = signal.signal(signal.SIGCONT, self._resume)
+        self._take()
+        self._thread = threading.Thread(target=self._listen, name="keys", daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._terminal is None:
+            return
+        os.write(self._wake, b"!")
+        self._thread.join()
+        self._give()
+        self._terminal = None
+        for sig, handler in self._before.items():
+            signal.signal(sig, handler)
+        os.close(self._wake)
+        os.close(self._woken)
+
+    @contextlib.contextmanager
+    def paused(self) -> Iterator[None]:
+        """The terminal by lines and with echo, for a question; what was typed before it is no answer to it."""
+        if self._terminal is None:
+            yield
+            return
+        self._listening = False
+        self._nudge()
+        self._give()
+        termios.tcflush(self._terminal, termios.TCIFLUSH)
+        try:
+            yield
+        finally:
+            self._take()
+            self._listening = True
+            self._nudge()
+
+    def _listen(self) -> None:
+        terminal = self._terminal
+        assert terminal is not None
+        while True:
+            here = self._listening and self._foreground()
+            patience = None if here or not self._listening else LOOK
+            ready, _, _ = select.select([terminal, self._woken] if here else [self._woken], [], [], patience)
+            if self._woken in ready and os.read(self._woken, 1) == b"!":
+                return
+            if terminal in ready and self._listening and not self._read(terminal):
+                return
+            if not here and self._listening and self._foreground():
+                self._take()
+
+    def _read(self, terminal: int) -> bool:
+        """What was typed, asked for; False when the terminal is gone."""
+        try:
+            typed = os.read(terminal, 64)
+        except OSError:  # in the background meanwhile, or hung up
+            return self._foreground()
+        for key in SEQUENCE.sub(b"", typed).lower():
+            self._acts.get(bytes([key]), lambda: None)()
+        return bool(typed)
+
+    def _nudge(self) -> None:
+        """Have the thread look anew."""
+        os.write(self._wake, b".")
+
+    def _foreground(self) -> bool:
+        """Whether the terminal is ours to read."""
+        try:
+            return self._terminal is not None and os.tcgetpgrp(self._terminal) == os.getpgrp()
+        except OSError:
+            return False
+
+    def _take(self) -> None:
+        """Keys as they are pressed, without echo; Ctrl-C stays a signal."""
+        if self._terminal is not None and self._foreground():
+            with contextlib.suppress(termios.error):
+                tty.setcbreak(self._terminal, termios.TCSANOW)
+
+    def _give(self) -> None:
+        """The terminal as it was."""
+        if self._terminal is not None and self._foreground():
+            with contextlib.suppress(termios.error):
+                termios.tcsetattr(self._terminal, termios.TCSANOW, self._modes)
+
+    def _suspend(self, signum: int, frame: FrameType | None) -> None:
+        """Ctrl-Z."""
+        if self._energised():
+            self._stop()
+            return
+        self._give()
+        signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGTSTP)  # sleeps here until fg
+        signal.signal(signal.SIGTSTP, self._suspend)
+        self._take()  # where there is no shell to sleep under, it did not
+
+    def _resume(self, signum: int, frame: FrameType | None) -> None:
+        """fg, after Ctrl-Z or after a SIGSTOP that nobody can catch: the shell has made the terminal its own."""
+        if self._listening:
+            self._take()
+            self._nudge()

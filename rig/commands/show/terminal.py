@@ -1,0 +1,94 @@
+"""A terminal: what is said scrolls by, the run stands in two lines at its foot, and nothing of them stays behind."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any, TextIO, final
+
+from rig.commands.show.screens import Screen
+from rig.commands.show.words import late, peak
+
+KEYS = "keys: h hold  s stop  Space halt (torque off)"
+BAR = 12  # characters
+SETTLED = 1.0  # s to watch before a pace is believed
+UP, CLEAR = "\x1b[1A", "\r\x1b[J"  # to the line above; from here to the end of the screen
+
+
+@final
+class Terminal(Screen):
+    """Redrawn with every progress event."""
+
+    def __init__(self, stream: TextIO) -> None:
+        super().__init__(stream)
+        self._foot = ""  # what stands there now
+        self._run: dict[str, Any] = {}
+        self._mark = ""
+        self._t, self._first = 0.0, (0.0, 0.0)  # s of the run: now; when it was first seen, and s on the wall
+
+    def take(self, event: dict[str, Any]) -> None:
+        match event["event"]:
+            case "bench":
+                self._mark = "SIMULATED " if event["simulated"] else ""
+                if event["simulated"]:
+                    self._say(f"SIMULATED: bench '{event['bench']}' is the twin, {event['clock']} clock")
+            case "said" | "prompt" | "trip" | "operator" | "figure":
+                self._say(event["text"])
+            case "run":
+                self._run, self._t, self._first = event, 0.0, (0.0, 0.0)
+            case "progress" if self._run:
+                self._draw(event)
+            case "ended":
+                self._over(event)
+                self._run = {}
+
+    def close(self) -> None:
+        self._put("", "")
+
+    def _say(self, text: str) -> None:
+        self._put(f"{text}\n", self._foot)
+
+    def _draw(self, event: dict[str, Any]) -> None:
+        self._put("", "\n".join(line[: _width(self.stream)] for line in self._lines(event)))
+
+    def _lines(self, event: dict[str, Any]) -> list[str]:
+        t, duration = event["t"], self._run["duration_s"]
+        self._t = t
+        share = min(max(t / duration, 0.0), 1.0) if duration > 0 else 0.0
+        bar = ("█" * round(BAR * share)).ljust(BAR, "░")
+        return [
+            f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{self._left(t)}, "
+            f"{peak(event)}",
+            f"{late(event)} · {KEYS}",
+        ]
+
+    def _left(self, t: float) -> str:
+        """Time left on the wall, once the pace is known."""
+        now = time.monotonic()
+        if not self._first[1]:
+            self._first = (t, now)
+        passed, took = t - self._first[0], now - self._first[1]
+        if took < SETTLED or passed <= 0:
+            return ""
+        return f", {max(self._run['duration_s'] - t, 0.0) * took / passed:.0f} s left"
+
+    def _over(self, event: dict[str, Any]) -> None:
+        """The last numbers stay, as a line."""
+        title, duration = self._run.get("title", "run"), self._run.get("duration_s", 0.0)
+        self._put(
+            f"{self._mark}{title}: {event['status']} after {self._t:.1f} of {duration:.1f} s, {peak(event)}\n", ""
+        )
+
+    def _put(self, text: str, foot: str) -> None:
+        """`text` above, `foot` below it in place of the one there."""
+        up = (UP * self._foot.count("\n")) + CLEAR if self._foot else ""
+        if up or text or foot:
+            self.write(up + text + foot)
+        self._foot = foot
+
+
+def _width(stream: TextIO) -> int:
+    try:
+        return os.get_terminal_size(stream.fileno()).columns - 1 or 79
+    except (OSError, ValueError):
+        return 79

@@ -1,0 +1,111 @@
+"""What happens to a POST: asked of the gate, then of the station; halt goes straight to the switches."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from typing import Any, final
+
+from rig.console.check import check
+from rig.console.gate import CONTROL, Answer, Gate
+from rig.console.link import Link
+from rig.console.state import rights
+from rig.runfile.manifest import utc_now
+from rig.station.rules import ALWAYS
+
+FORWARDED = (
+    "id", "act", "bench", "overrides", "clock", "procedure", "parameters", "note", "plan", "resume", "turns",
+    "speed_rpm", "text", "prompt_id", "done",
+)  # fmt: skip
+LONGEST_TEXT = 2000  # characters of a note
+
+
+@final
+class ActDesk:
+    """One for all pages."""
+
+    def __init__(self, link: Link, gate: Gate) -> None:
+        self.link, self.gate = link, gate
+        self._under_way: dict[str, asyncio.Future[Answer]] = {}
+        self._based_on: tuple[object, ...] = ()
+        self.offered = "twin"
+
+    def look(self) -> None:
+        """The station told something: a new revision when it is something that acts are based on."""
+        p = self.link.picture
+        prompt, run, campaign = p["prompt"] or {}, p["run"] or {}, p["campaign"] or {}
+        bench = (p["bench"] or {}).get("source")
+        what = (p["state"], p["job"], p["fault"], p["unsure"], bench)
+        now = (*what, prompt.get("id"), run.get("uid"), campaign.get("current"), self.link.alive)
+        if now != self._based_on:
+            self._based_on = now
+            self.gate.passed()
+
+    async def act(self, asked: Mapping[str, Any], page: str) -> Answer:
+        """Done once per id; the same id again, even while the first is under way, is answered as the first."""
+        act, key = asked.get("act"), str(asked.get("id"))
+        before = self.gate.before(asked)
+        if before is not None:
+            return before
+        if key in self._under_way:
+            return await asyncio.shield(self._under_way[key])
+        if isinstance(act, str) and act in ("stop", "halt") and "id" not in asked:
+            return Answer.yes(await self.link.press(act))  # nobody is kept from stopping a motor for a missing id
+        why = self.gate.refuse(asked, page, rights(self.link.picture, self.gate, page))
+        if why:
+            return self._with_revision(Answer.no(why))
+        waiting: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        self._under_way[key] = waiting
+        try:
+            answer = self._with_revision(await self._carry_out(str(act), asked, page))
+        except BaseException:
+            waiting.cancel()
+            raise
+        finally:
+            del self._under_way[key]
+        waiting.set_result(answer)
+        return self.gate.remember(asked, answer)
+
+    def _with_revision(self, answer: Answer) -> Answer:
+        return Answer(answer.status, {**answer.body, "revision": self.gate.revision})
+
+    async def _carry_out(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
+        if act in ALWAYS:
+            return Answer.yes(await self.link.press(act))
+        self.gate.take(page)
+        self.gate.passed()  # a second click is based on what was before the first
+        if act == CONTROL:
+            self.link.events.append(
+                {"t": None, "utc": utc_now(), "kind": "said", "text": "another page has taken control"}
+            )
+            self.link.changed()
+            return Answer.yes()
+        why = await self._wrong(act, asked)
+        if not why:
+            why = await self.link.act({key: asked[key] for key in FORWARDED if key in asked})
+        return Answer.no(why) if why else Answer.yes()
+
+    async def _wrong(self, act: str, asked: Mapping[str, Any]) -> str:
+        """What can be said against an act before the station is bothered with it."""
+        if act == "note" and not 0 < len(str(asked.get("text") or "").strip()) <= LONGEST_TEXT:
+            return f"a note has 1 to {LONGEST_TEXT} characters"
+        if act == "answer" and not isinstance(asked.get("done"), bool):
+            return "an answer says done: true or false"
+        if act == "jog":
+            given = {key: asked[key] for key in ("turns", "speed_rpm") if asked.get(key) is not None}
+            return await self._problem({"procedure": "jog", "parameters": given})
+        if act == "start" or (act == "campaign" and not asked.get("resume")):
+            return await self._problem(asked)
+        return ""
+
+    async def _problem(self, asked: Mapping[str, Any]) -> str:
+        found = await asyncio.to_thread(self.check, dict(asked))
+        return "" if found["ok"] else "; ".join(found["problems"].values())
+
+    def check(self, asked: Mapping[str, Any]) -> dict[str, Any]:
+        """As `check.check`, on the bench that is connected, or the one named, or the one the server was started for."""
+        bench = self.link.picture["bench"]
+        named = asked.get("bench")
+        if named is None and bench is not None:
+            return check(asked, bench["source"], bench["overrides"])
+        return check(asked, str(named or self.offered), [])

@@ -1,0 +1,105 @@
+"""uvicorn with our own way to end: a Ctrl-C brings the motor to rest first, a second takes the torque off."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+from typing import final
+
+import uvicorn
+
+from rig.console.access import Access, is_loopback, new_token
+from rig.console.app import Console
+from rig.core.errors import NotReady
+from rig.live.view.viewer import Viewer
+
+LONGEST_STOP = 120.0  # s: a wound-up gear is let out along its ramp, then the run is closed
+GOODBYE = 1  # s pages have to close their lines
+
+
+@final
+class Server(uvicorn.Server):
+    """Leaves signals to us."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Not taken."""
+        yield
+
+
+@final
+class Serving:
+    """One `hdrig serve`."""
+
+    def __init__(
+        self, host: str, port: int, root: Path, offered: str, names: tuple[str, ...] = (), viewer: Viewer | None = None
+    ) -> None:
+        """Raises NotReady when nothing can listen there."""
+        self._socket = _listen(host, port)
+        port = self._socket.getsockname()[1]
+        self.access = Access(new_token(), host, port, names)
+        self.console = Console(self.access, root, offered, viewer)
+        config = uvicorn.Config(
+            self.console.app, log_level="error", access_log=False, ws_ping_interval=5.0, ws_ping_timeout=10.0,
+            timeout_graceful_shutdown=GOODBYE, ws_max_size=65_536, server_header=False,
+        )  # fmt: skip
+        self._server = Server(config)
+        self._asked = 0  # times somebody asked for the end
+        self._ending: asyncio.Task[None] | None = None
+
+    @property
+    def lines(self) -> list[str]:
+        """What a person has to know: the address, with the token that is printed nowhere else."""
+        shown = f"[{self.access.host}]" if ":" in self.access.host else self.access.host
+        found = [f"console http://{shown}:{self.access.port}/#token={self.access.token}"]
+        if not is_loopback(self.access.host):
+            found.append(
+                "this address is reached by others, and the line is not encrypted here: let a reverse proxy end TLS in "
+                f"front of it (--name its.name), or keep to 127.0.0.1 and use ssh -L {self.access.port}:127.0.0.1:"
+                f"{self.access.port}"
+            )
+        return found
+
+    async def run(self) -> None:
+        """Until a signal."""
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            loop.add_signal_handler(number, self.ask_end)
+        await self.serve()
+
+    async def serve(self) -> None:
+        """Until `ask_end`."""
+        await self._server.serve(sockets=[self._socket])
+
+    def ask_end(self) -> None:
+        """Once: stop (category 1), then close. Twice: halt."""
+        self._asked += 1
+        link = self.console.link
+        (link.switches.stop if self._asked == 1 else link.switches.halt)()
+        if self._ending is None:
+            self.console.closing = True
+            self.console.pages.news()
+            self._ending = asyncio.create_task(self._end())
+
+    async def _end(self) -> None:
+        if not await self.console.link.close(LONGEST_STOP):
+            self.console.link.switches.halt()
+            await self.console.link.close(GOODBYE)
+        self._server.should_exit = True
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        made = socket.socket(family, socket.SOCK_STREAM)
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind((host, port))
+        made.listen(128)
+    except OSError as error:
+        why = f"nothing can listen at {host}, port {port}: {error.strerror}; --port 0 finds a free one"
+        raise NotReady(why) from None
+    return made

@@ -1,0 +1,162 @@
+"""What is drawn over time: one vector of curves a unit, thinned so that no peak is lost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rig.live.envelope import envelope
+from rig.live.view import colours
+from rig.live.view.about import About
+from rig.live.view.block import Block
+from rig.live.view.canvas import Canvas
+from rig.live.view.lateness import Lateness
+
+Array = np.ndarray[Any, Any]
+
+ARCSEC = 180 * 3600 / math.pi  # arcsec a rad
+RPM = 30 / math.pi  # rpm a rad/s
+COLOURS = (colours.FORWARD, colours.REVERSE, colours.GOOD, colours.BRASS, colours.MARK)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line: its name, its colour, its values in the unit of its group from rows and gear ratio N."""
+
+    name: str
+    colour: int
+    of: Callable[[Block, float], Array]
+
+
+Groups = dict[str, tuple[Curve, ...]]
+GROUPS: Groups = {
+    "/curves/angle": (  # deg at the output
+        Curve("θ_ref / N", colours.MUTED, lambda b, n: np.degrees(b["theta_ref"]) / n),
+        Curve("θ_m / N", colours.FORWARD, lambda b, n: np.degrees(b["theta_m"]) / n),
+        Curve("θ_l", colours.REVERSE, lambda b, n: np.degrees(b["theta_l"])),
+    ),
+    "/curves/following": (  # deg of the motor
+        Curve("θ_ref − θ_m", colours.FORWARD, lambda b, n: np.degrees(b["theta_ref"] - b["theta_m"])),
+    ),
+    "/curves/error": (  # arcsec at the output      [ghorbel2001, Eq. 1]
+        Curve("θ̃", colours.GOOD, lambda b, n: (b["theta_m"] / n - b["theta_l"]) * ARCSEC),
+    ),
+    "/curves/speed": (Curve("ω_m", colours.FORWARD, lambda b, n: speed(b) * RPM),),  # rpm
+    "/curves/motor": (  # N·m, motor side
+        Curve("asked", colours.MUTED, lambda b, n: b["tau_ask"]),
+        Curve("given", colours.FORWARD, lambda b, n: b["tau_applied"]),
+        Curve("reported", colours.REVERSE, lambda b, n: b["tau_m"]),
+    ),
+    "/curves/shaft": (Curve("τ_l", colours.BRASS, lambda b, n: b["tau_l"]),),  # N·m at the output
+}
+TICK = "/curves/tick"  # ms
+
+
+@dataclass(frozen=True)
+class More:
+    """A group beside those everybody has."""
+
+    path: str
+    unit: str
+    curves: tuple[Curve, ...]
+
+
+def all_groups(more: tuple[More, ...]) -> Groups:
+    """Curves by path."""
+    return {**GROUPS, **{one.path: one.curves for one in more}}
+
+
+def everything(curve: str) -> bool:
+    """While a run goes on nobody knows what will not be measured."""
+    return True
+
+
+class Curves:
+    """Sends every group at most one pair of rows for each `every` rows."""
+
+    def __init__(
+        self, about: About, every: int, measured: Callable[[str], bool] = everything, more: tuple[More, ...] = ()
+    ) -> None:
+        """`measured` says which curves, called path and name, have any value at all; the others are left out. `more`
+        are groups beside those everybody has.
+        """
+        self._ratio, self._every = about.ratio, every
+        self._lateness = Lateness(1.0 / about.rate if about.rate else 0.0)
+        self._groups = {
+            path: chosen
+            for path, group in all_groups(more).items()
+            if (chosen := [c for c in group if measured(path + c.name)])
+        }
+
+    def begin(self, canvas: Canvas) -> None:
+        """Names and colours."""
+        for path, group in self._groups.items():
+            canvas.name_curves(path, [c.name for c in group], [c.colour for c in group])
+        canvas.name_curves(TICK, ["lateness", "age of the oldest value"], [colours.WARN, colours.MUTED])
+
+    def add(self, block: Block, canvas: Canvas) -> None:
+        """The next rows."""
+        if not len(block):
+            return
+        for path, group in self._groups.items():
+            self._send(path, block, [c.of(block, self._ratio) for c in group], canvas)
+        late = self._lateness.add(block.t, block["flags"])
+        self._send(TICK, block, [late * 1e3, block["age"] * 1e3], canvas)
+
+    def _send(self, path: str, block: Block, values: list[Array], canvas: Canvas) -> None:
+        t, shown = thinned(block.t, np.stack(values, axis=1), self._every)
+        canvas.curves(path, t, shown)
+
+
+def thinned(t: Array, values: Array, every: int) -> tuple[Array, Array]:
+    """Times (n,) and values (n, k) of at most two rows for each `every`.
+
+    What is derived is derived before it is thinned: the extremes of two angles do not belong to one moment.
+    """
+    names = [f"c{i}" for i in range(values.shape[1])]
+    rows = np.empty(len(t), [("t", "f8"), *((name, "f8") for name in names)])
+    rows["t"] = t
+    for i, name in enumerate(names):
+        rows[name] = values[:, i]
+    less = envelope(rows, every)
+    return np.asarray(less["t"]), np.stack([less[name] for name in names], axis=1)
+
+
+def speed(block: Block) -> Array:
+    """Motor speed [rad/s], shape (n,): the host's own; where the file has none, the slope of the angle."""
+    said = block["omega_m"]
+    if not np.isnan(said).all() or len(block) < 2:
+        return said
+    t = block.t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.gradient(block["theta_m"], t))
+
+
+def others(units: dict[str, str]) -> tuple[More, ...]:
+    """Channels the table lacks, one group a unit: what another logger had. `units` by name of the channel."""
+    found = []
+    for number, unit in enumerate(dict.fromkeys(units.values())):
+        names = [name for name in units if units[name] == unit]
+        curves = tuple(Curve(name, COLOURS[i % len(COLOURS)], _channel(name)) for i, name in enumerate(names))
+        found.append(More(f"/curves/other_{number}", unit, curves))
+    return tuple(found)
+
+
+def _channel(name: str) -> Callable[[Block, float], Array]:
+    return lambda block, ratio: block[name]
+
+
+def measured_in(block: Block, ratio: float, more: tuple[More, ...] = ()) -> Callable[[str], bool]:
+    """Which curves these rows have at all, by path and name."""
+    there = {
+        path + curve.name
+        for path, group in all_groups(more).items()
+        for curve in group
+        if np.isfinite(curve.of(block, ratio)).any()
+    }
+    ages = {TICK} if np.isfinite(block["age"]).any() else set()
+    return (there | ages).__contains__

@@ -1,0 +1,50 @@
+"""What happens in a session, into the events of the run it happens in; what comes before a run opens the next one's."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from pathlib import Path
+
+from rig.core.errors import HdrigError
+from rig.runfile.events import EventLog
+from rig.session.observer import Observer
+from rig.supervisor import Act, State
+
+KINDS = {Act.TRIP: "trip", Act.HOLD: "operator", Act.STOP: "operator", Act.HALT: "operator"}
+
+
+class SessionLog:
+    """Events of one session; `run_time` gives the time [s] since the run's start, `observer` is told as well."""
+
+    def __init__(self, run_time: Callable[[], float], observer: Observer) -> None:
+        self._run_time = run_time
+        self._observer = observer
+        self._early: list[tuple[str, str]] = []  # events before there is a folder for them
+        self._log: EventLog | None = None
+
+    def open(self, folder: Path) -> None:
+        """From here events go into `folder`, those that wait first. Raises RecorderError."""
+        self._log = EventLog(folder)
+        for kind, text in self._early:
+            self._log.write(kind, text)
+        self._early.clear()
+
+    def announce(self, state: State, act: Act, why: str) -> None:
+        """The supervisor's change of state, as an event."""
+        self.event(KINDS.get(act, "state"), f"{state}: {why}" if why else str(state))
+
+    def event(self, kind: str, text: str) -> None:
+        """`kind` as in `events.jsonl`: state, trip, operator, note, finding."""
+        self._observer.event(kind, text, None if self._log is None else self._run_time())
+        if self._log is None:
+            self._early.append((kind, text))
+            return
+        with contextlib.suppress(HdrigError):  # a full disk shows in the rows; it must not stand in the way of a stop
+            self._log.write(kind, text, self._run_time())
+
+    def close(self) -> None:
+        """No folder takes events any more. Idempotent."""
+        if self._log is not None:
+            self._log.close()
+            self._log = None

@@ -1,0 +1,36 @@
+"""Who looks on at a session: told of events as they happen, and of every run, the proofs among them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rig.core.procedure import Procedure
+from rig.loop import Ending
+from rig.session.done import Watch, nobody
+from rig.timing import LoopTiming
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A run whose recorder is ready and whose first tick is near."""
+
+    folder: Path
+    procedure: Procedure
+    duration: float  # s it announced
+    ring: Path  # where its rows can be read as they come
+    timing: LoopTiming
+
+
+class Observer:
+    """Looks away. Called in the thread of the loop: whoever overrides is quick."""
+
+    def event(self, kind: str, text: str, t: float | None) -> None:
+        """As it goes into `events.jsonl`; `t` s since the run's start, None outside of one."""
+
+    def begun(self, run: Begun) -> Watch:
+        """A run is about to start; what is returned is shown a sample every 100 ticks, beside the run's own watch."""
+        return nobody
+
+    def ended(self, folder: Path, ending: Ending) -> None:
+        """Torque is off, the folder is about to be closed."""

@@ -1,0 +1,93 @@
+"""One procedure through the loop into its folder. On every way out torque first, files second."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from rig.bench import Bench
+from rig.control.setpoints import setpoints_of
+from rig.core.errors import Exit, HdrigError, RecorderError
+from rig.core.procedure import Procedure
+from rig.core.sample import Mode, Sample
+from rig.guard import Guard
+from rig.instruments import Instruments
+from rig.interrupts import Interrupts
+from rig.loop import Ending, Loop
+from rig.recorder import Recorder
+from rig.runfile.finalise import finalise
+from rig.session.done import Done, Ended, Watch
+from rig.session.log import SessionLog
+from rig.session.observer import Begun, Observer
+from rig.supervisor import Supervisor
+from rig.timing import LoopTiming
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What one run needs of its session."""
+
+    bench: Bench
+    instruments: Instruments
+    supervisor: Supervisor
+    interrupts: Interrupts
+    log: SessionLog
+    timing: LoopTiming
+    observer: Observer
+
+    def make(self, folder: Path, procedure: Procedure, mode: Mode, watch: Watch) -> Done:
+        """Run it and close its folder, with its status, on every way out.
+
+        Raises Ended when rows are lost, and what the loop raises once the drive is safe.
+        """
+        recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
+        recorder.start()
+        setting = self.bench.setting(lambda text: self.log.event("note", text))
+        envelope = procedure.envelope(setting)
+        guard = Guard(self.bench.limits, envelope, setting.ratio)
+        setpoints = setpoints_of(mode, setting)
+        begun = Begun(folder, procedure, envelope.duration, recorder.ring, self.timing)
+        watches = self._both(watch, self.observer.begun(begun))
+        loop = Loop(
+            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watches, setpoints
+        )
+        ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
+        try:
+            ending = loop.run(procedure, setting)
+        except HdrigError as error:
+            ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
+            raise
+        finally:
+            # the loop has made the drive safe, whatever happened; only now files
+            self.observer.ended(folder, ending)
+            problem = self._close(recorder, folder, ending, loop.rows)
+            if problem:
+                print(f"hdrig: {problem}", file=sys.stderr)
+        if problem:
+            raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
+        return Done(folder, ending)
+
+    @staticmethod
+    def _both(watch: Watch, other: Watch) -> Watch:
+        def watches(sample: Sample) -> None:
+            watch(sample)
+            other(sample)
+
+        return watches
+
+    def _close(self, recorder: Recorder, folder: Path, ending: Ending, rows: int) -> str:
+        """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""
+        if ending.finding is not None:
+            self.log.event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
+        try:
+            # what the recorder could not write is in the ring: closing the run tries again
+            with contextlib.suppress(RecorderError):
+                recorder.close()
+            self.log.close()  # its hash is taken next: nothing may be added after
+            summary, code = self.timing.summary(), int(ending.exit)
+            closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, exit=code)
+        except HdrigError as error:
+            return f"{error}; hdrig recover {folder} tries again"
+        return f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""

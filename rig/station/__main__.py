@@ -1,0 +1,28 @@
+"""`python -m rig.station LINE SWITCHES OUT`: started by the console and by nobody else."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from pathlib import Path
+
+from rig.live.switches import Switches
+from rig.station.channel import Channel
+from rig.station.interrupts import Panel
+from rig.station.jobs import JOBS
+from rig.station.station import Station
+
+
+def main(line: int, switches: Path, root: Path) -> int:
+    """`line` is the number of an inherited socket."""
+    channel = Channel(socket.socket(fileno=line))
+    with Panel(seen := Switches.attach(switches)) as panel:
+        assert isinstance(panel, Panel)
+        Station(channel, seen, panel, root, JOBS).serve()
+    channel.close()
+    seen.unlink()  # where the server was killed it could not
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])))

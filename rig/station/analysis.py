@@ -1,0 +1,51 @@
+"""Figures and report of a finished run, made by a process of its own: the station goes on reading its instruments."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, final
+
+from rig.core.errors import Exit
+from rig.runfile.manifest import parse
+
+TOLD = (Exit.PASS, Exit.OUT_OF_LIMITS, Exit.INCOMPLETE)  # there is a report
+
+
+@final
+class Analysis:
+    """One `hdrig analyse`, begun when made. A loop that runs meanwhile is scheduled before it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        command = [sys.executable, "-m", "rig.cli", "analyse", str(folder)]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+
+    @property
+    def done(self) -> bool:
+        """True when it has ended."""
+        return self._process.poll() is not None
+
+    def found(self) -> dict[str, Any]:
+        """Of a done one: `report` path, `verdict`, `sentence`; without a report the sentence says why."""
+        _, said = self._process.communicate()
+        if self._process.returncode not in TOLD:
+            why = said.strip().splitlines()[-1] if said.strip() else f"exit code {self._process.returncode}"
+            return {"report": None, "verdict": None, "sentence": f"not analysed: {why.removeprefix('hdrig: ')}"}
+        try:
+            result = parse((self.folder / "result.json").read_bytes())
+        except (OSError, ValueError) as error:
+            return {"report": None, "verdict": None, "sentence": f"result.json cannot be read: {error}"}
+        return {
+            "report": str(self.folder / "report.html"),
+            "verdict": result.get("verdict"),
+            "sentence": result.get("sentence"),
+        }
+
+    def end(self) -> None:
+        """Leave it unfinished."""
+        self._process.kill()
+        self._process.communicate()

@@ -1,0 +1,120 @@
+"""A campaign from the page: a plan on the bench that is connected, prompts to the page, figures by a process aside."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, final
+
+from rig.campaign import summary
+from rig.campaign.journal import Journal, new_journal, read_journal, record_of, refuse_other_campaign
+from rig.campaign.plan import read_plan
+from rig.campaign.planner import Campaign, planned
+from rig.campaign.resume import take_up
+from rig.campaign.run import Desk, conduct
+from rig.campaign.steps import Item
+from rig.changes import wait_for_rest
+from rig.core.errors import DataError, NotReady
+from rig.runfile.folder import create, create_in
+from rig.runfile.manifest import told
+from rig.session import Session, Watch
+from rig.session.done import nobody
+from rig.station.analysis import Analysis
+
+if TYPE_CHECKING:
+    from rig.station.station import Station
+
+SEEDS = 2**31  # of the order, drawn when none is given
+
+
+def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
+    """Every run of the plan that is open; its folder is closed, with its status, on every way out."""
+    session = station.need()
+    resumed = message.get("resume")
+    journal, campaign = _resumed(session, Path(str(resumed))) if resumed else _new(station, session, message)
+    station.busy(f"campaign {campaign.plan.file.name}")
+    desk = PageDesk(station, campaign, journal)
+    session.root, session.create, session.checks = journal.folder, create_in, "checks"
+    try:
+        conduct(session, campaign, journal, desk)
+    finally:
+        session.root, session.create, session.checks = station.root, create, ""
+        session.facts = {}
+    text = "\n".join(summary.lines(journal)) + "\n"
+    with told(NotReady, f"the summary cannot be written into {journal.folder}"):
+        (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    station.teller.say("said", f"campaign {journal.book['status']}: {journal.book['sentence']}; {journal.folder}")
+
+
+def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tuple[Journal, Campaign]:
+    campaign = planned(read_plan(str(message.get("plan", ""))), session.bench, secrets.randbelow(SEEDS))
+    journal = new_journal(station.root, campaign, session.clock, [])
+    journal.book["rigging"] = session.rigging.conditions()  # as it stands: weight and pin come off first
+    if station.pending is not None:
+        journal.book["pending"] = record_of(station.pending)
+    return journal, campaign
+
+
+def _resumed(session: Session, folder: Path) -> tuple[Journal, Campaign]:
+    """With the plan, bench and seed it began with. Raises UsageError where those are others."""
+    journal = read_journal(folder)
+    plan = read_plan(str(folder / "plan.toml"))
+    campaign = planned(plan, session.bench, journal.book["seed"])
+    refuse_other_campaign(journal, campaign)
+    take_up(journal)
+    hand = getattr(session.hand, "hand", None)
+    if hand is not None:  # the twin begins anew: what was made is made again
+        for change in journal.made:
+            hand.make(change)
+            wait_for_rest(session.instruments)
+    return journal, campaign
+
+
+@final
+class PageDesk(Desk):
+    """Tells the page where the campaign is."""
+
+    def __init__(self, station: Station, campaign: Campaign, journal: Journal) -> None:
+        self.station, self.campaign, self.journal = station, campaign, journal
+        self._tell("proof and tare")
+
+    def say(self, text: str) -> None:
+        self.station.teller.say("said", text)
+
+    @contextlib.contextmanager
+    def watching(self, item: Item, duration: float) -> Iterator[Watch]:
+        self._tell(item.words(), measuring=True)
+        yield nobody
+        self._tell(item.words())
+
+    def again(self, why: str) -> bool:
+        person = self.station.person
+        return person is not None and person.ask(f"{why}. Do it once more?", "Again")
+
+    def figure(self, folder: Path) -> str:
+        """The station goes on attending meanwhile."""
+        analysis = Analysis(folder)
+        while not analysis.done:
+            self.station.attend()
+            if self.station.panel.count > 1 or self.station.channel.closed:
+                analysis.end()
+                raise DataError("left for later: hdrig analyse makes its figures")
+        found = analysis.found()
+        last = self.station.status.last_run
+        if last is not None:
+            self.station.status.last_run = last | found
+        if found["report"] is None:
+            raise DataError(str(found["sentence"]))
+        return str(found["sentence"])
+
+    def _tell(self, current: str, measuring: bool = False) -> None:
+        left = self.journal.open_runs()
+        seconds = sum(self.campaign.envelope(self.campaign.items[k]).duration for k in left)
+        total = len(self.campaign.items)
+        self.station.status.campaign = {
+            "plan": self.campaign.plan.file.name, "done": total - len(left), "total": total, "current": current,
+            "left_s": seconds, "measuring": measuring, "folder": str(self.journal.folder),
+        }  # fmt: skip
+        self.station.told()

@@ -1,0 +1,162 @@
+"""A change is marked when it is larger than repeats scatter, and not otherwise."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.catalogue import compare, trend
+from rig.catalogue.compare import Mark
+from rig.catalogue.scatter import between, scatter
+from rig.cli import main
+from rig.core.errors import UsageError
+from tests.catalogue.folders import run
+
+DAYS = ["2026-11-16", "2026-11-17", "2026-11-18"]
+
+
+def many(root: Path, values: list[float], day: str, first: int = 0) -> list[Path]:
+    return [run(root, day, first + k, value) for k, value in enumerate(values)]
+
+
+def test_a_difference_has_the_interval_of_both_runs(tmp_path: Path) -> None:
+    a, b = run(tmp_path, DAYS[0], value=90.0, half=0.3), run(tmp_path, DAYS[1], value=91.0, half=0.4)
+    (line,) = compare([a, b]).lines
+    d = line.differences[1]
+    assert d is not None
+    assert (d.value, d.low, d.high) == pytest.approx((1.0, 0.5, 1.5))
+    assert d.mark is Mark.UNKNOWN, "there are no repeats"
+    assert "no repeats" in d.how
+
+
+def test_a_change_beyond_the_scatter_of_repeats_is_marked_and_one_within_is_not(tmp_path: Path) -> None:
+    first = many(tmp_path, [90.0, 90.2, 89.9, 90.1, 90.0, 90.1], DAYS[0])
+    (same,) = many(tmp_path, [90.5], DAYS[1])
+    (other,) = many(tmp_path, [93.0], DAYS[2])
+    (line,) = compare([first[0], same, other]).lines
+    marks = [d.mark if d else None for d in line.differences]
+    assert marks == [None, Mark.WITHIN, Mark.CHANGED]
+    d = line.differences[2]
+    assert d is not None
+    assert 0.3 < d.limit < 1.5
+    assert "6 repeats" in d.how
+
+
+def test_a_change_larger_than_scatter_but_within_its_own_interval_is_none(tmp_path: Path) -> None:
+    first = many(tmp_path, [90.0, 90.02, 90.01, 90.0, 90.02], DAYS[0])
+    vague = run(tmp_path, DAYS[1], value=92.0, half=5.0)
+    (line,) = compare([first[0], vague]).lines
+    assert line.differences[1] is not None
+    assert line.differences[1].mark is Mark.WITHIN
+
+
+def test_runs_at_other_conditions_or_of_another_origin_are_no_repeats_and_it_is_said(tmp_path: Path) -> None:
+    a = run(tmp_path, DAYS[0], 0)
+    run(tmp_path, DAYS[0], 1, conditions={"speed_rpm": 300.0})
+    run(tmp_path, DAYS[0], 2, backend="sim")
+    b = run(tmp_path, DAYS[1], 0, gear={"serial": "SN2"}, conditions={"speed_rpm": 300.0, "tau_ext": 5.0})
+    found = compare([a, b])
+    d = found.lines[0].differences[1]
+    assert d is not None
+    assert d.mark is Mark.UNKNOWN
+    assert "is of gear SN2" in found.remarks[0]
+    assert "speed_rpm 9.6 and 300.0" in found.remarks[1]
+
+
+def test_two_repeats_do_not_judge_themselves(tmp_path: Path) -> None:
+    a, b = many(tmp_path, [90.0, 99.0], DAYS[0])
+    d = compare([a, b]).lines[0].differences[1]
+    assert d is not None
+    assert d.mark is Mark.UNKNOWN
+
+
+def test_what_was_counted_is_no_change(tmp_path: Path) -> None:
+    a = run(tmp_path, DAYS[0], value=6.0, half=0.0, name="revolutions_forward")
+    b = run(tmp_path, DAYS[1], value=12.0, half=0.0, name="revolutions_forward")
+    d = compare([a, b]).lines[0].differences[1]
+    assert d is not None
+    assert d.mark is Mark.NONE
+
+
+def test_scatter_by_successive_differences_is_that_of_the_runs_and_a_jump_hardly_counts() -> None:
+    rng = np.random.default_rng(1)
+    sets = [list(rng.normal(90.0, 0.5, 12) + 3.0 * k) for k in range(40)]  # assemblies far apart
+    found = scatter(sets)
+    assert found.sd == pytest.approx(0.5, rel=0.1)
+    assert found.dof == pytest.approx(2 * 11 * 40 / 3, rel=0.05)
+    jumped = scatter([[*rng.normal(90.0, 0.5, 15), *rng.normal(100.0, 0.5, 15)]])
+    assert jumped.limit() < 10.0, "a jump of twenty standard deviations is seen though it lies among the repeats"
+
+
+def test_one_in_a_hundred_unchanged_runs_is_marked() -> None:
+    rng = np.random.default_rng(2)
+    trials, marked = 20_000, 0
+    for values in rng.normal(0.0, 1.0, (trials, 8)):
+        marked += abs(values[7] - values[6]) > scatter([values[:6]]).limit()
+    assert marked / trials == pytest.approx(0.01, abs=0.006)  # degrees of freedom are matched, not exact
+
+
+def test_degrees_of_freedom_of_one_pair_are_one_and_limits_of_two_kinds_join() -> None:
+    pair = scatter([[1.0, 2.0]])
+    assert (pair.sd, pair.dof) == pytest.approx((math.sqrt(0.5), 1.0))
+    assert between(pair, scatter([])) != between(pair, scatter([]))  # NaN
+    assert between(scatter([[1.0, 1.0, 1.0]]), scatter([[2.0, 2.0]])) == 0.0
+    big = scatter([list(np.tile([0.0, 1.0], 500))])
+    assert between(big, big) == pytest.approx(big.limit(), rel=0.01)
+
+
+def test_a_trend_marks_the_day_of_the_change_and_follows_on_from_there(tmp_path: Path) -> None:
+    many(tmp_path, [90.0, 90.2, 89.9, 90.1], DAYS[0])
+    changed, *_ = many(tmp_path, [93.0, 93.2, 92.9], DAYS[1])
+    many(tmp_path, [93.1, 92.9], DAYS[2])
+    (series,) = trend(tmp_path, "peak-to-peak").series
+    assert [s.row.path for s in series.spots if s.changed] == [changed]
+    assert [s.assembly for s in series.spots] == [1] * 4 + [2] * 3 + [3] * 2
+    assert "1 change larger than reproducibility: 2026-11-17 by +2.95 arcsec" in series.sentence
+
+
+def test_a_trend_has_a_series_for_each_gear_procedure_and_point_and_leaves_out_what_does_not_count(
+    tmp_path: Path,
+) -> None:
+    run(tmp_path, DAYS[0], 0)
+    run(tmp_path, DAYS[0], 1, status="tripped")
+    run(tmp_path, DAYS[0], 2, gear={"serial": "SN2"})
+    run(tmp_path, DAYS[0], 3, conditions={"speed_rpm": 300.0})
+    found = trend(tmp_path, "kinematic_error_peak_to_peak")
+    assert [s.title for s in found.series] == [
+        "SN1, kinematic-error, 9.6 rpm", "SN2, kinematic-error, 9.6 rpm", "SN1, kinematic-error, 300 rpm",
+    ]  # fmt: skip
+    assert found.left_out == 1
+    assert len(trend(tmp_path, "PEAK_to_peak", gear="SN2").series) == 1
+    with pytest.raises(UsageError, match="none of the runs has a figure 'K1'"):
+        trend(tmp_path, "K1")
+
+
+def test_both_are_json_for_programs_and_lines_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = many(tmp_path, [90.0, 90.2, 89.9, 90.1], DAYS[0])
+    (other,) = many(tmp_path, [93.0], DAYS[1])
+    assert main(["compare", str(first[0]), str(other)]) == 0
+    said = capsys.readouterr().out
+    assert "93.00 ± 0.30 arcsec" in said
+    assert "+3.00 ± 0.42 arcsec  CHANGED, more than reproducibility" in said
+    assert main(["compare", str(first[0]), str(other), "--json"]) == 0
+    figure = json.loads(capsys.readouterr().out)["figures"][0]
+    assert figure["differences"][1]["mark"] == "changed"
+    assert main(["trend", "peak-to-peak", str(tmp_path)]) == 0
+    assert "CHANGED by +2.95 arcsec" in capsys.readouterr().out
+    assert main(["trend", "peak-to-peak", str(tmp_path), "--json"]) == 0
+    points = json.loads(capsys.readouterr().out)["series"][0]["points"]
+    assert [p["changed"] for p in points] == [False] * 4 + [True]
+
+
+def test_a_damaged_result_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    a, b = run(tmp_path, DAYS[0]), run(tmp_path, DAYS[1])
+    (b / "result.json").write_text("{")
+    assert main(["compare", str(a), str(b)]) == 2
+    assert "result.json is not JSON" in capsys.readouterr().err
+    (series,) = trend(tmp_path, "peak-to-peak").series
+    assert len(series.spots) == 1

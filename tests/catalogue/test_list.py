@@ -1,0 +1,137 @@
+"""Runs listed by date, gear, procedure, verdict; a damaged manifest is a line that says what is wrong with it."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from rig.catalogue import remembered, runs
+from rig.catalogue.filter import asked
+from rig.cli import main
+from rig.core.errors import UsageError
+from tests.catalogue.folders import MANIFEST, run
+
+ANYTHING: st.SearchStrategy[Any] = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text() | st.just("\ud800"),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=8,
+)
+
+
+def test_filters_take_gear_procedure_verdict_status_and_days(tmp_path: Path) -> None:
+    a = run(tmp_path, "2026-11-18", gear={"serial": "SN2"}, verdict="FAIL")
+    b = run(tmp_path, "2026-11-19", 1, procedure="friction", status="stopped")
+    c = run(tmp_path, "2026-11-20", 2)
+
+    def found(**words: Any) -> list[Path]:
+        return [row.path for row in runs(tmp_path, asked(**words))]
+
+    assert found() == [a, b, c]
+    assert found(gear="SN2") == [a]
+    assert found(gear="SN*") == [a, b, c]
+    assert found(verdict="fail") == [a]
+    assert found(procedure="friction") == found(status="stopped") == [b]
+    assert found(procedure="kinematic-error") == [a, c]
+    assert found(since="2026-11-19") == [b, c]
+    assert found(until="2026-11-19") == [a, b], "the day that is named is in"
+    assert found(until="2026-11-19T06:00") == [a]
+    assert found(sort="gear", reverse=True) == [a, c, b]
+
+
+@pytest.mark.parametrize("words", [{"verdict": "pas"}, {"status": "done"}, {"sort": "age"}, {"since": "yesterday"}])
+def test_a_word_there_is_not_is_refused_with_what_there_is(tmp_path: Path, words: dict[str, str]) -> None:
+    with pytest.raises(UsageError, match=r"expected|did you mean"):
+        asked(**words)  # type: ignore[arg-type]
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.binary(max_size=60) | ANYTHING.map(lambda x: json.dumps(x).encode()))
+def test_no_manifest_ends_the_listing(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    root = tmp_path_factory.mktemp("runs")
+    good = run(root, "2026-11-20")
+    (root / "odd").mkdir()
+    (root / "odd" / "manifest.json").write_bytes(data)
+    rows = {row.path.name: row for row in runs(root)}
+    assert set(rows) == {good.name, "odd"}
+    assert rows["odd"].status == "unreadable"
+    assert "odd/manifest.json" in rows["odd"].problem
+
+
+@settings(max_examples=100, deadline=None)
+@example("conditions", {"depth_mm": [float("nan")]})
+@given(st.sampled_from([*MANIFEST, "started_utc", "label", "campaign", "rows", "process", "exit_reason"]), ANYTHING)
+def test_any_value_of_any_key_gives_a_row_that_can_be_written(
+    tmp_path_factory: pytest.TempPathFactory, key: str, value: Any
+) -> None:
+    root = tmp_path_factory.mktemp("runs")
+    run(root, "2026-11-20", **{key: value})
+    for order in ("started", "gear", "duration"):
+        (row,) = runs(root, asked(sort=order))
+    json.dumps(row.as_json(), allow_nan=False).encode()
+    asked(since="2026-11-01").passes(row)
+
+
+def test_a_manifest_that_was_replaced_is_read_again_and_one_that_was_not_is_remembered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = run(tmp_path, "2026-11-20")
+    monkeypatch.setattr(remembered, "FRESH", -1)  # as if it had been written long ago
+    assert [row.verdict for row in runs(tmp_path)] == ["PASS"]
+    opened: list[Path] = []
+    from rig.runfile import manifest
+
+    read = manifest.read
+    monkeypatch.setattr(manifest, "read", lambda path: opened.append(path) or read(path))
+    assert [row.verdict for row in runs(tmp_path)] == ["PASS"]
+    assert not opened
+    manifest.update(folder, verdict="FAIL")
+    assert [row.verdict for row in runs(tmp_path)] == ["FAIL"]
+
+
+def test_a_manifest_just_written_is_not_remembered_its_time_may_not_change_again(tmp_path: Path) -> None:
+    folder = run(tmp_path, "2026-11-20")
+    path = folder / "manifest.json"
+    about = path.stat()
+    assert [row.verdict for row in runs(tmp_path)] == ["PASS"]
+    path.write_text(path.read_text().replace("PASS", "FAIL"))  # same inode, same size …
+    os.utime(path, ns=(about.st_atime_ns, about.st_mtime_ns))  # … and its time set back
+    assert [row.verdict for row in runs(tmp_path)] == ["FAIL"]
+
+
+def test_a_run_whose_program_has_died_is_interrupted_each_time_it_is_asked(tmp_path: Path) -> None:
+    run(tmp_path, "2026-11-20", status="running", process={"pid": 2**22 + 1, "started": 1, "host": "elsewhere"})
+    (row,) = runs(tmp_path)
+    assert (row.status, "hdrig recover" in row.reason) == ("interrupted", True)
+
+
+def test_the_command_lists_damage_in_words_and_json_line_by_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(tmp_path, "2026-11-20", backend="sim")
+    (tmp_path / "odd").mkdir()
+    (tmp_path / "odd" / "manifest.json").write_text("{")
+    assert main(["list", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "is not JSON" in said
+    assert "SIMULATED" in said
+    assert main(["list", str(tmp_path), "--json", "--status", "completed"]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    assert json.loads(line)["gear"] == "SN1"
+
+
+def test_five_thousand_manifests_are_opened_once_each(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """How long that takes is measured by tests/studies/catalogue.py: 0.3 s of CPU."""
+    from rig.runfile import manifest
+
+    for k in range(50):
+        run(tmp_path, "2026-11-20", k)
+    opened: list[Path] = []
+    read = manifest.read
+    monkeypatch.setattr(manifest, "read", lambda path: opened.append(path) or read(path))
+    assert len(runs(tmp_path)) == len(opened) == 50

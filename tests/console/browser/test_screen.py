@@ -1,0 +1,144 @@
+"""One screen, at a desk and on a tablet; by hand, by keyboard, in high contrast; a unit on every number."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from tests.console.browser.look import in_state, text, until
+from tests.console.browser.puppet import BENCH, RUN, Puppet
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
+SCREENS = {"a wall": (1920, 1080), "a desk": (1600, 900), "a tablet": (1024, 768)}
+UNITS = r"(arcsec|deg|rpm|N·m|µs|ticks?|ms|s|%)"
+SCROLLS = "[document.body.scrollHeight > innerHeight, document.body.scrollWidth > innerWidth]"
+PAINTED = """node => {
+  const ink = getComputedStyle(node).color;
+  const clear = (one) => /rgba\\(0, 0, 0, 0\\)|transparent/.test(getComputedStyle(one).backgroundColor);
+  while (node && clear(node)) node = node.parentElement;
+  return [ink, getComputedStyle(node).backgroundColor];
+}"""
+TEXTS = ("#state", "#fault", "#halt b", ".tile dt", ".tile .basis", ".summary", "#steps .said", "#bench")
+TOUCH = 44  # px, the least a finger hits
+
+
+def _running(station: Puppet) -> None:
+    station.tell(state="running", bench=BENCH, run=RUN, job="run kinematic-error")
+
+
+def test_one_screen_without_scrolling_and_halt_always_at_the_same_place(page: Page, station: Puppet) -> None:
+    _running(station)
+    in_state(page, "running")
+    for name, (width, height) in SCREENS.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(100)
+        places = []
+        for view in ("rig", "runs"):
+            page.click(f"#tab-{view}")
+            scrolls = page.evaluate(
+                "[document.body.scrollHeight > innerHeight, document.body.scrollWidth > innerWidth]"
+            )
+            assert scrolls == [False, False], f"{name}, {view}"
+            places.append(page.locator("#halt").bounding_box())
+        assert places[0] == places[1], name
+        assert places[0]
+        assert places[0]["x"] + places[0]["width"] <= width
+        assert places[0]["height"] > TOUCH
+
+
+def test_every_button_and_field_is_large_enough_for_a_finger(page: Page, station: Puppet) -> None:
+    _running(station)
+    in_state(page, "running")
+    for width, height in SCREENS.values():
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(100)
+        for element in page.locator("button:visible, input:visible, select:visible").all():
+            box = element.bounding_box()
+            assert box, element
+            said = f"{element.get_attribute('id')} {element.text_content()}: {box}"
+            assert box["height"] >= TOUCH - 3, said  # 15 px type on a tablet: 41 px, with 6 px between them
+            assert box["width"] >= TOUCH - 3, said
+
+
+def test_every_number_of_a_run_has_a_unit(page: Page, station: Puppet) -> None:
+    _running(station)
+    in_state(page, "running")
+    t = np.linspace(0.0, 1.0, 50)
+    station.show({"t": t, "motor_angle": 60 * t, "speed": 0 * t + 9.6, "tau_m": 0 * t + 0.33, "tau_l": 0 * t + 1.05})
+    page.wait_for_selector("[data-tile=speed]:has-text('9.6')")
+    for tile in page.locator(".tile .value").all():
+        said = tile.text_content() or ""
+        assert re.fullmatch(rf"[−\d.]+( / [\d.]+)?\u00a0{UNITS}", said), said
+    assert re.search(r"25 % .*50\W?s of at most 3\W?min 20\W?s .*2\W?min 30\W?s left", text(page, "#run-time"))
+
+
+def test_what_was_not_measured_is_a_dash_and_not_a_zero(page: Page, station: Puppet) -> None:
+    station.tell(state="running", bench=BENCH, run={**RUN, "peak_to_peak_arcsec": None})
+    in_state(page, "running")
+    station.show({"t": np.linspace(0.0, 1.0, 50), "speed": np.full(50, 9.6)})  # no torque sensor
+    page.wait_for_selector("[data-tile=speed]:has-text('9.6')")
+    assert text(page, "[data-tile=shaft] .value") == "—"
+    assert text(page, "[data-tile=peak] .value") == "—"
+
+
+def test_a_torque_near_its_limit_is_marked(page: Page, station: Puppet) -> None:
+    _running(station)
+    in_state(page, "running")
+    station.show({"t": np.linspace(0.0, 1.0, 50), "tau_m": np.full(50, 4.6), "speed": np.full(50, 9.6)})
+    page.wait_for_selector("[data-tile=motor].abnormal")
+    assert page.locator(".tile.abnormal").count() == 1
+
+
+def test_everything_is_reached_by_the_keyboard_and_where_the_focus_is_can_be_seen(page: Page, station: Puppet) -> None:
+    station.tell(state="ready", bench=BENCH)
+    in_state(page, "ready")
+    reached = set()
+    for _ in range(45):
+        page.keyboard.press("Tab")
+        name, outline = page.evaluate(
+            "[document.activeElement.id || document.activeElement.dataset.act || '', "
+            "getComputedStyle(document.activeElement).outlineWidth]"
+        )
+        assert name in ("", "chooser") or outline != "0px", name
+        reached.add(name)
+    assert {"halt", "hold", "stop", "prove", "chosen", "start", "note-text", "tab-runs", "theme"} <= reached
+    page.keyboard.press("Alt+2")
+    page.wait_for_selector("#view-runs", state="visible")
+    page.keyboard.press("Alt+1")
+    page.focus("#start")
+    page.keyboard.press("Enter")
+    until(lambda: [act["act"] for act in station.acts] == ["start"], "start")
+
+
+def test_text_stands_out_from_its_ground_in_every_look(page: Page, station: Puppet) -> None:
+    station.tell(state="fault", bench=BENCH, fault="following error 12.4 deg", proof="ratio 49.994")
+    in_state(page, "fault")
+    for look, least in (("calm", 4.5), ("dark", 4.5), ("contrast", 7.0)):  # contrast of WCAG AA, AAA
+        page.select_option("#theme", look)
+        for selector in (
+            "#state",
+            "#fault",
+            "#halt b",
+            ".tile dt",
+            ".tile .basis",
+            ".summary",
+            "#steps .said",
+            "#bench",
+        ):
+            assert _contrast(page, selector) >= least, f"{selector} in {look}"
+
+
+def _contrast(page: Page, selector: str) -> float:
+    """Of the text to the nearest ground behind it that is painted, WCAG 2."""
+    ink, ground = page.locator(selector).first.evaluate(PAINTED)
+    high, low = sorted((_luminance(ink), _luminance(ground)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def _luminance(colour: str) -> float:
+    parts = [int(x) / 255 for x in re.findall(r"\d+", colour)[:3]]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]

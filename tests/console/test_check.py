@@ -1,0 +1,72 @@
+"""Parameters as they are typed, and what the page offers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rig.console.check import check
+from rig.console.described import catalogue
+from rig.procedures import CATALOGUE
+
+
+def looked_at(parameters: Any, procedure: str = "kinematic-error") -> dict[str, Any]:
+    return check({"procedure": procedure, "parameters": parameters}, "twin", [])
+
+
+def test_what_is_right_comes_with_its_dry_run_and_margins() -> None:
+    found = looked_at({"cycles": 1.0})
+    assert found["ok"]
+    assert any(line.startswith("duration    101.0 s") for line in found["plan"])
+    speed = next(m for m in found["margins"] if m["what"] == "speed")
+    assert (speed["unit"], speed["limit"]) == ("rpm", pytest.approx(600.0))
+    assert speed["fraction"] == pytest.approx(9.6 / 600, rel=1e-3)
+
+
+def test_each_wrong_parameter_is_told_by_its_name() -> None:
+    found = looked_at({"cycles": "many", "amplitude_deg": -3, "nonsense": 1})
+    assert not found["ok"]
+    assert set(found["problems"]) == {"cycles", "amplitude_deg", "nonsense"}
+
+
+def test_what_no_single_parameter_shows_is_told_of_the_whole_with_its_margins() -> None:
+    found = looked_at({"frequency": 9.0})
+    assert "asks for speed" in found["problems"]["*"]
+    assert any(m["fraction"] > 1 for m in found["margins"])
+
+
+@pytest.mark.parametrize(
+    "parameters", [None, {}, [], "x", 7, {"cycles": None}, {"cycles": [1]}, {"": ""}, {"cycles": 1e400}]
+)
+def test_nothing_a_page_could_send_breaks_it(parameters: Any) -> None:
+    assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins"}
+
+
+def test_an_unknown_procedure_or_bench_is_a_sentence() -> None:
+    assert "no procedure called" in looked_at({}, "rm -rf")["problems"]["*"]
+    assert "no bench called" in check({"procedure": "jog"}, "nowhere", [])["problems"]["*"]
+
+
+def test_a_plan_is_told_line_by_line() -> None:
+    found = check({"plan": "quick"}, "twin", [])
+    assert found["ok"]
+    assert any("by hand: fit the lock pin" in line for line in found["plan"])
+    assert not check({"plan": "nonsense"}, "twin", [])["ok"]
+
+
+def test_every_procedure_is_offered_with_unit_or_name_for_every_number() -> None:
+    offered = {p["name"]: p for p in catalogue("twin")["procedures"]}
+    assert set(offered) == set(CATALOGUE)
+    amplitude = offered["kinematic-error"]["parameters"][0]
+    assert (amplitude["name"], amplitude["unit"], amplitude["default"]) == ("amplitude_deg", "deg", 1440.0)
+    assert offered["stiffness-lock"]["needs_lock"]
+    assert all(p["summary"] for p in offered.values())
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_the_defaults_that_are_offered_are_accepted_as_they_stand(name: str) -> None:
+    offered = next(p for p in catalogue("twin")["procedures"] if p["name"] == name)
+    given = {p["name"]: p["default"] for p in offered["parameters"] if p["default"] != []}
+    found = looked_at(given, name)
+    assert found["ok"], found["problems"]

@@ -1,0 +1,92 @@
+"""Each act once, on the state it was based on, by the page that holds control."""
+
+from __future__ import annotations
+
+import uuid
+from typing import Any
+
+import pytest
+
+from rig.console.gate import Answer, Gate
+from rig.station.rules import ALWAYS, allowed
+from rig.station.status import Status
+
+IDLE = allowed(Status().picture())
+
+
+def asked(act: str, based_on: int | None = 1, **more: Any) -> dict[str, Any]:
+    return {"id": str(uuid.uuid4()), "act": act, "based_on": based_on, **more}
+
+
+def test_an_act_on_the_present_revision_passes() -> None:
+    assert Gate().refuse(asked("connect"), "a", IDLE) == ""
+
+
+@pytest.mark.parametrize("based_on", [0, 2, None, "1", 1.5, [], {}])
+def test_an_act_based_on_anything_else_is_refused_with_both_numbers(based_on: Any) -> None:
+    why = Gate().refuse(asked("connect", based_on), "a", IDLE)
+    assert "the state has changed" in why
+    assert "it is 1" in why
+
+
+def test_the_second_click_is_based_on_what_was_before_the_first() -> None:
+    gate = Gate()
+    assert gate.refuse(asked("connect"), "a", IDLE) == ""
+    gate.passed()
+    assert "the state has changed" in gate.refuse(asked("connect"), "a", IDLE)
+
+
+@pytest.mark.parametrize("act", ALWAYS)
+def test_hold_stop_and_halt_pass_on_any_revision(act: str) -> None:
+    assert Gate().refuse(asked(act, based_on=-7), "a", IDLE) == ""
+
+
+@pytest.mark.parametrize("act", ["stop", "halt"])
+def test_every_page_may_stop_and_halt(act: str) -> None:
+    assert Gate(controller="a").refuse(asked(act), "b", IDLE) == ""
+
+
+@pytest.mark.parametrize("act", ["connect", "hold", "start", "jog", "answer", "reset"])
+def test_a_page_without_control_may_do_nothing_else(act: str) -> None:
+    assert "another page holds control" in Gate(controller="a").refuse(asked(act), "b", IDLE)
+
+
+def test_control_can_be_taken_and_is_then_the_others_no_more() -> None:
+    gate = Gate(controller="a")
+    assert gate.refuse(asked("take_control"), "b", IDLE) == ""
+    gate.take("b")
+    assert gate.holds("b")
+    assert not gate.holds("a")
+    gate.release("a")  # who has none gives none back
+    assert gate.controller == "b"
+
+
+def test_what_the_rules_do_not_allow_is_refused_with_their_sentence() -> None:
+    assert Gate().refuse(asked("start"), "a", IDLE) == "no bench is connected"
+
+
+@pytest.mark.parametrize("id", [None, "", 7, "x" * 40, "not-a-uuid", ["x"], "0" * 500])
+def test_an_act_needs_an_id_that_is_one(id: Any) -> None:
+    assert "an id of its own" in Gate().refuse({**asked("connect"), "id": id}, "a", IDLE)
+
+
+@pytest.mark.parametrize("act", [None, 7, "", "sudo", ["halt"], {"act": "halt"}, "take_control "])
+def test_an_unknown_act_is_refused_with_the_list(act: Any) -> None:
+    why = Gate().refuse({**asked("x"), "act": act}, "a", IDLE)
+    assert "there is no act" in why
+    assert "halt" in why
+
+
+def test_an_id_is_answered_once_and_for_all() -> None:
+    gate, first = Gate(), asked("connect")
+    assert gate.before(first) is None
+    answer = gate.remember(first, Answer.yes())
+    gate.passed()
+    assert gate.before(dict(first, act="disconnect")) is answer
+
+
+def test_the_memory_of_ids_is_bounded() -> None:
+    gate = Gate()
+    for _ in range(2000):
+        gate.remember(asked("note"), Answer.yes())
+    assert len(gate._answers) == 500

@@ -1,0 +1,57 @@
+"""Pages of the catalogue: self-contained, SIMULATED where anything is, the changes in them those of the data."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from rig.catalogue import compare, trend
+from rig.report.comparison import page, trend_page
+from rig.report.comparison.waveforms import drawing, joined
+from rig.report.figures import Frame, svg
+from tests.catalogue.folders import run
+
+DAYS = ["2026-11-16", "2026-11-17"]
+
+
+def test_a_comparison_without_samples_has_its_table_and_says_why_there_is_no_waveform(tmp_path: Path) -> None:
+    first = [run(tmp_path, DAYS[0], k, 90.0 + 0.1 * (k % 3)) for k in range(6)]
+    other = run(tmp_path, DAYS[1], 0, 95.0)
+    text = page.render(compare([first[0], other]))
+    assert "+5.00 ± 0.42" in text
+    assert re.search(r'<td class="changed">95\.00 ± 0\.30', text)
+    assert "Waveform of" in text
+    assert "SIMULATED" not in text
+
+
+def test_pages_load_nothing_and_escape_what_manifests_say(tmp_path: Path) -> None:
+    bad = "<script>alert(1)</script>"
+    a = run(tmp_path, DAYS[0], backend="sim", gear={"serial": bad})
+    b = run(tmp_path, DAYS[1], backend="sim", gear={"serial": bad})
+    for text in (page.render(compare([a, b])), trend_page.render(trend(tmp_path, "peak-to-peak"))):
+        assert bad not in text
+        assert "&lt;script&gt;" in text
+        assert not re.search(r'(src|href)="(?!#)', text)
+        assert "SIMULATED" in text
+
+
+def test_a_trend_is_drawn_for_each_series_with_its_sentence(tmp_path: Path) -> None:
+    for k in range(5):
+        run(tmp_path, DAYS[0], k, 90.0 + 0.1 * (k % 3))
+    run(tmp_path, DAYS[1], 0, 95.0)
+    text = trend_page.render(trend(tmp_path, "peak-to-peak"))
+    assert "1 change larger than reproducibility: 2026-11-17 by +4.92 arcsec" in text
+    assert text.count("<svg") == 1 + 2, "the sign, and each series for a wide and a narrow page"
+
+
+def test_waveforms_are_drawn_of_errors_or_of_loops_and_never_of_nothing() -> None:
+    theta = np.linspace(0.5, 359.5, 360)
+    error = {"ke.theta_deg": theta, "ke.pure": 40 * np.sin(np.radians(2 * theta))}
+    loop = {"lock.windup": np.linspace(-3, 3, 5000), "lock.torque": np.linspace(-12, 12, 5000)}
+    shown = drawing([1, 2])
+    assert "run 2" in str(svg(shown, joined([error, error]), Frame()))
+    assert "Shaft torque" in str(svg(shown, joined([loop, loop]), Frame()))
+    assert svg(shown, joined([None, None]), Frame()) is None
+    assert "span of each: run 1 79.99, run 2 79.99" in shown.say(joined([error, error]))
