@@ -52,7 +52,7 @@ class HystereticStiffness(Effect):
         phi = signals.theta_m / signals.ratio - signals.theta_l - signals.series_value
         if not np.isfinite(phi).all():
             phi = np.nan_to_num(signals.torque) / signals.gear.K
-        return play(np.ascontiguousarray(phi), self.UNMOVED)
+        return np.asarray(play(np.ascontiguousarray(phi), self.UNMOVED))
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Wind-up between the branches at zero torque after a large swing, and the scale of the half widths."""

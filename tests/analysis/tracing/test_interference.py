@@ -1,0 +1,76 @@
+"""A line beside the motion is found, steady or wandering; an order of the shaft is none, and noise is none."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing import interference
+from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.interference import find_interference
+from rig.model.effect import Array
+
+DT, N = 0.004, 10_000
+T = DT * np.arange(N)
+SPEEDS = (1.0, 6.3, 21.0, 42.0)
+
+
+class Run:
+    """Just what the search looks at."""
+
+    locked = False
+
+    def __init__(self, turning: float) -> None:
+        self.turning = turning
+
+
+class Rig:
+    """Runs at the four speeds."""
+
+    runs = tuple(Run(w) for w in SPEEDS)
+
+
+@pytest.fixture(autouse=True)
+def _clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interference, "clock", lambda eq, key: T)
+
+
+def residuals(line: Any) -> dict[Key, Array]:
+    rng = np.random.default_rng(4)
+    return {(i, "L"): 0.05 * rng.standard_normal(N) + line(w) for i, w in enumerate(SPEEDS)}
+
+
+def look(e: dict[Key, Array]) -> interference.Interference | None:
+    return find_interference(cast(Equations, Rig()), e, {})
+
+
+def test_a_steady_line_is_found_at_its_frequency_and_taken_away() -> None:
+    e = residuals(lambda w: 0.1 * np.sin(2 * np.pi * 3.7 * T + w))
+    found = look(e)
+    assert found is not None
+    assert found.frequency_hz == pytest.approx(3.7, abs=0.05)
+    left = np.concatenate([e[k] - found.columns[k][:, 0] for k in e])
+    assert np.std(left) == pytest.approx(0.05, rel=0.05)
+
+
+def test_a_wandering_line_is_found_and_taken_away() -> None:
+    wander = 2 * np.pi * (8.0 * T + 8.0 * 0.2 / (2 * np.pi * 0.01) * np.sin(2 * np.pi * 0.01 * T))
+    e = residuals(lambda w: 0.1 * np.sin(wander + w))
+    found = look(e)
+    assert found is not None
+    assert 6.4 < found.frequency_hz < 9.6
+    assert np.std(np.concatenate([e[k] - found.columns[k][:, 0] for k in e])) < 0.056
+
+
+def test_what_follows_the_speed_is_an_order_and_no_line() -> None:
+    assert look(residuals(lambda w: 0.1 * np.sin(2 * w * T))) is None
+
+
+def test_noise_has_no_line() -> None:
+    assert look(residuals(lambda w: 0.0)) is None
+
+
+def test_a_faint_line_makes_no_floor_too_high_and_is_left() -> None:
+    assert look(residuals(lambda w: 0.02 * np.sin(2 * np.pi * 3.7 * T))) is None
