@@ -105,7 +105,7 @@ def _keep(png: bytes, picture: Path, scale: float = 1.0) -> None:
     image = Image.open(io.BytesIO(png)).convert("RGB")
     size = (round(scale * image.width), round(scale * image.height))
     shown = image.resize(size, Image.Resampling.LANCZOS) if scale != 1.0 else image
-    shown.quantize(256, dither=Image.Dither.NONE).save(picture, optimize=True)
+    shown.quantize(256, kmeans=4, dither=Image.Dither.NONE).save(picture, optimize=True)
 
 
 def main(names: list[str]) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rig.bench import ClockName
+from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
 from rig.campaign import summary
 from rig.campaign.journal import NAME as JOURNAL
@@ -19,11 +20,15 @@ from rig.campaign.run import conduct, open_session
 from rig.commands.campaign import Terminal, refuse_nobody
 from rig.commands.options import bench_arguments
 from rig.commands.show.at_the_rig import at_the_rig
-from rig.commands.show.show import showing
+from rig.commands.show.show import Show, showing
 from rig.core.errors import Exit, HdrigError, UsageError
 
 if TYPE_CHECKING:
-    from rig.analysis.reproduction.gather import Entry
+    from concurrent.futures import Future
+
+    from rig.analysis.reproduction.gather import Ahead, Entry
+    from rig.analysis.reproduction.reading import Reading
+    from rig.commands.person import Person
 
 BENCH, PLAN = "twin-paper", "paper-short"
 
@@ -41,14 +46,17 @@ def run(args: argparse.Namespace) -> int:
     """Make the campaign where none is given, then the page."""
     if args.campaign is not None:
         return draw(args.campaign, args.out or args.campaign)
-    folder, exit = make(args)
-    if exit is not Exit.PASS:
-        print(f"hdrig campaign --resume {folder} goes on with it; hdrig reproduce {folder} draws it", file=sys.stderr)
-        return int(exit)
-    return draw(folder, folder)
+    from rig.analysis.reproduction.gather import Ahead
+
+    with Ahead() as ahead:
+        folder, exit = make(args, ahead)
+        if exit is Exit.PASS:
+            return draw(folder, folder, ahead.begun)
+    print(f"hdrig campaign --resume {folder} goes on with it; hdrig reproduce {folder} draws it", file=sys.stderr)
+    return int(exit)
 
 
-def make(args: argparse.Namespace) -> tuple[Path, Exit]:
+def make(args: argparse.Namespace, ahead: Ahead) -> tuple[Path, Exit]:
     """The plan, run by run, without a report for each; its folder and how it ended. Raises HdrigError."""
     seed = [] if args.seed is None else [f"twin.seed={args.seed}"]
     overrides = [*args.set, *seed]
@@ -57,6 +65,7 @@ def make(args: argparse.Namespace) -> tuple[Path, Exit]:
     refuse_nobody(campaign, range(len(campaign.items)))
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out or Path("runs"), campaign, clock, overrides)
+    desk = ReadAhead if clock == "virtual" else Recording
     with showing(json=False) as show:
         show.bench(bench, clock)
         show.say(f"campaign folder {journal.folder}")
@@ -64,7 +73,7 @@ def make(args: argparse.Namespace) -> tuple[Path, Exit]:
             at_the_rig(show) as (interrupts, person),
             open_session(campaign, journal, clock, interrupts, args.note, person, show) as session,
         ):
-            exit = conduct(session, campaign, journal, Recording(bench, person, show))
+            exit = conduct(session, campaign, journal, desk(bench, person, show, ahead))
         show.leave(exit)
     text = "\n".join(summary.lines(journal)) + "\n"
     (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
@@ -74,12 +83,24 @@ def make(args: argparse.Namespace) -> tuple[Path, Exit]:
 class Recording(Terminal):
     """Runs are recorded; what they say is read once, from all of them, for the page."""
 
+    def __init__(self, bench: Bench, person: Person, show: Show, ahead: Ahead) -> None:
+        super().__init__(bench, person, show)
+        self.ahead = ahead
+
     def figure(self, folder: Path) -> str:
         return "recorded"
 
 
-def draw(campaign: Path, out: Path) -> int:
-    """The page from the runs in `campaign` into `out`. Raises UsageError and DataError."""
+class ReadAhead(Recording):
+    """They are read beside the next one: in virtual time nothing is late when the processors are busy."""
+
+    def figure(self, folder: Path) -> str:
+        self.ahead.begin(folder)
+        return super().figure(folder)
+
+
+def draw(campaign: Path, out: Path, begun: Mapping[Path, Future[Reading]] = MappingProxyType({})) -> int:
+    """The page from the runs in `campaign` into `out`; `begun` are being read. Raises UsageError and DataError."""
     from rig.analysis.reproduction.catalogue import exhibits
     from rig.analysis.reproduction.gather import entries, gather
     from rig.report.reproduction import About, told, write
@@ -87,7 +108,7 @@ def draw(campaign: Path, out: Path) -> int:
     if not campaign.is_dir():
         raise UsageError(f"{campaign} is no folder; expected that of a campaign")
     found = entries(campaign)
-    read = gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr))
+    read = gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr), begun=begun)
     made = exhibits(read)
     backends = {str(e.manifest.get("backend")) for e in found}
     backend = "sim" if "sim" in backends else next(iter(backends)) if len(backends) == 1 else None

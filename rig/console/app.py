@@ -36,8 +36,7 @@ class Console:
 
     def __init__(self, access: Access, root: Path, offered: str, viewer: Viewer | None = None) -> None:
         self.link, self.gate = Link(root), Gate()
-        self.desk = ActDesk(self.link, self.gate)
-        self.desk.offered = offered
+        self.desk = ActDesk(self.link, self.gate, offered)
         self.feed = Feed(self.link)
         self.pages = Pages(access, self.desk, self.feed, self.state)
         self.closing = False

@@ -24,11 +24,11 @@ LONGEST_TEXT = 2000  # characters of a note
 class ActDesk:
     """One for all pages."""
 
-    def __init__(self, link: Link, gate: Gate) -> None:
-        self.link, self.gate = link, gate
+    def __init__(self, link: Link, gate: Gate, offered: str) -> None:
+        """`offered`: the bench the server was started for."""
+        self.link, self.gate, self.offered = link, gate, offered
         self._under_way: dict[str, asyncio.Future[Answer]] = {}
         self._based_on: tuple[object, ...] = ()
-        self.offered = "twin"
 
     def look(self) -> None:
         """The station told something: a new revision when it is something that acts are based on."""

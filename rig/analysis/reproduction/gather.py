@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rig.analysis.reproduction.campaign import Campaign
@@ -77,13 +78,50 @@ def _number_of(manifest: Mapping[str, Any]) -> int:
     return int((manifest.get("campaign") or {}).get("run") or 0)
 
 
-def gather(found: Sequence[Entry], progress: Callable[[str], None] = lambda text: None) -> Campaign:
-    """Read every run and identify the gear. What cannot be read is left out, and the campaign says so."""
+class Ahead:
+    """Reads runs while the campaign goes on, each as it is closed, in a process of its own.
+
+    Use as a context manager. Lock runs wait: which slow run is taken off them is known when all are made.
+    """
+
+    def __init__(self) -> None:
+        self.begun: dict[Path, Future[Reading]] = {}
+
+    def __enter__(self) -> Ahead:
+        self._pool = _pool(1)
+        return self
+
+    def __exit__(self, kind: object, error: object, trace: object) -> None:
+        self._pool.shutdown(cancel_futures=True)
+
+    def begin(self, folder: Path) -> None:
+        """Read the run in `folder`, which is closed. Raises HdrigError when it has no manifest."""
+        entry = Entry(folder, manifests.read(folder))
+        if _counts(entry.manifest) and not entry.locked:
+            self.begun[folder.resolve()] = self._pool.submit(read, folder)
+
+
+def _pool(processes: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(processes, multiprocessing.get_context("spawn"), _quiet)
+
+
+def gather(
+    found: Sequence[Entry],
+    progress: Callable[[str], None] = lambda text: None,
+    processes: int = PROCESSES,
+    begun: Mapping[Path, Future[Reading]] = MappingProxyType({}),
+) -> Campaign:
+    """Read every run and identify the gear; `begun` are those that are being read already, by folder.
+
+    What cannot be read is left out, and the campaign says so. How many processes read does not change what they read.
+    """
     reference = slow_reference(found)
-    with ProcessPoolExecutor(PROCESSES, multiprocessing.get_context("spawn"), _quiet) as pool:
+    with _pool(processes) as pool:
         model = pool.submit(identify_gear, *to_identify(found))
-        readings = [pool.submit(read, e.folder, reference if e.locked else None) for e in found]
-        progress(f"{len(found)} runs in {PROCESSES} processes")
+        readings = [
+            begun.get(e.folder.resolve()) or pool.submit(read, e.folder, reference if e.locked else None) for e in found
+        ]
+        progress(f"{len(found)} runs in {processes} processes")
         read_ones = [_or_why(one) for one in readings]
         gear, why = _model(model)
     unread = [f"{e.folder.name}: {r}" for e, r in zip(found, read_ones, strict=True) if isinstance(r, str)]

@@ -11,6 +11,7 @@ import numpy as np
 from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.model import Solution
+from rig.analysis.tracing.recording import Recording
 from rig.analysis.tracing.replay import GONE, Model, model_of, replayed, shown
 from rig.analysis.tracing.result import Before
 from rig.model.effect import Array
@@ -74,7 +75,17 @@ def _simulated(p: Prepared, key: Key, models: tuple[Model, Model]) -> Free | Non
     measured, theta = rows.y[: here.size][here], rows.theta_m[: here.size][here]
     columns = [m[keep] for m in made if m is not None]
     before, after, seen = (ARCSEC * _own_out(p, key, x, keep, here) for x in (*columns, measured))
-    return Free(theta, seen, before, after)
+    return Free(theta, seen, before, after + _vibration(p, run, keep, seen - after))
+
+
+def _vibration(p: Prepared, run: Recording, keep: Array, left: Array) -> Array:
+    """What a named vibration makes of `left` (n,), in the phase this run has; zero where none is named."""
+    named = p.own.parameters.get("external_vibration")
+    if named is None:
+        return np.zeros(left.size)
+    x = 2 * np.pi * named[0].value * np.arange(keep.size)[keep] * run.smoother.dt * run.smoother.step
+    z = np.stack([np.cos(x), np.sin(x)], 1)
+    return np.asarray(z @ np.linalg.lstsq(z, left, rcond=None)[0])
 
 
 def _own_out(p: Prepared, key: Key, x: Array, keep: Array, here: Array) -> Array:

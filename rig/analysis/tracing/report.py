@@ -16,6 +16,7 @@ from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import errors
 from rig.analysis.tracing.free import curves_of, free, with_free
 from rig.analysis.tracing.judge import Worth, unseen
+from rig.analysis.tracing.lives import lives_in
 from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
 from rig.analysis.tracing.pictures import pictures
@@ -71,7 +72,7 @@ def report(
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
-        lives_in=ruling.lives_in,
+        lives_in=ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ()),
         candidates=candidates(p, found.ranking, before, ruling.verdict.effects),
         verdict=ruling.verdict,
         effects=tuple(
@@ -84,6 +85,11 @@ def report(
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
         curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
     )
+
+
+def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
+    """What the baseline leaves in the fitted runs, with what each run has to itself."""
+    return {key: baseline.residual(key) for key in baseline.keys}
 
 
 def own_shares(p: Prepared, s: Solution) -> dict[str, float]:

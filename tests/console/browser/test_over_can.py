@@ -50,11 +50,11 @@ def _connected(page: Page) -> None:
     page.wait_for_selector("[data-act=prove][aria-disabled=false]", timeout=1e3 * LOADED)
 
 
-def _jogging(page: Page, turns: str = "2") -> None:
-    """A run of 12 s, the proof before it where there is none yet."""
-    page.fill("#jog-turns", turns)
+def _jogging(page: Page) -> None:
+    """A run of 90 s, to be ended by the test; the proof before it where there is none yet."""
+    page.fill("#jog-turns", "15")
     page.click("[data-jog='1']", timeout=1e3 * LOADED)
-    page.wait_for_selector("#run-title:has-text('jog')", timeout=1e3 * LOADED)
+    page.wait_for_selector("#run-folder:has-text('jog')", timeout=1e3 * LOADED)  # the run's own, not the proof's
     in_state(page, "running", LOADED)
 
 
@@ -93,8 +93,8 @@ def _until_completed(page: Page) -> None:
     """Start, and see it to its end. A run that ends because the machine stalled is made again, by clicking."""
     for _ in range(ATTEMPTS):
         page.click("#start", timeout=1e3 * LOADED)
-        page.wait_for_selector("#run-title:has-text('kinematic'), #fault:visible", timeout=1e3 * LOADED)
-        page.wait_for_selector("#last a:visible, #fault:visible", timeout=1e3 * LOADED)
+        page.wait_for_selector("#run-folder:has-text('kinematic'), #fault:visible", timeout=1e3 * LOADED)
+        page.wait_for_selector("#last a:visible, #fault:visible", timeout=3e3 * LOADED)  # the analysis too
         if page.locator("#fault").is_hidden():
             return
         assert STALLED.search(text(page, "#fault")), text(page, "#fault")
@@ -109,7 +109,7 @@ def test_two_quick_clicks_on_the_real_server_turn_the_motor_once(served: Rig, de
     before = desk.locator("#events li:has-text('running: jog')").count()
     forward = desk.locator("[data-jog='1']")
     forward.evaluate("button => { button.click(); button.click(); }")  # two clicks of which neither is a double click's
-    desk.wait_for_selector("#run-title:has-text('jog')", timeout=1e3 * LOADED)
+    desk.wait_for_selector("#run-folder:has-text('jog')", timeout=1e3 * LOADED)
     desk.wait_for_selector("[data-jog='1'][aria-disabled=false]", timeout=1e3 * LOADED)
     jogs = [one for one in served.closed(1) if one.get("label") == "jog"]
     assert len(jogs) == before + 1 == 1

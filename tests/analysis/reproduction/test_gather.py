@@ -1,0 +1,51 @@
+"""A campaign's runs read by one process, by two, or while it goes on: the same figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.reproduction.campaign import Campaign
+from rig.analysis.reproduction.catalogue import exhibits
+from rig.analysis.reproduction.gather import Ahead, Entry, entries, gather
+
+SOME = ("slow_ke_1", "speed_300rpm_1", "lock_20_1")
+
+
+def said(read: Campaign) -> str:
+    """Every claim's ruling and words, and the gear."""
+    claims = [(e.number, c.paper, c.ruling, c.words, c.numbers) for e in exhibits(read) for c in e.claims]
+    assert read.model is not None
+    return json.dumps([claims, {n: (p.value, p.interval) for n, p in read.model.parameters.items()}], default=str)
+
+
+@pytest.fixture(scope="module")
+def found(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Entry]:
+    folder = tmp_path_factory.mktemp("campaign")
+    for name in SOME:
+        (folder / name).symlink_to(shared / "cases" / "open-1" / name)
+    return entries_of(folder)
+
+
+def entries_of(folder: Path) -> list[Entry]:
+    """As `entries`, which does not follow links."""
+    return [e for name in SOME for e in entries((folder / name).resolve())]
+
+
+@pytest.mark.slow
+def test_one_process_and_two_and_reading_ahead_give_the_same_figures(found: list[Entry]) -> None:
+    one, two = (gather(found, processes=n) for n in (1, 2))
+    with Ahead() as ahead:
+        for entry in found:
+            ahead.begin(entry.folder)
+        assert len(ahead.begun) == 2, "the lock test waits for its slow run"
+        third = gather(found, begun=ahead.begun)
+    assert said(one) == said(two) == said(third)
+    for a, b in zip(one.readings, third.readings, strict=True):
+        assert a.name == b.name
+        assert (a.fast is None) is (b.fast is None)
+        if a.fast is not None and b.fast is not None:
+            assert np.array_equal(a.fast.profile.cosine, b.fast.profile.cosine)
