@@ -21,6 +21,7 @@ from rig.analysis.tracing.model import Design, Solution, design
 from rig.analysis.tracing.noise import floor_of
 from rig.analysis.tracing.pictures import pictures
 from rig.analysis.tracing.result import Floor, Found, Trace
+from rig.analysis.tracing.ripple import ripples
 from rig.analysis.tracing.search import Found as Searched
 from rig.analysis.tracing.suspects import candidates
 from rig.analysis.tracing.thresholds import MISSING
@@ -53,7 +54,7 @@ def report(
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
-    simulated = free(p, empty, s)
+    simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
     words = p.own.parameters | dict(fitted)
     return Trace(
         campaign=p.campaign.name,
@@ -81,7 +82,8 @@ def report(
         before=with_free(errors(p.eq, p.court, before), simulated, 0),
         after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
-        notes=p.campaign.notes,
+        notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
+        ripple=ripple,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
         curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from rig.analysis.result import Array
+from rig.analysis.tracing.ripple import Ripple
 from rig.model.effect import Parameter
 
 
@@ -125,3 +126,4 @@ class Trace:
     notes: tuple[str, ...]  # runs left out, channels missing, floors that are not to be trusted: one sentence each
     cannot: tuple[str, ...]  # what this campaign cannot tell, one sentence each
     curves: dict[str, Array] = field(default_factory=dict)
+    ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
