@@ -24,8 +24,8 @@ from rig.live.view.server import Server
 
 BEAT = 0.05  # s: 50 rows a block at 1 kHz; every block costs the viewer as much as its rows
 CHECK = 0.5  # s between looks whether the viewer takes what it is sent
-PROBE = 2.0  # s between looks at one that does not: the SDK keeps a note of each
-PATIENCE = 0.1  # s such a look may last; what a frozen viewer is sent between two looks is 0.1 MB
+PROBE = 1.0  # s between looks at one that does not: the SDK keeps a note of each
+PATIENCE = 0.25  # s such a look may last; what a frozen viewer is sent between two looks is 0.1 MB
 LAST_WORD = 0.3  # s for the last rows of all
 
 

@@ -53,6 +53,8 @@ GROUPS: Groups = {
     ),
     "/curves/shaft": (Curve("τ_l", colours.BRASS, lambda b, n: b["tau_l"]),),  # N·m at the output
 }
+GAP = 20.0  # periods without a row: more than a loop leaves out unless its machine was away
+BEFORE = 1e-6  # s
 TICK = "/curves/tick"  # ms
 
 
@@ -86,6 +88,9 @@ class Curves:
         """
         self._ratio, self._every = about.ratio, every
         self._lateness = Lateness(1.0 / about.rate if about.rate else 0.0)
+        self._period = 1.0 / about.rate if about.rate else math.inf
+        self._last = math.inf  # s, of the newest row
+        self._heard_by: Canvas | None = None
         self._groups = {
             path: chosen
             for path, group in all_groups(more).items()
@@ -102,14 +107,23 @@ class Curves:
         """The next rows."""
         if not len(block):
             return
-        for path, group in self._groups.items():
-            self._send(path, block, [c.of(block, self._ratio) for c in group], canvas)
+        lead = self._lead(block, canvas)
+        self._last, self._heard_by = float(block.t[-1]), canvas
         late = self._lateness.add(block.t, block["flags"])
-        self._send(TICK, block, [late * 1e3, block["age"] * 1e3], canvas)
+        for path, group in self._groups.items():
+            self._send(path, lead, block, [c.of(block, self._ratio) for c in group], canvas)
+        self._send(TICK, lead, block, [late * 1e3, block["age"] * 1e3], canvas)
 
-    def _send(self, path: str, block: Block, values: list[Array], canvas: Canvas) -> None:
+    def _lead(self, block: Block, canvas: Canvas) -> Array:
+        """When a line has to end first: rows before these were sent elsewhere, or never read. Shape (0,) or (1,), s."""
+        elsewhere = self._heard_by is not None and self._heard_by is not canvas
+        broken = elsewhere or block.t[0] - self._last > GAP * self._period
+        return block.t[:1] - BEFORE if broken else np.empty(0)
+
+    def _send(self, path: str, lead: Array, block: Block, values: list[Array], canvas: Canvas) -> None:
         t, shown = thinned(block.t, np.stack(values, axis=1), self._every)
-        canvas.curves(path, t, shown)
+        nothing = np.full((len(lead), len(values)), np.nan)
+        canvas.curves(path, np.concatenate((lead, t)), np.concatenate((nothing, shown)))
 
 
 def thinned(t: Array, values: Array, every: int) -> tuple[Array, Array]:

@@ -112,3 +112,15 @@ def test_the_loops_own_lateness_is_found_again_from_its_rows(periods: list[float
     pieces = range(0, len(t), piece)
     found = [lateness.add(np.array(t[i : i + piece]), np.array(flags[i : i + piece])) for i in pieces]
     assert np.concatenate(found) == pytest.approx(1e-3 * np.array([0.0, *periods]), abs=2e-7)
+
+
+def test_nothing_is_drawn_across_rows_the_viewer_did_not_take_or_nobody_read() -> None:
+    curves, heard, rows = Curves(ABOUT, 4), Kept(), turning(3.0, 30.0)
+    pieces = list(rows.slices(500))
+    for piece, canvas in zip(pieces[:6], (heard, heard, Kept(), heard, heard, heard), strict=True):
+        curves.add(piece, canvas)
+    curves.add(pieces[9], heard)
+    breaks = [bool(np.isnan(values[0, 0])) for path, _, values in heard.sent if path == "/curves/error"]
+    assert breaks == [False, False, True, False, False, True]
+    times = np.concatenate([t for path, t, _ in heard.sent if path == "/curves/error"])
+    assert (np.diff(times) >= 0).all()
