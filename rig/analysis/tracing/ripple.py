@@ -76,9 +76,8 @@ class Ripple:
         if self.per_speed_squared is not None:
             said.append(f"{1e6 * self.per_speed_squared:.3g} µN·m more per (rad/s)²")
         if self.lag is not None:
-            said.append(
-                f"read {1e3 * self.lag[0]:.3g} ± {1e3 * self.lag[1]:.2g} ms after the angle (or turned so by a resonance)"
-            )
+            late = f"{1e3 * self.lag[0]:.3g} ± {1e3 * self.lag[1]:.2g} ms after the angle"
+            said.append(f"read {late} (or turned so by a resonance)")
         if self.per_day is not None:
             said.append(f"changing by {100 * self.per_day[0]:.2g} ± {100 * self.per_day[1]:.2g} % a day")
         return ", ".join(said) + "."
