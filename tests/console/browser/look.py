@@ -10,9 +10,9 @@ from playwright.sync_api import Page
 PATIENCE = 10.0  # s for what is only a matter of time
 
 
-def until(found: Callable[[], bool], what: str) -> None:
-    """Wait for something the page's own text does not show."""
-    end = time.monotonic() + PATIENCE
+def until(found: Callable[[], bool], what: str, patience: float = PATIENCE) -> None:
+    """Wait for something that no selector says; `patience` in s."""
+    end = time.monotonic() + patience
     while not found():
         assert time.monotonic() < end, f"never came: {what}"
         time.sleep(0.02)

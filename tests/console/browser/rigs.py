@@ -70,10 +70,7 @@ def rig() -> Iterator[Rig]:
     with tempfile.TemporaryDirectory(prefix="hdrig-", dir="/tmp") as folder:  # a socket's path is 107 characters long
         doors, root = Path(folder), Path(folder) / "runs"
         bench = doors / "can-rig.toml"
-        shipped = (BENCHES / "twin-can.toml").read_text(encoding="utf-8")
-        bench.write_text(
-            shipped.replace("/tmp/hdrig-twin", folder).replace('"twin-can"', '"can-rig"'), encoding="utf-8"
-        )
+        bench.write_text(_patient((BENCHES / "twin-can.toml").read_text(encoding="utf-8"), folder), encoding="utf-8")
         options = ["--bus", "can", "--control", "control", "--serial", "serial", "--for", "600"]
         twin = _started([*HDRIG, "twin", *options], doors, "ready")[0]
         server, line = _started(
@@ -84,6 +81,15 @@ def rig() -> Iterator[Rig]:
         finally:
             for process in (server, twin):
                 _ended(process)
+
+
+def _patient(shipped: str, folder: str) -> str:
+    """The shipped bench, led to the doors in `folder`, with time for a machine that stalls."""
+    ours = shipped.replace("/tmp/hdrig-twin", folder).replace('"twin-can"', '"can-rig"')
+    for name, before, patient in PATIENT:
+        assert f"{name} = {{ value = {before}," in ours
+        ours = ours.replace(f"{name} = {{ value = {before},", f"{name} = {{ value = {patient},")
+    return ours
 
 
 def _started(command: list[str], folder: Path, ready: str) -> tuple[subprocess.Popen[str], str]:

@@ -5,14 +5,17 @@ import { $, h, refill, say, show } from "../dom.js";
 const step = (name) => document.querySelector(`[data-step="${name}"]`);
 
 export function benches(names) {
-  $("bench-name").replaceChildren(...names.map((bench) => h("option", { value: bench.name ?? bench }, bench.name ?? bench)));
+  $("bench-name").replaceChildren(...names.map((name) => h("option", { value: name, title: name }, stem(name))));
 }
+
+/** A bench file by its name, without the way to it. */
+const stem = (name) => name.split("/").pop().replace(/\.toml$/, "");
 
 export function steps(state) {
   const connected = state.state !== "disconnected";
   mark("connect", connected);
   $("bench-name").disabled = connected;
-  if (connected && state.bench) choose($("bench-name"), state.bench.name);
+  if (connected && state.bench) choose($("bench-name"), state.bench.source);
   show(step("connect").querySelector('[data-act="connect"]'), !connected);
   show(step("connect").querySelector('[data-act="disconnect"]'), connected);
   const checks = state.checks ?? [];
@@ -27,8 +30,9 @@ export function steps(state) {
   tell("tare", state.tare ?? "not made");
 }
 
-function choose(select, name) {
-  if ([...select.options].some((option) => option.value === name)) select.value = name;
+function choose(select, source) {
+  const found = [...select.options].find((option) => option.value === source || stem(option.value) === stem(source));
+  if (found) select.value = found.value;
 }
 
 function mark(name, done, wrong = false) {
