@@ -104,8 +104,8 @@ class Feed:
 
     def figures(self) -> dict[str, Any]:
         """Of the run so far, for State.run."""
-        so_far = self.so_far
-        if so_far is None:
+        so_far, run = self.so_far, self._link.picture["run"]
+        if so_far is None or run is None or run["ring"] != self._ring:  # not yet followed
             return {"t": 0.0, "peak_to_peak_arcsec": None, "rms_following_deg": None}
         return {
             "t": so_far.newest,

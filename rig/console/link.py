@@ -36,7 +36,6 @@ class Link:
         self.events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
         self.idle: deque[dict[str, Any]] = deque(maxlen=40)  # readings nobody has fetched yet: two seconds
         self.heard = time.monotonic()  # s, when anything came
-        self.progress: dict[str, Any] = {}
         self.changed: Callable[[], None] = lambda: None  # told of every new picture or event
         self._replies: dict[str, asyncio.Future[str]] = {}
         self._process: subprocess.Popen[bytes] | None = None
@@ -83,8 +82,6 @@ class Link:
             case "event":
                 self.events.append(message["event"])
                 self.changed()
-            case "progress":
-                self.progress = dict(message)
             case "idle":
                 self.idle.append(dict(message))
             case "reply":

@@ -13,13 +13,11 @@ from rig.console.link import Link
 from rig.console.runs import report_of
 from rig.station.rules import ALWAYS, advice, allowed
 
-STALE = 1.0  # s without a word while nothing is carried out: a station that reads at 20 Hz is stuck then
-
 
 def compose(link: Link, feed: Feed, gate: Gate, page: str, extra: dict[str, Any]) -> dict[str, Any]:
     """For the page with that id; `extra` is the server's own: seq, closing, viewer_url."""
     picture = link.picture
-    heard = time.monotonic() - link.heard
+    heard = min(time.monotonic() - link.heard, feed.age_ms / 1e3)  # in a run its rows are all one hears of it
     return {
         **{key: value for key, value in picture.items() if key not in ("run", "campaign", "last_run")},
         "last_run": _last_run(link),
@@ -30,7 +28,7 @@ def compose(link: Link, feed: Feed, gate: Gate, page: str, extra: dict[str, Any]
         "station": link.alive,
         "advice": advice(picture) if link.alive else picture["fault"],
         "run": _run(link, feed),
-        "campaign": _campaign(link),
+        "campaign": _campaign(link, feed),
         "events": list(link.events),
         "live": {"columns": [{"name": n, "unit": u} for n, u in COLUMNS], "age_ms": round(feed.age_ms, 1)},
         "allowed": rights(picture, gate, page),
@@ -53,11 +51,16 @@ def _run(link: Link, feed: Feed) -> dict[str, Any] | None:
     run = link.picture["run"]
     if run is None:
         return None
-    figures, progress = feed.figures(), link.progress
+    figures, counted = feed.figures(), link.switches.counted
+    looked = counted.p99_us > 0
+    lateness = {
+        "p50_us": counted.p50_us if looked else None,
+        "p99_us": counted.p99_us if looked else None,
+        "missed": counted.missed,
+    }
     known = {key: value for key, value in run.items() if key != "ring"}
-    if progress.get("uid") == run["uid"]:
-        known |= {"rows": progress["rows"], "lateness": progress["lateness"]}
-    return {**known, **figures, "left_s": max(run["duration"] - figures["t"], 0.0)}
+    left = max(run["duration"] - figures["t"], 0.0)
+    return {**known, **figures, "left_s": left, "rows": counted.ticks, "lateness": lateness}
 
 
 def _last_run(link: Link) -> dict[str, Any] | None:
@@ -67,11 +70,10 @@ def _last_run(link: Link) -> dict[str, Any] | None:
     return {**last, "report": report_of(link.root, Path(last["folder"]))}
 
 
-def _campaign(link: Link) -> dict[str, Any] | None:
+def _campaign(link: Link, feed: Feed) -> dict[str, Any] | None:
     campaign = link.picture["campaign"]
     if campaign is None:
         return None
-    run = link.picture["run"]
-    measured = run and campaign["measuring"]  # a check's time is not in what is left
-    done = link.progress.get("t", 0.0) if measured and run and link.progress.get("uid") == run["uid"] else 0.0
+    measured = link.picture["run"] is not None and campaign["measuring"]  # a check's time is not in what is left
+    done = feed.figures()["t"] if measured else 0.0
     return {**campaign, "left_s": max(campaign["left_s"] - done, 0.0)}

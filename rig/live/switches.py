@@ -1,4 +1,5 @@
 """Hold, stop and halt as counters in a page of shared memory: pressing one waits behind nothing, nor does seeing it.
+What the loop counts of its own lateness goes the other way: telling it is a store and wakes nobody.
 
 A plain file in /dev/shm, mapped by two processes. Whoever serves the page presses (one process, one thread); the
 station looks at every tick and says what it has seen. Every counter is one aligned 8-byte store, as in `rig.core.ring`.
@@ -23,6 +24,7 @@ _MAGIC, _VERSION = b"hdrigSWI", 1
 _FIXED = struct.Struct("<8sI")
 _PRESSED = slice(64, 128)  # stored by whoever serves the page: a cache line of its own
 _SEEN = slice(128, 192)  # stored by the station
+_COUNTED = slice(192, 256)  # stored by the station: what its loop counts
 _PAGE = 3  # of _PRESSED: when a page gave its last sign of life
 
 
@@ -32,6 +34,15 @@ class Counts(NamedTuple):
     hold: int = 0
     stop: int = 0
     halt: int = 0
+
+
+class Counted(NamedTuple):
+    """What the loop of the present run counts."""
+
+    ticks: int = 0
+    missed: int = 0  # cycles
+    p50_us: int = 0  # lateness of a tick, median; 0 before it was looked at
+    p99_us: int = 0
 
 
 @final
@@ -44,6 +55,7 @@ class Switches:
         self._view = memoryview(mapped)
         self._pressed = self._view[_PRESSED].cast("Q")
         self._seen = self._view[_SEEN].cast("Q")
+        self._counted = self._view[_COUNTED].cast("Q")
 
     @classmethod
     def create(cls) -> Switches:
@@ -112,10 +124,20 @@ class Switches:
         """The station's word: it acts on these."""
         self._seen[0], self._seen[1], self._seen[2] = counts
 
+    @property
+    def counted(self) -> Counted:
+        """The station's word on its loop's ticks."""
+        return Counted(*self._counted[:4])
+
+    def tell_counted(self, counted: Counted) -> None:
+        """From within a tick: four stores."""
+        self._counted[0], self._counted[1], self._counted[2], self._counted[3] = counted
+
     def close(self) -> None:
         """Let go of the memory; the file stays. Idempotent."""
         self._pressed.release()
         self._seen.release()
+        self._counted.release()
         self._view.release()
         self._mapped.close()
 

@@ -46,7 +46,7 @@ class Station:
     def __init__(self, channel: Channel, switches: Switches, panel: Panel, root: Path, jobs: Mapping[str, Job]) -> None:
         self.channel, self.switches, self.panel, self.root, self.jobs = channel, switches, panel, root, jobs
         self.status = Status()
-        self.teller = Teller(channel, self.status, self.watch)
+        self.teller = Teller(channel, switches, self.status, self.watch)
         self.session: Session | None = None
         self.stack = contextlib.ExitStack()  # leaving it takes the torque off and lets go of the devices
         self.person: PagePerson | None = None

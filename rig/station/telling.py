@@ -1,4 +1,8 @@
-"""What goes out of the station: pictures of its status, events, idle samples, the run's ring. Never waits."""
+"""What goes out of the station: pictures of its status, events, idle samples, the run's ring. Never waits.
+
+Within a tick nothing is sent but the rare event: waking another process can cost the loop milliseconds where that one's
+processor is taken away, as in a virtual machine. The page reads the rows from the ring, and the counts from memory.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from typing import Any, final
 
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
+from rig.live.switches import Counted, Switches
 from rig.loop import Ending
 from rig.runfile import manifest
 from rig.runfile.manifest import utc_now
@@ -20,7 +25,7 @@ from rig.station.channel import Channel
 from rig.station.status import Status
 from rig.supervisor import Supervisor
 
-OFTEN = 0.09  # s of wall time between two words of progress: ten a second
+OFTEN = 0.09  # s of wall time between two looks at the line: ten a second
 RARELY = 1.0  # s between two looks at the lateness, which costs 10 to 50 µs
 
 
@@ -28,8 +33,8 @@ RARELY = 1.0  # s between two looks at the lateness, which costs 10 to 50 µs
 class Teller(Observer):
     """The session's observer. `attend` is called now and then while a run goes on: reads what pages ask meanwhile."""
 
-    def __init__(self, channel: Channel, status: Status, attend: Callable[[], None]) -> None:
-        self.channel, self.status, self.attend = channel, status, attend
+    def __init__(self, channel: Channel, switches: Switches, status: Status, attend: Callable[[], None]) -> None:
+        self.channel, self.switches, self.status, self.attend = channel, switches, status, attend
         self.supervisor: Supervisor | None = None
         self._told = time.monotonic()
         self._measured = 0.0
@@ -56,39 +61,26 @@ class Teller(Observer):
         self.status.run = {
             "uid": manifest.read(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
             "duration": run.duration, "locked": procedure.output_locked, "parameters": _parameters(procedure),
-            "folder": str(run.folder), "ring": str(run.ring), "rows": 0, "t": 0.0,
-            "lateness": {"p50_us": None, "p99_us": None, "missed": 0},
+            "folder": str(run.folder), "ring": str(run.ring),
         }  # fmt: skip
         self.tell()
 
+        self.switches.tell_counted(Counted())
+        p50 = p99 = 0
+
         def watch(sample: Sample) -> None:
-            now = time.monotonic()
-            if now - self._told >= OFTEN:
-                self._told = now
-                self._progress(sample, run, now)
-                self.attend()
+            nonlocal p50, p99
+            now, timing = time.monotonic(), run.timing
+            if now - self._told < OFTEN:
+                return
+            self._told = now
+            if now - self._measured >= RARELY:
+                self._measured = now
+                p50, p99 = round(timing.quantile(0.5) * 1e6), round(timing.quantile(0.99) * 1e6)
+            self.switches.tell_counted(Counted(timing.ticks, timing.missed, p50, p99))
+            self.attend()
 
         return watch
-
-    def _progress(self, sample: Sample, run: Begun, now: float) -> None:
-        """Called within a tick: some tens of µs, and nothing that could wait."""
-        timing, status = run.timing, self.status.run
-        if status is None:
-            return
-        status["t"], status["rows"] = sample.t, timing.ticks
-        status["lateness"]["missed"] = timing.missed
-        if now - self._measured >= RARELY:
-            self._measured = now
-            status["lateness"] |= {"p50_us": timing.quantile(0.5) * 1e6, "p99_us": timing.quantile(0.99) * 1e6}
-        self.channel.offer(
-            {
-                "kind": "progress",
-                "uid": status["uid"],
-                "t": sample.t,
-                "rows": timing.ticks,
-                "lateness": status["lateness"],
-            }
-        )
 
     def ended(self, folder: Path, ending: Ending) -> None:
         """What became of it, before its folder is closed."""
