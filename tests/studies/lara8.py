@@ -8,6 +8,8 @@ sensor (its torque is the controller's model of the arm), logged every 4 ms by a
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import shutil
 import sys
@@ -90,7 +92,8 @@ def imported(folder: Path) -> Path:
 
     mapping = folder / "mapping.toml"
     mapping.write_text(MAPPING.read_text() + MOTOR_TORQUE)
-    main(["import", str(SOURCE), "--map", str(mapping), "--out", str(folder / "raw")])
+    with contextlib.redirect_stdout(io.StringIO()):
+        main(["import", str(SOURCE), "--map", str(mapping), "--out", str(folder / "raw")])
     run = next((folder / "raw").glob("*/*"))
     target = folder / "campaign" / "validate"
     shutil.copytree(run, target)
@@ -123,8 +126,8 @@ def traced(campaign: Path) -> Mapping[str, Any]:
     return dict(json.loads(json.dumps(document(trace(campaign)))))
 
 
-def found(d: Mapping[str, Any], spike: Spike, beside: float) -> str:
-    """The size given back, less what the untouched run has of it."""
+def found(d: Mapping[str, Any], spike: Spike) -> str:
+    """The size given back."""
     for name in spike.right:
         for p, v in d["effects"].get(name, {}).get("parameters", {}).items():
             if spike.parameter in p:
@@ -139,10 +142,11 @@ def row(spike: Spike, size: float, d: Mapping[str, Any]) -> str:
     where = v["coordinate"] or ""
     order = f" order {v['order']:.2f}" if v["order"] else ""
     hit = "yes" if set(spike.right) & {*v["effects"], *v["rivals"]} else "no"
-    ratios = ", ".join(f"{k} {d['residual']['over_floor_before'][k]:.1f} → {r:.1f}" for k, r in d["residual"]["over_floor_after"].items())  # fmt: skip
+    over = d["residual"]["over_floor_before"]
+    ratios = ", ".join(f"{k} {over[k]:.1f} → {r:.1f}" for k, r in d["residual"]["over_floor_after"].items())
     return (
         f"| {spike.what} | {size:g} {spike.unit} | {v['status']} | {', '.join(said) or '–'} | {where}{order} | {hit} "
-        f"| {found(d, spike, 0.0)} | {ratios} |"
+        f"| {found(d, spike)} | {ratios} |"
     )
 
 

@@ -10,13 +10,14 @@ motion under the last a and l, then a and l of that motion.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import cont2discrete, lfilter, lfilter_zi
+from scipy.signal import BadCoefficients, cont2discrete, lfilter, lfilter_zi
 
 from rig.analysis.tracing.channels import known_of
 from rig.analysis.tracing.equations import Term
@@ -161,8 +162,10 @@ def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> 
 
 def _filtered(top: Sequence[float], bottom: Sequence[float], h: float, x: Array) -> Array:
     """`x` (m,) every h s, straight between, through top/bottom, begun in balance with x[0]; exact."""
-    b, a, _ = cont2discrete((top, bottom), h, method="foh")
-    b = np.ravel(b)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", BadCoefficients)  # a first tap of nothing is dropped, and put back below
+        taps, a, _ = cont2discrete((top, bottom), h, method="foh")
+    b = np.concatenate([np.zeros(a.size - np.size(taps)), np.ravel(taps)])
     y, _ = lfilter(b, a, x, zi=lfilter_zi(b, a) * x[0])
     return np.asarray(y)
 
