@@ -16,7 +16,7 @@ from rig.live.view.ticks import rounded_out, step_for, ticks, written
 Array = np.ndarray[Any, Any]
 
 WIDTH, HEIGHT = 200.0, 100.0  # units of the picture
-LEFT, RIGHT, ABOVE, BELOW = 24.0, 10.0, 16.0, 20.0  # room for numbers and words beside the frame
+LEFT, RIGHT, ABOVE, BELOW = 26.0, 10.0, 16.0, 20.0  # room for numbers and words beside the frame
 SHRINK = 0.45  # an axis is drawn anew when what it shows fills less than this share of it
 
 
@@ -90,7 +90,7 @@ class Frame:
     def numbers(self) -> tuple[Array, list[str]]:
         """Where the ticks' numbers stand, shape (n, 2), and the numbers."""
         below = [(s * WIDTH, HEIGHT + 1.5) for s in self.x.share(np.array(self.x.values))]
-        beside = [(-9.0, y - 3.5) for y in (1.0 - self.y.share(np.array(self.y.values))) * HEIGHT]
+        beside = [(-11.0, y - 3.5) for y in (1.0 - self.y.share(np.array(self.y.values))) * HEIGHT]
         return np.array(below + beside, dtype=np.float32), self.x.words + self.y.words
 
     def titles(self) -> tuple[Array, list[str]]:
