@@ -1,0 +1,60 @@
+"""`python -m tests.bench [--row N …] [--quick] [--table FILE]`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy is imported: threads that spin are noise
+
+from tests.bench.built import Unavailable, peers
+from tests.bench.figure import Shown, not_measured
+from tests.bench.machine import head, load
+from tests.bench.row import Row
+from tests.bench.rows import ROWS
+from tests.bench.table import Measured, lines_of, table
+from tests.bench.turns import Rounds
+
+ROUNDS = 7  # in earnest: the 10th and the 90th percentile are then those of the second and the last but one
+REMARKS = (
+    "Sides take turns within one run; a figure is ours over theirs, round by round: median, 10th and 90th percentile "
+    "of the rounds. CPU time unless a figure says otherwise. Rigs are simulated (SIMULATED: the twin). The load average "
+    "says how many processes wanted to run on these cores; what the machine does falls on both sides of a ratio."
+)
+
+
+def main() -> int:
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description=__doc__)
+    parser.add_argument("--row", type=int, action="append", help="only these rows")
+    parser.add_argument("--quick", action="store_true", help="small sizes, one round: figures mean nothing")
+    parser.add_argument("--table", type=Path, help="write the table here")
+    args = parser.parse_args()
+    rounds = Rounds(1 if args.quick else ROUNDS, args.quick)
+    wanted = [row() for row in ROWS if not args.row or row.number in args.row]
+    measured = []
+    for row in wanted:
+        measured.append(one(row, rounds))
+        print("\n".join(lines_of(measured[-1])), flush=True)
+    remarks = [REMARKS, f"Peers: {peers()[1]}.", *(["QUICK: the figures mean nothing."] if args.quick else [])]
+    text = table(measured, head(), remarks)
+    print(text)
+    if args.table:
+        args.table.write_text(text, encoding="utf-8")
+    return 0
+
+
+def one(row: Row, rounds: Rounds) -> Measured:
+    """A row measured, or why it was not."""
+    before = load()
+    try:
+        figures = row.measure(rounds)
+    except Unavailable as why:
+        figures = [not_measured(row.name, Shown(), str(why))]
+    return Measured(row, figures, before, load())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,57 @@
+"""What the bench alone builds and installs, under build/bench: C floors and the peers' environment."""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+HERE = Path(__file__).parent
+BUILD = HERE.parents[1] / "build" / "bench"
+VENV = BUILD / "venv"
+FLAGS = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno")
+
+
+class Unavailable(Exception):
+    """A floor or a peer that cannot be had on this machine, in words."""
+
+
+def built(source: str, *flags: str, kind: tuple[str, ...] = ("-shared", "-fPIC")) -> Path:
+    """`floors/<source>.c` compiled. Raises Unavailable."""
+    target = BUILD / source
+    BUILD.mkdir(parents=True, exist_ok=True)
+    command = ["gcc", *FLAGS, *kind, *flags, "-o", str(target), str(HERE / "floors" / f"{source}.c"), "-lm"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except FileNotFoundError as error:
+        raise Unavailable("no gcc on this machine") from error
+    if done.returncode:
+        raise Unavailable(f"gcc refused {source}.c: {done.stderr.strip().splitlines()[0]}")
+    return target
+
+
+def floor(source: str, *flags: str) -> ctypes.CDLL:
+    """The compiled floor as a library. Raises Unavailable."""
+    return ctypes.CDLL(str(built(source, *flags)))
+
+
+@cache
+def peers() -> tuple[Path, str]:
+    """The peers' Python, and what could not be installed, in words. Each is tried by itself: one may fail."""
+    python, mark = VENV / "bin" / "python", VENV / "installed.txt"
+    wanted = [line for line in (HERE / "requirements.txt").read_text(encoding="utf-8").splitlines() if line.strip()]
+    if not python.exists():
+        subprocess.run([sys.executable, "-m", "venv", str(VENV)], check=True)
+    if mark.exists() and mark.read_text(encoding="utf-8").splitlines()[:-1] == wanted:
+        return python, mark.read_text(encoding="utf-8").splitlines()[-1]
+    refused = [line for line in wanted if not _install(python, line)]
+    words = f"could not be installed here: {', '.join(refused)}" if refused else "all peers installed"
+    mark.write_text("\n".join([*wanted, words]), encoding="utf-8")
+    return python, words
+
+
+def _install(python: Path, requirement: str) -> bool:
+    command = [str(python), "-m", "pip", "install", "--quiet", requirement]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
