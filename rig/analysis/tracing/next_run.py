@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from rig.analysis.tracing.expected import proposals, sigmas
 from rig.analysis.tracing.result import NextRun
-from rig.analysis.tracing.search import Found
+from rig.analysis.tracing.search import Found, Scored
 from rig.analysis.tracing.thresholds import CLOSE
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
+
+
+SIGMAS: Final = 3.0  # standard deviations, at least
 
 
 def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str, ...], NextRun | None]:
@@ -22,11 +28,41 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
     rivals = tuple(r.term.name for r in close)
     if not rivals:
         return (), None
-    pair = {names[0], *rivals}
+    asked = _by_information(p, best, close)
+    return rivals, asked or _by_table({names[0], *rivals})
+
+
+def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:
+    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; None when none is.
+
+    A rival is one while it has CLOSE of the best one's evidence: what the run tells, in nats, has to be more than that.
+    """
+    eq = p.eq
+    proposed = proposals(eq.runs[0].pieces[0].dt)
+    need = max(SIGMAS, float(np.sqrt(2 * (1 - CLOSE) * best.evidence)))
+    told = np.full(len(proposed), np.inf)
+    for other in close:
+        for f, g in ((best.term, other.term), (other.term, best.term)):
+            told = np.minimum(told, sigmas(p.baseline, f, g, p.split.fitted, proposed))
+    able = [i for i in range(len(proposed)) if told[i] > need]
+    if not able:
+        return None
+    cost = [run.cost(eq.runs[0].pieces[0].dt) for run in proposed]
+    first = min(able, key=lambda i: (cost[i], -told[i]))
+    names = " from ".join(sorted({best.term.name, *(r.term.name for r in close)}))
+    because = (
+        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), the cheapest of "
+        f"{len(able)} runs that would: {cost[first]:.0f} s of rig time with its repeat"
+    )
+    return NextRun(proposed[first].procedure, dict(proposed[first].conditions), because)
+
+
+def _by_table(pair: set[str]) -> NextRun:
+    """What is known to separate some effects where no run of the catalogue is expected to by its numbers."""
     for members, procedure, conditions, why in DECIDERS:
         if len(members & pair) >= 2:
-            return rivals, NextRun(procedure, conditions, f"separates {' from '.join(sorted(pair))}: {why}")
-    return rivals, NextRun("constant_torque", {"speed_rpm": 500.0}, f"separates {' from '.join(sorted(pair))} by speed")
+            return NextRun(procedure, conditions, f"separates {' from '.join(sorted(pair))}: {why}")
+    return NextRun("constant_torque", {"speed_rpm": 500.0}, f"separates {' from '.join(sorted(pair))} by speed")
 
 
 DECIDERS: Sequence[tuple[frozenset[str], str, dict[str, float | bool | str], str]] = (
