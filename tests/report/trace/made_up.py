@@ -56,6 +56,8 @@ def curves(after: float = 1.0, seed: int = 1) -> dict[str, Array]:
             stem, measured = f"close.{run}.{channel}", 60 * np.cos(4 * np.pi * turns)
             out |= {f"{stem}.turns": turns, f"{stem}.measured": unit * measured}
             out |= {f"{stem}.before": unit * 0.8 * measured, f"{stem}.after": unit * (measured + rng.normal(0, 1, 200))}
+        out |= {f"free.{run}.{n}": out[f"close.{run}.A.{n}"] for n in ("turns", "measured", "before", "after")}
+        out[f"free_rms.{run}"] = np.array([9.1, 2.3])
     torque = 60 * np.sin(np.linspace(0, 2 * np.pi, 400))
     loop = {"torque_Nm": torque, "windup_arcsec": 28 * torque + 20 * np.cos(np.linspace(0, 2 * np.pi, 400))}
     loop |= {"before_arcsec": 28 * torque, "after_arcsec": loop["windup_arcsec"] + rng.normal(0, 1, 400)}
