@@ -41,7 +41,7 @@ def console(picture: Path, folder: Path) -> None:
             page.fill(f"#parameter-{name}", value)
         for _ in range(ATTEMPTS):  # a run that ends because the machine stalled is made again
             page.click("#start", timeout=120e3)
-            page.wait_for_selector("#run-folder:has-text('kinematic')", timeout=120e3)
+            page.wait_for_selector("#run-folder:has-text('kinematic'):not(:has-text('last'))", timeout=120e3)
             page.wait_for_timeout(1e3 * INTO)
             if page.get_attribute("html", "data-state") == "running":
                 break
