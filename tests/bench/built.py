@@ -20,7 +20,7 @@ class Unavailable(Exception):
 
 def built(source: str, *flags: str, kind: tuple[str, ...] = ("-shared", "-fPIC")) -> Path:
     """`floors/<source>.c` compiled. Raises Unavailable."""
-    target = BUILD / source
+    target = BUILD / "".join([source, *flags]).replace("/", "_")
     BUILD.mkdir(parents=True, exist_ok=True)
     command = ["gcc", *FLAGS, *kind, *flags, "-o", str(target), str(HERE / "floors" / f"{source}.c"), "-lm"]
     try:

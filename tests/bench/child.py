@@ -1,0 +1,47 @@
+"""A command as a process of its own, and what it cost."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.bench.built import Unavailable
+
+
+@dataclass(frozen=True)
+class Cost:
+    """`cpu` and `wall` in s, `peak_mib` the most memory it had."""
+
+    cpu: float
+    wall: float
+    peak_mib: float
+
+
+HDRIG = (sys.executable, "-m", "rig.cli")
+
+
+def cost(command: Sequence[str], folder: Path | None = None, allowed: tuple[int, ...] = (0,)) -> Cost:
+    """Run to the end, children it waited for included. Raises Unavailable when it ends with another code."""
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    began = time.perf_counter()
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(
+            [*command],
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            cwd=folder,
+            env=environment | {"OPENBLAS_NUM_THREADS": "1"},
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)  # reaped here: Popen must not look for it again
+        if process.returncode not in allowed:
+            said.seek(0)
+            last = (said.read().decode(errors="replace").strip().splitlines() or ["no word"])[-1]
+            raise Unavailable(f"{' '.join(command[-3:])} ended with {process.returncode}: {last}")
+    return Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began, usage.ru_maxrss / 1024)

@@ -1,0 +1,48 @@
+"""Row 12: what a person waits for at the prompt."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar, final
+
+from rig.procedures.kinematic_error import KinematicError
+from tests.bench.child import HDRIG, cost
+from tests.bench.figure import AtMost, Figure, Shown, ratio
+from tests.bench.row import Row
+from tests.bench.turns import Rounds, Side, take_turns
+from tests.bench.twin import run
+
+PYTHON = sys.executable
+
+
+def side(command: Sequence[str]) -> Side:
+    """CPU time of a process [s]."""
+    return lambda: cost(command, allowed=(0, 6)).cpu  # 6: a run too short to be judged, when quick
+
+
+@final
+class Commands(Row):
+    """`--help` lists the verbs from a table and imports none of them; each verb imports what it needs."""
+
+    number: ClassVar[int] = 12
+    name: ClassVar[str] = "hdrig --help; hdrig analyse on a 200 s run, warm"
+    against: ClassVar[str] = "python -c pass; importing numpy"
+
+    def measure(self, rounds: Rounds) -> list[Figure]:
+        start = take_turns({"help": side([*HDRIG, "--help"]), "pass": side([PYTHON, "-c", "pass"])}, 2 * rounds.count)
+        with tempfile.TemporaryDirectory() as root:
+            seconds = rounds.size(200, 20)
+            folder = run(KinematicError(frequency=2.0 / seconds, amplitude_deg=7.2 * seconds), Path(root)).folder
+            sides = {
+                "analyse": side([*HDRIG, "analyse", str(folder)]),
+                "numpy": side([PYTHON, "-c", "import numpy"]),
+            }
+            analysed = take_turns(sides, rounds.count)
+        return [
+            ratio("hdrig --help over python -c pass", start["help"], start["pass"], AtMost(4.0)),
+            Figure("hdrig analyse, report included", analysed["analyse"], AtMost(1.0), "s of CPU"),
+            ratio("hdrig analyse over importing numpy", analysed["analyse"], analysed["numpy"], Shown()),
+        ]

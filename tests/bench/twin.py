@@ -1,0 +1,22 @@
+"""Runs of the twin for the rows that need one."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+
+from rig.bench import ClockName, read
+from rig.core.procedure import Procedure
+from rig.interrupts import Interrupts
+from rig.session import Done, Session
+from rig.session.done import Watch, nobody
+
+
+def run(
+    procedure: Procedure, root: Path, clock: ClockName = "virtual", rate: float = 1000.0, watch: Watch = nobody
+) -> Done:
+    """One run of the twin at `rate` Hz, recorded into a folder of its own in `root`."""
+    bench = read("twin", [f"loop.rate={rate}"])
+    with contextlib.redirect_stderr(io.StringIO()), Session(bench, clock, root, Interrupts()) as session:
+        return session.run(procedure, watch)
