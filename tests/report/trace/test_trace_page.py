@@ -170,5 +170,5 @@ def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> 
     found = Reader(text)
     outside = [v for _, name, v in found.attributes if name in ("src", "href") and not v.startswith("#")]
     assert outside == []
-    assert text.count("<figure") == 8  # the shaft torque is at its floor and has no close-up
+    assert text.count("<figure") == 9  # the shaft torque is at its floor and has no close-up
     assert len(text) < 1_500_000
