@@ -47,6 +47,11 @@ class Client:
         self._here = False
         self._page.join(PATIENCE)
 
+    def close(self) -> None:
+        """Nobody is there any more."""
+        self.leave()
+        self.client.close()
+
     def state(self) -> dict[str, Any]:
         """State as this page sees it."""
         return dict(self.client.get("/api/state").json())

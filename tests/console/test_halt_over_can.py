@@ -101,6 +101,7 @@ def test_a_halt_reaches_the_wire_within_50_ms_at_the_median(tmp_path: Path, caps
             seen.append(answer["seen_by_loop_ms"])
             assert console.until(lambda s: not s["job"])["last_run"]["status"] == "stopped"
         listener.close()
+        console.close()
     ordered = sorted(1e3 * t for t in taken)
     with capsys.disabled():
         print(
@@ -109,3 +110,15 @@ def test_a_halt_reaches_the_wire_within_50_ms_at_the_median(tmp_path: Path, caps
             f"{statistics.median(seen):.1f} ms (median)"
         )
     assert statistics.median(taken) < MOST
+
+
+def test_the_hard_wired_chain_is_seen_open_when_safe_torque_off_acts_and_closed_again_after() -> None:
+    with rig() as made:
+        console = Client(made.url)
+        console.finish("connect", bench=f"{made.doors}/can-rig.toml")
+        assert console.until(lambda s: s["chain"]["known"])["chain"]["closed"] is True
+        made.ask(do="sto", active=True)
+        assert "power stage has no voltage" in console.until(lambda s: s["chain"]["closed"] is False)["chain"]["text"]
+        made.ask(do="sto", active=False)
+        assert console.until(lambda s: s["chain"]["closed"])["chain"]["known"]
+        console.close()

@@ -60,9 +60,9 @@ def gone(pid: int) -> bool:
 def served(tmp_path: Path) -> Iterator[Served]:
     made = Served(tmp_path)
     yield made
-    made.client.close()
     made.process.kill()
     made.process.communicate()
+    made.close()
 
 
 def test_a_killed_server_is_a_lost_page_and_the_run_is_stopped_and_closed(served: Served) -> None:
