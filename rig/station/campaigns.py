@@ -78,10 +78,12 @@ class PageDesk(Desk):
 
     def __init__(self, station: Station, campaign: Campaign, journal: Journal) -> None:
         self.station, self.campaign, self.journal = station, campaign, journal
-        self._tell("proof and tare")
+        self._current = "proof and tare"
+        self._tell(self._current)
 
     def say(self, text: str) -> None:
         self.station.teller.say("said", text)
+        self._tell(self._current)  # what is said follows upon something that was done
 
     @contextlib.contextmanager
     def watching(self, item: Item, duration: float) -> Iterator[Watch]:
@@ -110,7 +112,7 @@ class PageDesk(Desk):
         return str(found["sentence"])
 
     def _tell(self, current: str, measuring: bool = False) -> None:
-        left = self.journal.open_runs()
+        self._current, left = current, self.journal.open_runs()
         seconds = sum(self.campaign.envelope(self.campaign.items[k]).duration for k in left)
         total = len(self.campaign.items)
         self.station.status.campaign = {
