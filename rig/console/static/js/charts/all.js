@@ -112,6 +112,6 @@ export class Charts {
     const orders = $("chart-orders");
     show(orders.querySelector(".empty"), amplitudes === null);
     say(orders.querySelector(".empty"), "after one whole turn clear of turning round");
-    say(orders.querySelector(".legend"), amplitudes ? `amplitude of the mean, ${way}, ${this.turns.ways[way].revolutions} turns` : "");
+    say(orders.querySelector(".legend"), amplitudes ? `of the mean, ${way}, ${this.turns.ways[way].revolutions} turns` : "");
   }
 }
