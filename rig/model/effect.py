@@ -174,6 +174,7 @@ class Effect(ABC):
     in_short: ClassVar[str]  # one line for people
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
+    adds: ClassVar[frozenset[str]] = frozenset()  # parameters of which several terms of it make one sum
     remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant

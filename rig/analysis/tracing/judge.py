@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
-from rig.analysis.tracing.search import reduced
-from rig.analysis.tracing.thresholds import NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
+from rig.analysis.tracing.search import possible, reduced
+from rig.analysis.tracing.thresholds import EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
 from rig.model.effect import Array, Parameter
 
 FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
@@ -46,7 +47,8 @@ class Court:
 class Worth:
     """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
-    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes)."""
+    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes). `harm` is by
+    how much the worst channel is worse with it."""
 
     name: str
     share: float
@@ -55,11 +57,13 @@ class Worth:
     true: float
     ground: tuple[Key, ...]
     unsteady: float = 0.0
+    harm: float = 1.0
 
     @property
     def named(self) -> bool:
         """Whether it may be named."""
-        real = self.size > SMALLEST and REAL < self.true < UNREAL and self.unsteady < UNSTEADY
+        real = self.size > SMALLEST and REAL < self.true < UNREAL
+        real = real and self.unsteady < UNSTEADY and self.harm < HARMFUL
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
 
@@ -103,7 +107,17 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     own = sum(size[key] ** 2 * whole[key].size for key in ground)
     true = float((before - after) / own)
     unsteady = max(unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen))
-    return Worth(name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady)
+    return Worth(name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady, harm(at, bare, whole))
+
+
+def harm(at: Court, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
+    """Over the channels that are not quiet: largest RMS with the effect over that without it."""
+    found = [1.0]
+    for channel in CHANNELS:
+        keys = [key for key in whole if key[1] == channel]
+        if keys and (now := at.ratio(whole, keys)) > EXPLAINED:
+            found.append(now / max(at.ratio(bare, keys), 1e-9))
+    return max(found)
 
 
 def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> float:
@@ -129,12 +143,18 @@ def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:
     d = unseen(s, at)
     while True:
         weighed = worths(s, d, at)
-        failing = [w for w in weighed if not w.named]
+        failing = [w for w in weighed if not w.named or not _can_be(s, w.name)]
         if not failing:
             return s, d, weighed
         worst = min(failing, key=lambda w: min(w.share, 1.0) * w.size)
         gone = [i for i, t in enumerate(d.terms) if t.name == worst.name]
         s, d = fit(reduced(s.design, gone)), reduced(d, gone)
+
+
+def _can_be(s: Solution, name: str) -> bool:
+    """Whether every term of an effect has the signs and sizes such an effect can have, now that all are fitted."""
+    d = s.design
+    return all(possible(s, t, s.x[d.place(i)]) for i, t in enumerate(d.terms) if t.name == name)
 
 
 def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]]) -> list[str]:

@@ -72,8 +72,27 @@ def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]
     c = covariance(replace(wide, x=np.concatenate([s.x, np.zeros(len(slopes))])))
     out: dict[str, tuple[Parameter, ...]] = {}
     for i, term in enumerate(s.design.terms):
-        out[term.name] = (*out.get(term.name, ()), *term.effect.parameters(_fit(s, c, i, slopes)))
+        out[term.name] = joined(out.get(term.name, ()), term.effect.parameters(_fit(s, c, i, slopes)), term.effect.adds)
     return out
+
+
+def joined(
+    before: Sequence[Parameter], more: Sequence[Parameter], adds: frozenset[str] = frozenset()
+) -> tuple[Parameter, ...]:
+    """Figures of two terms of one effect: what `adds` is summed, half widths in full, for they are not independent;
+    of the others that have the same name the second is numbered."""
+    out = {p.name: p for p in before}
+    for p in more:
+        known = out.get(p.name)
+        if known is None:
+            out[p.name] = p
+        elif p.name in adds:
+            half = (known.ci95[1] - known.ci95[0] + p.ci95[1] - p.ci95[0]) / 2
+            out[p.name] = parameter(p.name, known.value + p.value, half, p.unit)
+        else:
+            name = f"{p.name}_{sum(n.startswith(p.name) for n in out) + 1}"
+            out[name] = replace(p, name=name)
+    return tuple(out.values())
 
 
 def _fit(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]]) -> Fit:

@@ -141,7 +141,8 @@ def still(s: Solution, floors: Mapping[Key, float]) -> bool:
 def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
     for _ in range(ROUNDS):
-        d, before, now = s.design, s.design.eq.runs[runs[0]].pieces[0].gear, known_of(s.values)
+        d, before = s.design, s.design.eq.runs[runs[0]].pieces[0].gear
+        now = known_of(s.values, before)
         if _change(before, now) < SETTLED:
             break
         terms = d.terms

@@ -27,6 +27,7 @@ class HystereticStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("T_h", "law")
     loose: ClassVar[tuple[bool, ...]] = (True, False)
     remembers: ClassVar[bool] = True
+    adds: ClassVar[frozenset[str]] = frozenset({"hysteresis_loss"})
     WIDTHS: Final = (1.5, 4.0, 10.0, 25.0)  # N·m
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
     UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
