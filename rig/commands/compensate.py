@@ -80,7 +80,8 @@ def _gear(args: argparse.Namespace) -> GearFile:
     if args.gear:
         found = gearfile.read(Path(args.gear))
     else:
-        from rig.analysis.identify import fit, identified
+        from rig.analysis.identify.fit import fit
+        from rig.analysis.identify.identified import identified
         from rig.commands.identify import made_with, open_runs
 
         runs, recordings = open_runs([args.campaign])

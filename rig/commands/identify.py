@@ -14,7 +14,9 @@ from rig.commands.folders import expand, runs_argument
 from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
-    from rig.analysis.identify import Identified, Prediction, Recording
+    from rig.analysis.identify.identified import Identified
+    from rig.analysis.identify.predictions import Prediction
+    from rig.analysis.identify.recording import Recording
     from rig.model.gearfile import MeasuredSeries, Parameter
     from rig.runfile.run import Run
 
@@ -68,7 +70,9 @@ def run(args: argparse.Namespace) -> int:
 
 def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
     """Report of all runs below `paths` on stdout, gear file at `out`. Raises UsageError when that is there already."""
-    from rig.analysis.identify import fit, identified, predictions
+    from rig.analysis.identify.fit import fit
+    from rig.analysis.identify.identified import identified
+    from rig.analysis.identify.predictions import predictions
     from rig.model import gearfile
 
     if out is not None and out.exists():
@@ -99,7 +103,7 @@ def say(text: str) -> None:
 
 def open_runs(paths: list[Path]) -> tuple[list[Run], list[Recording]]:
     """All runs of the campaign, and those that identification can read. Raises DataError when none, or two gears."""
-    from rig.analysis.identify import recording
+    from rig.analysis.identify.recording import recording
     from rig.runfile.run import Run
 
     runs = []
@@ -145,7 +149,7 @@ def parameter_line(name: str, p: Parameter, unit: str) -> str:
 
 def series_lines(series: MeasuredSeries) -> list[str]:
     """C_n and ψ_n of the orders that stand out."""
-    from rig.analysis.identify import order_amplitudes
+    from rig.analysis.identify.identified import order_amplitudes
     from rig.report.numbers import quantity
 
     lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]

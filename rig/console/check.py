@@ -15,6 +15,7 @@ from rig.parameters import make
 from rig.preview import plan_lines
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import margins, refuse_beyond_limits, refuse_endless
+from rig.station.resonance import refuse_resonance, swing_lines
 
 WHOLE = "*"  # the problem is of no single parameter
 SEED = 0  # of the order of a plan that is only looked at
@@ -72,9 +73,10 @@ def _looked_at(bench: Bench, procedure: Procedure) -> dict[str, Any]:
         }
         for what, asked, limit, unit, scale in margins(bench, procedure)
     ]
-    lines = plan_lines(bench, procedure)
+    lines = [*plan_lines(bench, procedure), *swing_lines(bench, procedure)]
     try:
         refuse_beyond_limits(bench, procedure)
+        refuse_resonance(bench, procedure)
     except HdrigError as error:
         return {"ok": False, "problems": {WHOLE: str(error)}, "plan": lines, "margins": shown}
     return {"ok": True, "problems": {}, "plan": lines, "margins": shown}

@@ -19,6 +19,7 @@ from rig.procedures.jog import Jog
 from rig.session import Session
 from rig.station.analysis import Analysis
 from rig.station.campaigns import conduct_plan
+from rig.station.resonance import refuse_resonance
 from rig.station.station import Job, Station
 
 TOLD = ("sign-and-scale", "weigh", "lock-check", "step-test", "unwind", "jog")  # their finding is all there is to say
@@ -104,6 +105,7 @@ def start(station: Station, message: Mapping[str, Any]) -> None:
     procedure = _procedure(message)
     station.busy(f"run {procedure.title()}")
     session.check(procedure)
+    refuse_resonance(session.bench, procedure)
     _prepare(station, session, procedure)
     _run(station, session, procedure, str(message.get("note") or ""))
 

@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from rig.analysis.identify import Identified, fit, identified, order_amplitudes, recording
+from rig.analysis.identify.fit import fit
 from rig.analysis.identify.gram import Rows, known, solve
+from rig.analysis.identify.identified import Identified, identified, order_amplitudes
 from rig.analysis.identify.locked import locked_rows
-from rig.analysis.identify.recording import Recording, plateaus
+from rig.analysis.identify.recording import Recording, plateaus, recording
 from rig.analysis.identify.solve import random_effects
 from rig.analysis.identify.windows import overlap_inflation
 from rig.bench import read, twin_parameters

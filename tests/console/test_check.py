@@ -43,6 +43,13 @@ def test_nothing_a_page_could_send_breaks_it(parameters: Any) -> None:
     assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins"}
 
 
+def test_a_run_into_the_resonance_is_refused_as_on_the_command_line() -> None:
+    faster = ["limits.speed_rpm=2000"]
+    found = check({"procedure": "kinematic-error", "parameters": {"frequency": 1.0}}, "twin", faster)
+    assert "meets the torsional resonance at 755 rpm" in found["problems"]["*"]
+    assert any(line.startswith("predicted   the shaft torque swings") for line in found["plan"])
+
+
 def test_an_unknown_procedure_or_bench_is_a_sentence() -> None:
     assert "no procedure called" in looked_at({}, "rm -rf")["problems"]["*"]
     assert "no bench called" in check({"procedure": "jog"}, "nowhere", [])["problems"]["*"]

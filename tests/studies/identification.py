@@ -27,7 +27,9 @@ import numpy.typing as npt
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from rig.analysis.identify import fit, identified, order_amplitudes, recording
+from rig.analysis.identify.fit import fit
+from rig.analysis.identify.identified import identified, order_amplitudes
+from rig.analysis.identify.recording import recording
 from rig.bench import Bench, twin_parameters
 from rig.software import software
 from tests.studies.campaign import PLANS, MemoryRun, random_bench, take

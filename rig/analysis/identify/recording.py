@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
 
 from rig.analysis.angle import TURN
 from rig.analysis.flexibility import declared
@@ -64,6 +63,8 @@ class Recording:
 
     def with_load_late_by(self, delay: float) -> Recording:
         """The run with the load angle `delay` s earlier than it was read; a cubic spline between rows."""
+        from scipy.interpolate import CubicSpline  # half of what an analysis waits for, and few need it
+
         moved = CubicSpline(self.t, self.theta_l)(np.clip(self.t + delay, self.t[0], self.t[-1]))
         return replace(self, motion=replace(self.motion, theta_l=np.asarray(moved)))
 

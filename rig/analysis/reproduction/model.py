@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rig.analysis.identify import fit, identified, recording
-from rig.analysis.identify.identified import Identified
+from rig.analysis.identify.fit import fit
+from rig.analysis.identify.identified import Identified, identified
+from rig.analysis.identify.recording import recording
 from rig.core.errors import DataError
 from rig.model.gear import Gear
 from rig.model.gearfile import MeasuredSeries, Parameter

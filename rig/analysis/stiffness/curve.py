@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
 
 from rig.analysis.result import Array
 from rig.analysis.stiffness.laws import Law, Line, Scale
@@ -87,6 +86,8 @@ class Problem:
 
 def fit(law: Law, points: Points, scale: Scale, shape: Shape, start: Curve | None = None) -> Curve:
     """Least squares over all points, each of equal weight; from `start` when a fit of the same law is known."""
+    from scipy.optimize import least_squares  # loaded where there is a spring to fit: most analyses have none
+
     problem = Problem(law, points, scale, shape)
     if start is not None:
         begins = [problem.pack(start)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from rig.analysis.result import Array
 from rig.analysis.stiffness.points import Points, rates_differ
@@ -43,6 +42,8 @@ def shape_of(points: Points, K: float) -> Shape:
 
     `K` N·m/rad is the secant.
     """
+    from scipy.optimize import nnls  # loaded where there is a spring to fit: most analyses have none
+
     reach = points.reach
     u = (points.windup - points.windup.mean()) / reach
     base = np.stack((np.ones(u.size), u, u**2, u**3, u**5), axis=1)

@@ -6,6 +6,8 @@ from tests.bench.row import Row
 from tests.bench.rows.commands import Commands
 from tests.bench.rows.fit import Fit
 from tests.bench.rows.plant import Plant
+from tests.bench.rows.recording import Recording
 from tests.bench.rows.resampling import Resampling
+from tests.bench.rows.tick import Tick
 
-ROWS: tuple[type[Row], ...] = (Plant, Fit, Resampling, Commands)
+ROWS: tuple[type[Row], ...] = (Tick, Plant, Fit, Resampling, Recording, Commands)

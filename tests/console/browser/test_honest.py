@@ -45,8 +45,9 @@ def test_a_dead_control_process_is_as_loud_as_a_dead_server(page: Page, station:
 
 
 def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(page: Page, station: Puppet) -> None:
-    page.clock.install()
     station.silent = True
+    page.wait_for_selector("#stale", state="visible")  # nothing is on its way any more
+    page.clock.install()
     ages = []
     for _ in range(2):
         page.clock.run_for(20_000)  # less than a minute in all

@@ -1,0 +1,28 @@
+"""A run from the page stays clear of the speed at which order 2 meets the gear's torsional resonance."""
+
+from __future__ import annotations
+
+from rig.bench import Bench
+from rig.campaign.swing import ARCMIN, into_resonance, predicted
+from rig.core.errors import NotReady
+from rig.core.procedure import Procedure
+
+ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin peak to peak can hold, as in plans
+
+
+def refuse_resonance(bench: Bench, procedure: Procedure) -> None:
+    """Raises NotReady. Whoever means to go there does it from the command line, where he has to say so."""
+    if procedure.output_locked:
+        return
+    if words := into_resonance(bench, _speed(bench, procedure), ORDER_2):
+        raise NotReady(f"{procedure.title()}: {words}, or hdrig run --allow-resonance")
+
+
+def swing_lines(bench: Bench, procedure: Procedure) -> list[str]:
+    """For a dry run: what the kinematic error is expected to do to the shaft torque of a free output."""
+    speed = _speed(bench, procedure)
+    return [] if procedure.output_locked or speed == 0.0 else [predicted(bench, speed, ORDER_2)]
+
+
+def _speed(bench: Bench, procedure: Procedure) -> float:
+    return procedure.envelope(bench.setting(lambda text: None)).speed
