@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import BrowserContext, Page
 
 from tests.console.browser.conftest import Open
 from tests.console.browser.look import enabled, in_state, text, until
@@ -44,10 +44,15 @@ def test_a_dead_control_process_is_as_loud_as_a_dead_server(page: Page, station:
     assert "control process has ended" in text(page, "#stale")
 
 
-def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(page: Page, station: Puppet) -> None:
+def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(
+    context: BrowserContext, station: Puppet
+) -> None:
+    page = context.new_page()
+    page.clock.install()
+    page.goto(station.url)
+    page.wait_for_selector("html[data-link=live]", state="attached")
     station.silent = True
     page.wait_for_selector("#stale", state="visible")  # nothing is on its way any more
-    page.clock.install()
     ages = []
     for _ in range(2):
         page.clock.run_for(20_000)  # less than a minute in all
@@ -140,9 +145,9 @@ def test_a_prompt_stands_over_the_charts_until_it_is_answered_and_leaves_halt_in
     assert (station.acts[0]["act"], station.acts[0]["prompt_id"], station.acts[0]["done"]) == ("answer", "p1", True)
 
 
-def test_nothing_is_fetched_from_anywhere_else(open_page: Open, station: Puppet, context: object) -> None:
+def test_nothing_is_fetched_from_anywhere_else(open_page: Open, station: Puppet, context: BrowserContext) -> None:
     asked: list[str] = []
-    context.on("request", lambda request: asked.append(request.url))  # type: ignore[attr-defined]
+    context.on("request", lambda request: asked.append(request.url))
     page = open_page(station.url)
     page.click("#tab-runs")
     page.wait_for_timeout(300)

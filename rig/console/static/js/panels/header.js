@@ -34,6 +34,6 @@ export function freshness(link, state) {
   say($("stale-age"), dead && !link.stale ? "the control process has ended: nobody looks after the rig" : `no word from the station for ${aged(link.age)}`);
   const samples = state?.live?.age_ms ?? null; // when the state was made; null without any
   root.dataset.samples = samples !== null && samples + link.age > OLD ? "old" : "fresh";
-  say($("link").querySelector(".text"), { live: `live, state ${aged(Math.min(link.age, 200))} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
+  say($("link").querySelector(".text"), { live: `live, state ${aged(link.age)} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
   return kind;
 }
