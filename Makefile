@@ -6,7 +6,7 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner long blind pictures lint install lock clean
+.PHONY: demo test inner long blind bench pictures lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
@@ -22,6 +22,9 @@ blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plan
 	$(BIN)/python -m tests.blind.generate --suite 30 --seed $(or $(SEED),1) --jobs 2 --out build/blind
 	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table tests/blind/TABLE.md
 	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
+
+bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built and installed in build/bench): ten minutes
+	$(BIN)/python -m tests.bench --table tests/bench/TABLE.md
 
 long: .venv/ready-dev  ## real time over the wire, whole loops: a quarter of an hour on a quiet machine
 	$(BIN)/python -m pytest -m long

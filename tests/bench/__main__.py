@@ -20,7 +20,7 @@ from tests.bench.turns import Rounds
 ROUNDS = 7  # in earnest: the 10th and the 90th percentile are then those of the second and the last but one
 REMARKS = (
     "Sides take turns within one run; a figure is ours over theirs, round by round: median, 10th and 90th percentile "
-    "of the rounds. CPU time unless a figure says otherwise. Rigs are simulated (SIMULATED: the twin). The load average "
+    "of the rounds. CPU time unless a figure says otherwise. Rigs are SIMULATED (the twin). The load average "
     "says how many processes wanted to run on these cores; what the machine does falls on both sides of a ratio."
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import subprocess
 import sys
+import sysconfig
 from functools import cache
 from pathlib import Path
 
@@ -44,12 +45,19 @@ def peers() -> tuple[Path, str]:
     wanted = [line for line in (HERE / "requirements.txt").read_text(encoding="utf-8").splitlines() if line.strip()]
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(VENV)], check=True)
+    _also(VENV)
     if mark.exists() and mark.read_text(encoding="utf-8").splitlines()[:-1] == wanted:
         return python, mark.read_text(encoding="utf-8").splitlines()[-1]
     refused = [line for line in wanted if not _install(python, line)]
     words = f"could not be installed here: {', '.join(refused)}" if refused else "all peers installed"
     mark.write_text("\n".join([*wanted, words]), encoding="utf-8")
     return python, words
+
+
+def _also(venv: Path) -> None:
+    """What the peers' environment lacks comes from ours, behind its own packages: the readers of a run folder."""
+    (own,) = venv.glob("lib/python*/site-packages")
+    (own / "hdrig.pth").write_text(f"{sysconfig.get_paths()['purelib']}\n", encoding="utf-8")
 
 
 def _install(python: Path, requirement: str) -> bool:

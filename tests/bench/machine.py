@@ -17,7 +17,8 @@ def load() -> float:
 def head() -> str:
     """The sentence under the table's title."""
     when = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return f"{when}, commit {commit()}, {processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}, Python {platform.python_version()}"
+    machine = f"{processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}"
+    return f"{when}, commit {commit()}, {machine}, Python {platform.python_version()}"
 
 
 def commit() -> str:

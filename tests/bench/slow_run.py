@@ -25,7 +25,7 @@ AMPLITUDE, PERIOD = 8.0 * np.pi, 100.0  # rad and s: ±1440° at 0.01 Hz      [g
 class Rig(ctypes.Structure):
     """The floor's record, in its order."""
 
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         *((name, ctypes.c_double) for name in ("ratio", "J_m", "J_l", "K", "B_m", "B_l", "B_ml", "B_sp", "sigma")),
         *((name, ctypes.c_double) for name in ("tau_c", "tau_s", "omega_s", "F_cl", "T_drive")),
         *((name, ctypes.c_double) for name in ("Kp", "Ki", "Kd", "ff", "limit")),

@@ -9,5 +9,6 @@ from tests.bench.rows.plant import Plant
 from tests.bench.rows.recording import Recording
 from tests.bench.rows.resampling import Resampling
 from tests.bench.rows.tick import Tick
+from tests.bench.rows.trace import Trace
 
-ROWS: tuple[type[Row], ...] = (Tick, Plant, Fit, Resampling, Recording, Commands)
+ROWS: tuple[type[Row], ...] = (Tick, Plant, Fit, Resampling, Trace, Recording, Commands)
