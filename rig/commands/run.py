@@ -6,10 +6,10 @@ import argparse
 from dataclasses import fields
 
 from rig.bench import Bench
+from rig.campaign.clear_of_resonance import refuse_resonance, swing_lines
 from rig.campaign.plan import plan_of
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
-from rig.campaign.swing import ARCMIN, into_resonance, predicted
 from rig.commands.campaign import begin
 from rig.commands.options import (
     bench_arguments,
@@ -24,12 +24,10 @@ from rig.commands.perform import Job, clear, let_be, perform
 from rig.commands.show.show import showing
 from rig.commands.viewing import view, view_argument
 from rig.config import nearest
-from rig.core.errors import NotReady, UsageError
+from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import refuse_beyond_limits, refuse_endless
-
-ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak, as plans take it: twice what a catalogue's 1 arcmin peak to peak can hold
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +49,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--allow-resonance",
         action="store_const",
         const=into_it,
-        default=keep_clear,
+        default=refuse_resonance,
         dest="resonance",
         help="run through the speed at which order 2 meets the gear's torsional resonance",
     )
@@ -85,25 +83,11 @@ def run(args: argparse.Namespace) -> int:
         refuse_beyond_limits(bench, procedure)
         args.resonance(bench, procedure)
         return 0
+    refuse_beyond_limits(bench, procedure)
     args.resonance(bench, procedure)
     note = args.note.encode("utf-8", "replace").decode()
     with showing(args.json) as show, view(args.view) as looking_on:
         return perform(Job(bench, clock, procedure, args.out, note, args.before), show, looking_on)
-
-
-def swing_lines(bench: Bench, procedure: Procedure) -> list[str]:
-    """What the kinematic error is expected to do to the shaft torque of a free output."""
-    speed = procedure.envelope(bench.setting(lambda text: None)).speed
-    return [] if procedure.output_locked or speed == 0.0 else [predicted(bench, speed, ORDER_2)]
-
-
-def keep_clear(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady when the run would go into the resonance of order 2."""
-    if procedure.output_locked:
-        return
-    speed = procedure.envelope(bench.setting(lambda text: None)).speed
-    if words := into_resonance(bench, speed, ORDER_2):
-        raise NotReady(f"{procedure.title()}: {words}, or --allow-resonance")
 
 
 def into_it(bench: Bench, procedure: Procedure) -> None:

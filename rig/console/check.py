@@ -7,6 +7,7 @@ from typing import Any
 
 from rig.bench import Bench, read
 from rig.campaign import dry_run
+from rig.campaign.clear_of_resonance import refuse_resonance, swing_lines
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import planned
 from rig.core.errors import HdrigError, UsageError
@@ -15,7 +16,6 @@ from rig.parameters import make
 from rig.preview import plan_lines
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import margins, refuse_beyond_limits, refuse_endless
-from rig.station.resonance import refuse_resonance, swing_lines
 
 WHOLE = "*"  # the problem is of no single parameter
 SEED = 0  # of the order of a plan that is only looked at

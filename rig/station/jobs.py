@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rig.bench import Bench, ClockName, read
+from rig.campaign.clear_of_resonance import refuse_resonance
 from rig.campaign.run import to_bare
 from rig.core.errors import HdrigError, UsageError
 from rig.core.operator import FreeOutput, LockOutput
@@ -19,7 +20,6 @@ from rig.procedures.jog import Jog
 from rig.session import Session
 from rig.station.analysis import Analysis
 from rig.station.campaigns import conduct_plan
-from rig.station.resonance import refuse_resonance
 from rig.station.station import Job, Station
 
 TOLD = ("sign-and-scale", "weigh", "lock-check", "step-test", "unwind", "jog")  # their finding is all there is to say

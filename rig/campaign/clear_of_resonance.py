@@ -1,4 +1,4 @@
-"""A run from the page stays clear of the speed at which order 2 meets the gear's torsional resonance."""
+"""A single run stays clear of the speed where order 2 meets the gear's torsional resonance, unless told otherwise."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin p
 
 
 def refuse_resonance(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady. Whoever means to go there does it from the command line, where he has to say so."""
+    """Raises NotReady. Whoever means to go there says so, on the command line."""
     if procedure.output_locked:
         return
     if words := into_resonance(bench, _speed(bench, procedure), ORDER_2):
-        raise NotReady(f"{procedure.title()}: {words}, or hdrig run --allow-resonance")
+        raise NotReady(f"{procedure.title()}: {words}, or `hdrig run … --allow-resonance`")
 
 
 def swing_lines(bench: Bench, procedure: Procedure) -> list[str]:
