@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.bench.row import Row
+from tests.bench.rows.can_cycle import CanCycle
 from tests.bench.rows.commands import Commands
 from tests.bench.rows.fit import Fit
 from tests.bench.rows.live import LiveView
@@ -13,4 +14,4 @@ from tests.bench.rows.tick import Tick
 from tests.bench.rows.trace import Trace
 from tests.bench.rows.wake import WakeUp
 
-ROWS: tuple[type[Row], ...] = (WakeUp, Tick, Plant, Fit, Resampling, Trace, Recording, LiveView, Commands)
+ROWS: tuple[type[Row], ...] = (WakeUp, Tick, CanCycle, Plant, Fit, Resampling, Trace, Recording, LiveView, Commands)
