@@ -95,7 +95,7 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
 
 def beside_a_row(at: Array, x: Array) -> npt.NDArray[np.bool_]:
     """Which of the angles `at` (n,) lie between two rows of `x` (m,), rising, that follow each other, not in a hole."""
-    hole = HOLE * float(np.median(np.diff(x)))
+    hole = HOLE * float(x[-1] - x[0]) / max(x.size - 1, 1)  # the mean: a motor that sticks has a median of nothing
     above = np.clip(np.searchsorted(x, at), 1, x.size - 1)
     return np.asarray(x[above] - x[above - 1] <= max(hole, 1e-12))
 

@@ -21,7 +21,7 @@ from rig.analysis.tracing.floor import (
     strokes,
 )
 from rig.analysis.tracing.model import Solution
-from rig.analysis.tracing.thresholds import FLOOR_LEAST, ZERO
+from rig.analysis.tracing.thresholds import FLOOR_LEAST, GAIN, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -161,7 +161,24 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
     """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all; where a
     motor sticks and jumps, its encoder's rounding at least, which repeats share.
     """
-    return max(_compared(measured, eq, key), float(np.hypot(measured.noise.sigma[key[1]], _rounding(eq, key))))
+    alone = float(np.hypot(_compared(measured, eq, key), _gain(measured, eq, key)))
+    return max(alone, float(np.hypot(measured.noise.sigma[key[1]], _rounding(eq, key))))
+
+
+def _gain(measured: Measured, eq: Equations, key: Key) -> float:
+    """What a torque sensor's gain, never twice quite the same, does to A [rad] where the torque swings further than in
+    all runs of its kind that were compared."""
+    run, channel = key
+    if channel != "A" or key in measured.by_run or "tau_l" not in eq.runs[run].has:
+        return 0.0
+    like = [i for i, c in measured.by_run if c == channel and eq.runs[i].said == eq.runs[run].said]
+    shown = max((_swing(eq, i) for i in like), default=0.0)
+    return GAIN * float(np.sqrt(max(_swing(eq, run) ** 2 - shown**2, 0.0))) / eq.runs[run].pieces[0].gear.K
+
+
+def _swing(eq: Equations, run: int) -> float:
+    """RMS of the torque about its mean, N·m."""
+    return float(np.nanstd(np.concatenate([p.torque for p in eq.runs[run].pieces])))
 
 
 def _rounding(eq: Equations, key: Key) -> float:
