@@ -12,6 +12,7 @@ from tests.bench.rows.plant import Plant
 from tests.bench.rows.recording import Recording
 from tests.bench.rows.resampling import Resampling
 from tests.bench.rows.solvers import Solvers
+from tests.bench.rows.sweep import Sweep
 from tests.bench.rows.tick import Tick
 from tests.bench.rows.trace import Trace
 from tests.bench.rows.wake import WakeUp
@@ -22,6 +23,7 @@ ROWS: tuple[type[Row], ...] = (
     CanCycle,
     Plant,
     Solvers,
+    Sweep,
     Fit,
     Resampling,
     Trace,
