@@ -13,10 +13,13 @@ typedef struct {
 static inline void rates(const Common *g, const double *K, const double *J_l, const double *tau_c, double tau,
                          double y[4][L], double d[4][L]) {
     double c[L], s[L], c0[L], s0[L], twice[L], value[L], slope[L];
+    /* apart: together the compiler makes one scalar call of the two */
+#pragma omp simd
+    for (int i = 0; i < L; i++) c[i] = cos(y[0][i]);
+#pragma omp simd
+    for (int i = 0; i < L; i++) s[i] = sin(y[0][i]);
 #pragma omp simd
     for (int i = 0; i < L; i++) {
-        c[i] = cos(y[0][i]);
-        s[i] = sin(y[0][i]);
         twice[i] = 2.0 * c[i];
         c0[i] = 1.0;
         s0[i] = value[i] = slope[i] = 0.0;

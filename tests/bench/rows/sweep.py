@@ -91,9 +91,10 @@ class Rigs:
 class Sweep(Row):
     """The twin's kernel, rig by rig, against code that does nothing but this, with the rigs in the lanes of a register.
 
-    Found: what the kernel does besides (a ledger of energy, the search for events, friction that wanders) costs twice a
-    plain step, lanes another factor of five. hdrig has no command that simulates a thousand rigs (an interval of
-    `hdrig simulate` draws sixty, a blind study spreads processes over cores), so nothing was changed for this figure.
+    Found: what the kernel does besides (a ledger of energy, the search for events, two steps a tick where the stiffer
+    rigs ask for them) costs two to three times a plain step, one rig at a time another factor of three. hdrig has no
+    command that simulates a thousand rigs (an interval of `hdrig simulate` draws sixty, a blind study spreads processes
+    over cores), so nothing was changed for this figure.
     """
 
     number: ClassVar[int] = 6
