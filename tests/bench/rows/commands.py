@@ -16,7 +16,7 @@ from tests.bench.turns import Rounds, Side, take_turns
 from tests.bench.twin import run
 
 PYTHON = sys.executable
-PLAIN = (  # as installed without the extra `exchange`: pandas, which asammdf brings, is imported by pyarrow if it is there
+PLAIN = (  # as installed without the extra `exchange`, which brings pandas: pyarrow imports that where it finds it
     PYTHON,
     "-c",
     "import sys; sys.modules['pandas'] = None; from rig.cli import main; sys.exit(main())",
