@@ -9,6 +9,7 @@ from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy is imported: threads that spin are noise
 
+from rig.core.errors import HdrigError
 from tests.bench.built import Unavailable, peers
 from tests.bench.figure import Shown, not_measured
 from tests.bench.machine import head, load
@@ -34,15 +35,15 @@ def main() -> int:
     args = parser.parse_args()
     rounds = Rounds(1 if args.quick else ROUNDS, args.quick)
     wanted = [row() for row in ROWS if not args.row or row.number in args.row]
-    measured = []
+    remarks = [REMARKS, f"Peers: {peers()[1]}.", *(["QUICK: the figures mean nothing."] if args.quick else [])]
+    began, measured, text = head(), list[Measured](), ""
     for row in wanted:
         measured.append(one(row, rounds))
         print("\n".join(lines_of(measured[-1])), flush=True)
-    remarks = [REMARKS, f"Peers: {peers()[1]}.", *(["QUICK: the figures mean nothing."] if args.quick else [])]
-    text = table(measured, head(), remarks)
-    print(text)
-    if args.table:
-        args.table.write_text(text, encoding="utf-8")
+        text = table(measured, began, remarks)
+        if args.table:
+            args.table.write_text(text, encoding="utf-8")  # after each row: who breaks off keeps what was measured
+    print(f"\n{text}")
     return 0
 
 
@@ -51,7 +52,7 @@ def one(row: Row, rounds: Rounds) -> Measured:
     before = load()
     try:
         figures = row.measure(rounds)
-    except Unavailable as why:
+    except (Unavailable, HdrigError) as why:  # a run that the guard ended on a busy machine is no figure
         figures = [not_measured(row.name, Shown(), str(why))]
     return Measured(row, figures, before, load())
 

@@ -43,6 +43,16 @@ class SlowRun:
     gains: Gains
     theta_ref: Array
     omega_ref: Array
+    speed: float = 0.0  # rad/s of the motor at the start, the spring then wound as friction of the load wants it
+    refine: float = 1.0  # divides our substeps
+
+    @classmethod
+    def steady(cls, ticks: int, speed: float, stiffer: float) -> SlowRun:
+        """`ticks` at `speed` rad/s from the start on, with a spring `stiffer` times as stiff: nothing ever stops."""
+        slow = cls.of(ticks / 1000.0)
+        gear = replace(slow.parameters.gear, K=stiffer * slow.parameters.gear.K)
+        theta = speed * np.arange(ticks) / 1000.0
+        return cls(replace(slow.parameters, gear=gear), slow.gains, theta, np.full(ticks, speed), speed)
 
     @classmethod
     def of(cls, seconds: float) -> SlowRun:
@@ -55,14 +65,35 @@ class SlowRun:
         speed = np.where(up, 1.0, -1.0) * 4.0 * AMPLITUDE / PERIOD
         return cls(replace(twin_parameters(bench.file), friction_noise=0.0), bench.gains, theta, speed)
 
+    def plant(self) -> Plant:
+        """Where the run begins; relaxed when it stands."""
+        plant, gear = Plant(self.parameters, refine=self.refine), self.parameters.gear
+        if self.speed:
+            plant.place(0.0, self.speed, -(gear.F_cl + gear.B_l * self.speed / gear.ratio) / gear.K)
+        return plant
+
     def start(self) -> Array:
-        """State of the floor: θ_m, ω_m, θ_l, ω_l where the spring is relaxed."""
-        x = Plant(self.parameters).truth()
+        """The same for a solver: θ_m, ω_m, θ_l, ω_l."""
+        x = self.plant().truth()
         return np.array([x.theta_m, x.omega_m, x.theta_l, x.omega_l])
+
+    def question(self) -> dict[str, Any]:
+        """The same for a peer in another process."""
+        gear, g = self.parameters.gear, self.gains
+        names = ("ratio", "J_m", "J_l", "K", "B_m", "B_l", "B_ml", "B_sp", "sigma", "tau_c", "tau_s", "omega_s", "F_cl")
+        return {
+            "gear": {name: getattr(gear, name) for name in names} | {"T_drive": self.parameters.tau_drive},
+            "a": list(gear.kinematic_error.a),
+            "b": list(gear.kinematic_error.b),
+            "gains": {"Kp": g.Kp, "Ki": g.Ki, "Kd": g.Kd, "ff": g.feedforward},
+            "speed": self.speed,
+            "ticks": self.theta_ref.size,
+            "start": self.start().tolist(),
+        }
 
     def by_kernel(self) -> Array:
         """θ_m/N − θ_l [rad] at every tick."""
-        plant, g = Plant(self.parameters), self.gains
+        plant, g = self.plant(), self.gains
         gains = (g.Kp, g.Ki, g.Kd, g.feedforward, g.torque_limit)
         return np.asarray(ticks(plant.state, plant.vector, self.theta_ref, self.omega_ref, gains))
 

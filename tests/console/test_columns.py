@@ -92,6 +92,19 @@ def test_a_turn_in_which_the_motor_turned_back_does_not_count() -> None:
     assert so_far.peak_to_peak is None
 
 
+def test_a_turn_just_after_a_reversal_does_not_count_while_it_still_rings() -> None:
+    forth = rows(turns=2.0 - 1.0 / (2 * math.pi) + 0.02, n=2000)  # 7° into the third turn, then back
+    back = rows(turns=1.2, n=1200)
+    for name in ("theta_m", "theta_l", "theta_ref"):
+        back[name] += forth[name][-1] - back[name][-1]
+    back = back[::-1].copy()
+    back["theta_l"][100:140] += 100.0 * ARCSEC  # 30° after the reversal, in the next turn
+    so_far = SoFar(RATIO)
+    so_far.add(forth)
+    so_far.add(back)
+    assert so_far.peak_to_peak == pytest.approx(2 * PEAK, rel=1e-3)  # the turn before the reversal
+
+
 def test_without_a_reference_nothing_is_said_of_following() -> None:
     taken = rows()
     taken["theta_ref"] = np.nan

@@ -51,3 +51,8 @@ def test_there_is_always_something_to_do_next(name: str) -> None:
 
 def test_a_prompt_goes_before_everything_else_one_could_advise() -> None:
     assert "fit the lock pin" in advice(STATES["asking"][0].picture())
+
+
+def test_who_holds_a_run_is_told_that_it_does_not_go_on_from_there() -> None:
+    status = replace(ON, state="holding", job="run kinematic-error")
+    assert "does not go on from here" in advice(status.picture())

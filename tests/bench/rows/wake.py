@@ -37,7 +37,7 @@ class WakeUp(Row):
     def _rate(self, rate: int, looking_on: Observer, words: str, rounds: Rounds) -> list[Figure]:
         mine: list[Wake] = []
         theirs: list[Wake] = []
-        seconds = rounds.size(3, 1)
+        seconds = rounds.size(2, 1)
         for _ in range(min(rounds.count, MOST)):
             theirs.append(floor(rate, seconds))
             mine.append(ours(rate, seconds, looking_on))

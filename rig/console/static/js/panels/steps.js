@@ -21,13 +21,21 @@ export function steps(state) {
   const checks = state.checks ?? [];
   const wrong = checks.filter((check) => !check.ok);
   mark("check", checks.length > 0, wrong.length > 0);
-  tell("check", checks.length ? (wrong.length ? `${wrong.length} of ${checks.length} not passed` : `${checks.length} passed`) : "not made");
-  show($("checks"), wrong.length > 0);
-  refill($("checks"), wrong, () => wrong.map((check) => h("li", {}, h("b", {}, check.name), ` ${check.text}`)));
+  const listed = [...wrong, ...checks.filter((check) => check.health === "doubtful")];
+  tell("check", count(checks.length, wrong.length, listed.length - wrong.length));
+  show($("checks"), listed.length > 0);
+  refill($("checks"), listed, () => listed.map((check) => h("li", {}, h("b", {}, check.name), ` ${check.text}`)));
   mark("prove", Boolean(state.proof));
   tell("prove", state.proof ?? "not made");
   mark("tare", Boolean(state.tare));
   tell("tare", state.tare ?? "not made");
+}
+
+/** How many passed, with what a person should know before starting all the same. */
+function count(all, wrong, doubtful) {
+  if (!all) return "not made";
+  if (wrong) return `${wrong} of ${all} not passed`;
+  return doubtful ? `${all} passed, ${doubtful} doubtful` : `${all} passed`;
 }
 
 function choose(select, source) {
