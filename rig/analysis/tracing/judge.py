@@ -12,9 +12,10 @@ from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
 from rig.analysis.tracing.search import possible, reduced
-from rig.analysis.tracing.thresholds import EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
+from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
 from rig.model.effect import Array, Parameter
 
+FAIR = 0.04  # of an effect's work: a fifth of its size
 FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
 
 
@@ -47,8 +48,8 @@ class Court:
 class Worth:
     """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
-    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes). `harm` is by
-    how much the worst channel is worse with it."""
+    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
+    same within the channel where it is worst. `harm` is by how much the worst channel is worse with it."""
 
     name: str
     share: float
@@ -57,13 +58,14 @@ class Worth:
     true: float
     ground: tuple[Key, ...]
     unsteady: float = 0.0
+    apart: float = 0.0
     harm: float = 1.0
 
     @property
     def named(self) -> bool:
         """Whether it may be named."""
         real = self.size > SMALLEST and REAL < self.true < UNREAL
-        real = real and self.unsteady < UNSTEADY and self.harm < HARMFUL
+        real = real and self.unsteady < UNSTEADY and self.apart < APART and self.harm < HARMFUL
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
 
@@ -106,8 +108,11 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     share = (before - after) / max(before - n, 0.02 * n)
     own = sum(size[key] ** 2 * whole[key].size for key in ground)
     true = float((before - after) / own)
-    unsteady = max(unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen))
-    return Worth(name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady, harm(at, bare, whole))
+    held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
+    unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
+    return Worth(
+        name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady, apart, harm(at, bare, whole)
+    )
 
 
 def harm(at: Court, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
@@ -120,22 +125,26 @@ def harm(at: Court, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> fl
     return max(found)
 
 
-def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> float:
-    """How much an effect's size differs from run to run and channel to channel: RMS, relative, weighted by what it does
-    there, what noise makes of it taken off. `rest` is the fit without the effect.
+def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> tuple[float, float]:
+    """How much an effect's size differs from run to run: RMS, relative, weighted by what it does there, what noise
+    makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. `rest` is
+    the fit without the effect.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
     like an effect has its size from a compromise between runs; a real one has the same in each.
     """
-    spread, total = 0.0, 0.0
+    spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     for key in d.y:
         e = d.residual(key, s.x) / floors[key]
         f = d.residual(key, rest.x) / floors[key] - e
         own = float(f @ f)
         if own > FAINT:
-            spread += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
-            total += own
-    return float(np.sqrt(max(spread, 0.0) / total)) if total else 0.0
+            spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
+            work[key[1]] += own
+    total = sum(work.values())
+    fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
+    apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
+    return float(np.sqrt(max(sum(spread.values()), 0.0) / total)) if total else 0.0, float(apart)
 
 
 def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:

@@ -34,6 +34,7 @@ QUIET: Final = 1.1  # RMS over floor: a floor from a dozen repeats is not known 
 REAL: Final = 0.6  # of its own sum of squares an effect must take away on unseen runs; 1 when it is what it says
 UNREAL: Final = 1.4  # the same from above: unseen runs want it a fifth larger than the seen ones did, so it is not that
 UNSTEADY: Final = 1 / 3  # relative, how much an effect's size may differ from run to run; true ones 0.3, mimics more
+APART: Final = 0.5  # the same within one channel, where there is less of it to tell by
 HARMFUL: Final = 1.1  # RMS of a loud channel over that without the effect: what explains one sensor spoils no other
 PLAIN_ENOUGH: Final = 0.9  # of the best coordinate's share: a simpler one that does nearly as well is said instead
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few

@@ -26,7 +26,7 @@ def solved(true: dict[Any, Any], noise: float) -> float:
     )
     whole: Any = SimpleNamespace(x="with")
     rest: Any = SimpleNamespace(x="without")
-    return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0))
+    return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0))[0]
 
 
 def test_the_same_size_everywhere_is_steady_whatever_the_noise() -> None:
