@@ -10,6 +10,7 @@ from __future__ import annotations
 import tomllib
 from datetime import date
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
@@ -19,6 +20,8 @@ from rig.core.errors import UsageError
 from rig.quantities import NotNegative, Positive, quantity
 from rig.quantities import Strict as Strict  # these two also for readers of other files of the same kind
 from rig.quantities import nearest as nearest
+
+LONGEST = 2**20  # bytes: the longest bench that ships has under 20 000
 
 
 class LoopSection(Strict):
@@ -252,13 +255,20 @@ def read_bench(text: str, source: str) -> BenchFile:
 
 
 def load_text(path: Path) -> str:
-    """The text of a configuration file. Raises UsageError."""
+    """The text of a configuration file, which is a regular file: a device or a pipe never ends. Raises UsageError."""
     try:
+        found = path.stat()
+        if S_ISDIR(found.st_mode):
+            raise UsageError(f"cannot read {path}: it is a folder; expected a TOML file")
+        if not S_ISREG(found.st_mode) or found.st_size > LONGEST:
+            raise UsageError(f"{path} is no text file of at most {LONGEST // 2**20} MiB; expected a TOML file")
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise UsageError(f"{path} is not UTF-8 text; expected a TOML file") from None
     except OSError as error:
-        raise UsageError(f"cannot read {path}: {error.strerror}") from None
+        raise UsageError(f"cannot read {str(path)[:200]}: {error.strerror}") from None
+    except ValueError:  # a zero byte, or half a character
+        raise UsageError(f"{str(path)[:200]!a} is no name of a file") from None
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:

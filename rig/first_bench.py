@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from drivers.scan import Found, SerialPort
 
 TEMPLATE = "twin-canopen"
+SLOW = {"slcan": "twin-slcan"}  # 22 characters a frame: 250 Hz, with the gains and the latch lead of that rate
 HEAD = (
     ' A first bench file, written from what answered on the bus. Numbers the devices told say from = "measured";',
     " all others belong to the rig of the paper and are to be replaced by yours.",
@@ -45,7 +46,7 @@ def first_bench(interface: str, channel: str, bitrate: int, nodes: Sequence[Foun
 
     from drivers import PROFILES
 
-    document: Any = tomlkit.parse((BENCHES / f"{TEMPLATE}.toml").read_text(encoding="utf-8"))
+    document: Any = tomlkit.parse((BENCHES / f"{SLOW.get(interface, TEMPLATE)}.toml").read_text(encoding="utf-8"))
     bench: Any = tomlkit.document()
     for line in HEAD:
         bench.add(tomlkit.comment(line.strip()))
@@ -54,6 +55,10 @@ def first_bench(interface: str, channel: str, bitrate: int, nodes: Sequence[Foun
     bench["name"] = "first"
     bench["bus"]["rig"].update({"interface": interface, "channel": channel})
     bench["bus"]["rig"]["bitrate"]["value"] = bitrate
+    bench["bus"]["rig"].pop("options", None)  # of the twin's adapter
+    if not any(node.identity.simulated for node in nodes):
+        bench.pop("hand")  # only a twin's: a bench of real devices is refused with one
+        bench["gear"]["serial"] = "UNNAMED"
     found = {PROFILES[node.profile]: node for node in nodes if node.profile in PROFILES}
     for role in SECTIONS:
         bench["devices"].pop(role, None)

@@ -95,7 +95,7 @@ class Loop:
             self.instruments.start()
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable(self.setpoints.mode)
-            self.supervisor.act(Act.RUN, procedure.name)
+            self.supervisor.act(Act.RUN, procedure.title())
             self.running = True
             return self._tick(procedure, setting)
         except BaseException:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar
@@ -11,6 +10,7 @@ from rig.config import nearest
 from rig.core.errors import UsageError
 
 Made = TypeVar("Made")
+LARGEST = 1e100  # nothing on a rig is near, and its square is still a number
 WORDS = {
     float: "a finite number",
     int: "a whole number",
@@ -48,13 +48,13 @@ def _value(field: Field[Any], raw: Any) -> Any:
         return _number(field, raw, signed)
     if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
         raise _refused(field, raw, WORDS.get(wanted, wanted.__name__))
-    if isinstance(raw, int) and not isinstance(raw, bool) and raw <= 0 and not signed:
-        raise _refused(field, raw, "more than 0")
+    if isinstance(raw, int) and not isinstance(raw, bool):
+        _number(field, raw, signed)
     return raw
 
 
 def _number(field: Field[Any], raw: Any, signed: bool) -> float:
-    if isinstance(raw, bool) or not isinstance(raw, float | int) or not math.isfinite(raw):
+    if isinstance(raw, bool) or not isinstance(raw, float | int) or not -LARGEST < raw < LARGEST:
         raise _refused(field, raw, WORDS[float])
     if raw <= 0 and not signed:
         raise _refused(field, raw, "more than 0")
@@ -62,4 +62,6 @@ def _number(field: Field[Any], raw: Any, signed: bool) -> float:
 
 
 def _refused(field: Field[Any], raw: Any, expected: str) -> UsageError:
-    return UsageError(f"{field.name} = {raw}: expected {expected}, for example {field.default}")
+    told = str(raw)
+    told = told if len(told) <= 60 else told[:57] + "..."
+    return UsageError(f"{field.name} = {told}: expected {expected}, for example {field.default}")

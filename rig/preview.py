@@ -17,7 +17,7 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     inertia = gear.J_m + gear.J_l / gear.N**2
     lines = [
         f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
-        f"duration    {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
+        f"duration    at most {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
         f"energy      {0.5 * inertia * envelope.speed**2:.4f} J in motion, at the motor's speed",
     ]
     for what, asked, limit, unit, scale in margins(bench, procedure):

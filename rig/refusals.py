@@ -11,6 +11,7 @@ from rig.core.procedure import Procedure
 from rig.core.sample import Mode
 
 LONGEST = 31 * 86400.0  # s
+LARGEST = 1e100  # in any unit: its square is still a number
 
 
 def refuse_rigging(rigging: Rigging, procedure: Procedure) -> None:
@@ -27,7 +28,7 @@ def refuse_endless(bench: Bench, procedure: Procedure) -> None:
     """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
     try:
         envelope = procedure.envelope(bench.setting(lambda text: None))
-        finite = all(math.isfinite(x) for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
+        finite = all(abs(x) < LARGEST for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
     except (OverflowError, ZeroDivisionError):
         finite = False
     if not finite or not 0 < envelope.duration < LONGEST:

@@ -15,7 +15,7 @@ from rig.campaign.plan import PLANS, digest
 from rig.campaign.planner import Campaign
 from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
-from rig.runfile.manifest import parse, sync_folder, told, utc_now, write_atomic
+from rig.runfile.manifest import contents, parse, sync_folder, told, utc_now, write_atomic
 from rig.runfile.process import is_being_made, this_process
 
 NAME = "campaign.json"
@@ -161,7 +161,7 @@ def read_journal(folder: Path) -> Journal:
     """The campaign in `folder`. Raises UsageError when there is none."""
     path = folder / NAME
     try:
-        book = parse(path.read_bytes())
+        book = parse(contents(path))
     except FileNotFoundError:
         raise UsageError(f"{folder} is not a campaign folder: it has no {NAME}") from None
     except OSError as error:

@@ -173,8 +173,10 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
     for one, names in zip(found, known, strict=True):
         if one.status not in COUNTS:
             said.append(f"{one.path.name} is {one.status}: its figures are from what was recorded")
-        if not names:
-            said.append(f"{one.path.name} has no figures; hdrig analyse makes them")
+        if not names and not (one.path / "result.json").exists():
+            said.append(f"{one.path.name} was not analysed; hdrig analyse does so")
+        elif not names:
+            said.append(f"{one.path.name} has no figures: its report says why")
     return said
 
 

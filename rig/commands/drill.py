@@ -31,8 +31,10 @@ def run(args: argparse.Namespace) -> int:
     causes = [c for c in kind.causes if args.only in c.name]
     phases = [p for p in PHASES if args.phase in p.name]
     if not causes or not phases:
-        known = "; phases: ".join(", ".join(x.name for x in some) for some in (kind.causes, PHASES))
-        raise UsageError(f"no such drill; faults: {known}")
+        what, asked, some = ("phase", args.phase, PHASES) if causes else ("fault", args.only, kind.causes)
+        raise UsageError(
+            f"no {what} has '{asked}' in its name; expected one of\n  " + "\n  ".join(x.name for x in some)
+        )
     print(f"SIMULATED: the drivers of real devices against the twin's {kind.words}, virtual time, 1 kHz, 1 Mbit/s")
     print(
         "ms from the cause to the last torque commanded; – none commanded, ok went on as it has to, ✗ not as expected"

@@ -49,8 +49,9 @@ def _line(row: Row) -> str:
     if row.status == UNREADABLE:
         return f"{'–':19s} {UNREADABLE:18s} {row.problem}"
     duration = "–" if row.duration is None else f"{row.duration:.1f} s"
+    procedure = row.procedure.replace("_", "-")
     return (
-        f"{row.started_utc[:19]:19s} {row.procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
+        f"{row.started_utc[:19]:19s} {procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
         f"{row.verdict or '–':12s} {row.path}{' SIMULATED' if row.simulated else ''}"
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rig.core.errors import Exit, UsageError
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.result import Trace
+    from rig.analysis.tracing.result import NextRun, Trace
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -55,13 +55,24 @@ def exit_of(found: Trace) -> Exit:
     return Exit.PASS if found.verdict.status in ("explained", "no_missing_effect") else Exit.INCOMPLETE
 
 
+def asked(run: NextRun) -> str:
+    """Procedure, conditions with their units, and why."""
+    from rig.report.rows import measured
+
+    rows = [measured(key, value) for key, value in run.conditions.items()]
+    at = ", ".join(f"{row.name} {row.value}" for row in rows)
+    return f"{run.procedure.replace('_', '-')}{f' at {at}' if at else ''}: {run.because}"
+
+
 def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
+    from rig.report.trace.sizes import said
+
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
     print(f"  {found.verdict.sentence}")
     for effect in found.effects:
         for p in effect.parameters:
-            print(f"  {effect.effect} {p.name} {p.value:.4g} ({p.ci95[0]:.4g} to {p.ci95[1]:.4g}) {p.unit}")
+            print(f"  {effect.effect} {p.name} {said(p)}")
     for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):
         if name in found.ratios_before:
             print(
@@ -69,6 +80,6 @@ def tell(found: Trace) -> None:
                 f"{found.ratios_before[name]:.2f} → {found.ratios_after[name]:.2f} times the floor"
             )
     if found.next_run:
-        print(f"  next run: {found.next_run.procedure} {found.next_run.conditions} {found.next_run.because}")
+        print(f"  next run: {asked(found.next_run)}")
     for note in (*found.notes, *found.cannot):
         print(f"  note: {note}")

@@ -133,11 +133,12 @@ async def _body(request: Request) -> dict[str, Any] | None:
             return None
     try:
         found = json.loads(taken)
+        json.dumps(found, ensure_ascii=False).encode()  # half a character could be neither written down nor sent on
     except (ValueError, RecursionError):
         return None
     return found if isinstance(found, dict) else None
 
 
 def _no_object() -> Response:
-    why = f"expected a JSON object of at most {LONGEST} bytes"
+    why = f"expected a JSON object of at most {LONGEST} bytes of whole characters"
     return JSONResponse({"accepted": False, "why": why}, 409)

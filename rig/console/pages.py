@@ -57,7 +57,7 @@ class Pages:
     async def _who(self, socket: WebSocket) -> str | None:
         try:
             said = json.loads(await asyncio.wait_for(socket.receive_text(), FIRST_WORD))
-        except (TimeoutError, ValueError, KeyError, WebSocketDisconnect):
+        except (TimeoutError, ValueError, RecursionError, KeyError, WebSocketDisconnect):
             return None
         if not isinstance(said, dict) or self._access.refuse_token(str(said.get("token"))):
             return None

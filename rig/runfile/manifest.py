@@ -7,7 +7,9 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from errno import EISDIR
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from rig.core.errors import HdrigError, UsageError
@@ -16,6 +18,7 @@ SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
 ENDINGS = ("completed", "stopped", "tripped", "interrupted")
 
+LONGEST = 2**24  # bytes: of a thousand times what ours have, and still read within a second
 DEPTH = 64  # of lists and objects in one another; ours have 5, and what recurses over a hundred times more fails
 OBJECTS = (
     "gear", "declared", "conditions", "encoders", "software", "clock", "files", "process", "closing",
@@ -32,7 +35,7 @@ def read(folder: Path) -> Manifest:
     """
     path = folder / NAME
     try:
-        found = parse(path.read_bytes())
+        found = parse(contents(path))
     except FileNotFoundError:
         raise UsageError(f"{folder} is not a run folder: it has no {NAME}") from None
     except OSError as error:
@@ -45,6 +48,18 @@ def read(folder: Path) -> Manifest:
     found = {key: value for key, value in found.items() if value is not None}
     _refuse_other_kinds(path, found)
     return found
+
+
+def contents(path: Path) -> bytes:
+    """What a small regular file holds. Raises OSError, and ValueError for what a listing must not wait for or hold."""
+    found = path.stat()
+    if S_ISDIR(found.st_mode):
+        raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(path))
+    if not S_ISREG(found.st_mode):
+        raise ValueError("it is a device or a pipe")
+    if found.st_size > LONGEST:
+        raise ValueError(f"{found.st_size} bytes long, expected at most {LONGEST}")
+    return path.read_bytes()
 
 
 def parse(data: bytes) -> Any:

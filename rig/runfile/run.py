@@ -91,7 +91,7 @@ class Run:
     def timing(self) -> Mapping[str, Any]:
         """Loop statistics of timing.json; empty when there are none."""
         try:
-            found = manifests.parse((self.path / "timing.json").read_bytes())
+            found = manifests.parse(manifests.contents(self.path / "timing.json"))
         except (OSError, ValueError):
             return {}
         return found if isinstance(found, dict) else {}

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy is imported: threads that spin are noise
+os.environ["OMP_WAIT_POLICY"] = "passive"  # the same of the C floor that has two
 
 from rig.core.errors import HdrigError
 from tests.bench.built import Unavailable, peers
@@ -40,7 +41,7 @@ def main() -> int:
     for row in wanted:
         measured.append(one(row, rounds))
         print("\n".join(lines_of(measured[-1])), flush=True)
-        text = table(measured, began, remarks)
+        text = table([*measured, *map(pending, wanted[len(measured) :])], began, remarks)
         if args.table:
             args.table.write_text(text, encoding="utf-8")  # after each row: who breaks off keeps what was measured
     print(f"\n{text}")
@@ -55,6 +56,13 @@ def one(row: Row, rounds: Rounds) -> Measured:
     except (Unavailable, HdrigError) as why:  # a run that the guard ended on a busy machine is no figure
         figures = [not_measured(row.name, Shown(), str(why))]
     return Measured(row, figures, before, load())
+
+
+def pending(row: Row) -> Measured:
+    """A row that the bench has not come to: it stands in the table all the same."""
+    return Measured(
+        row, [not_measured(row.name, Shown(), "the bench was ended before it came to this row")], load(), load()
+    )
 
 
 if __name__ == "__main__":

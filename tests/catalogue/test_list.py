@@ -63,6 +63,18 @@ def test_no_manifest_ends_the_listing(tmp_path_factory: pytest.TempPathFactory, 
     assert "odd/manifest.json" in rows["odd"].problem
 
 
+def test_a_manifest_that_never_ends_keeps_no_listing_waiting(tmp_path: Path) -> None:
+    for name in ("pipe", "device", "huge"):
+        (tmp_path / name).mkdir()
+    os.mkfifo(tmp_path / "pipe/manifest.json")
+    (tmp_path / "device/manifest.json").symlink_to("/dev/zero")
+    with open(tmp_path / "huge/manifest.json", "wb") as sparse:
+        sparse.truncate(2**30)
+    rows = {row.path.name: row.problem for row in runs(tmp_path)}
+    assert all("is a device or a pipe" in rows[name] for name in ("pipe", "device"))
+    assert "1073741824 bytes long" in rows["huge"]
+
+
 @settings(max_examples=100, deadline=None)
 @example("conditions", {"depth_mm": [float("nan")]})
 @given(st.sampled_from([*MANIFEST, "started_utc", "label", "campaign", "rows", "process", "exit_reason"]), ANYTHING)

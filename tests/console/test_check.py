@@ -37,7 +37,22 @@ def test_what_no_single_parameter_shows_is_told_of_the_whole_with_its_margins() 
 
 
 @pytest.mark.parametrize(
-    "parameters", [None, {}, [], "x", 7, {"cycles": None}, {"cycles": [1]}, {"": ""}, {"cycles": 1e400}]
+    "parameters",
+    [
+        None,
+        {},
+        [],
+        "x",
+        7,
+        {"cycles": None},
+        {"cycles": [1]},
+        {"": ""},
+        {"cycles": 1e400},
+        {"cycles": 10**400},
+        {"amplitude_deg": 1e308},
+        {"amplitude_deg": 1e99},
+        {"frequency": 1e-99},
+    ],
 )
 def test_nothing_a_page_could_send_breaks_it(parameters: Any) -> None:
     assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins"}

@@ -104,6 +104,7 @@ def test_only_one_page_holds_control_and_it_can_be_taken(ready: Hand) -> None:
 
 @pytest.mark.parametrize("content", [
     b"", b"[]", b"null", b"{", b"\xff\xfe", b'"halt"', b"[" * 60_000, b'{"act": "note", "text": "' + b"x" * 70_000,
+    rb'{"procedure": "jog", "parameters": {"turns": "\ud800"}}',
 ])  # fmt: skip
 def test_a_body_that_is_no_act_is_refused_and_does_nothing(ready: Hand, content: bytes) -> None:
     said = ready.client.post("/api/act", content=content)
@@ -178,7 +179,9 @@ def test_a_page_hears_states_and_samples_with_their_age(ready: Hand) -> None:
     assert states[-1]["age_ms"] < 5000.0
 
 
-@pytest.mark.parametrize("first", ["", "{}", "x", "[]", '{"token": null}', '{"token": "wrong", "page": "a"}'])
+@pytest.mark.parametrize(
+    "first", ["[" * 20_000, "", "{}", "x", "[]", '{"token": null}', '{"token": "wrong", "page": "a"}']
+)
 def test_a_websocket_without_the_token_hears_nothing(ready: Hand, first: str) -> None:
     with ready.listen() as page:
         page.send(first)

@@ -7,6 +7,7 @@ import pytest
 from drivers.bus import Bus
 from drivers.scan import Found, scan
 from rig.config import read_bench
+from rig.core.devices import Identity
 from rig.first_bench import first_bench
 from tests.drivers.virtual import wired
 
@@ -35,6 +36,20 @@ def test_the_first_bench_file_can_be_read_and_holds_what_was_found(nodes: list[F
     assert bench.devices.drive.type == "can.cia402"
     assert bench.devices.torque_sensor is not None
     assert bench.motor.counts_per_turn == 10_000
+
+
+def test_the_first_bench_file_of_real_devices_has_nothing_of_the_twin(nodes: list[Found]):
+    real = [node._replace(identity=Identity("SDC-400", "17", "2.1")) for node in nodes]
+    bench = read_bench(first_bench("socketcan", "can0", 1_000_000, real), "first.toml")
+    assert bench.hand is None
+    assert bench.gear.serial == "UNNAMED"
+    assert read_bench(first_bench("socketcan", "can0", 1_000_000, nodes), "first.toml").hand is not None
+
+
+def test_a_serial_adapter_gets_a_rate_it_can_carry_and_the_pause_it_needs(nodes: list[Found]):
+    bench = read_bench(first_bench("slcan", "/dev/ttyACM0", 1_000_000, nodes), "first.toml")
+    assert bench.loop.rate == 250.0
+    assert bench.bus["rig"].options == {}
 
 
 def test_devices_that_did_not_answer_are_left_out(nodes: list[Found]):

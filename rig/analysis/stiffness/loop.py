@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -59,8 +60,8 @@ class RateLaw:
         h, v = self.hysteretic, self.viscous
         lossy = h.told and h.value > 0  # a width below zero is scatter, and no hysteresis
         rates = f"over a factor of {self.fastest / self.slowest:.2g} in rate"
-        fixed = f"{h.value:.3g} ± {h.half:.2g} N·m of the half width do not change {rates}"
-        moving = f"what grows with the rate is {v.value:.3g} ± {v.half:.2g} N·m·s/rad ({at})"
+        fixed = f"{_beside(h)} N·m of the half width do not change {rates}"
+        moving = f"what grows with the rate is {_beside(v)} N·m·s/rad ({at})"
         if lossy and v.told:
             return f"The loop is hysteretic and viscous: {fixed}; {moving}."
         if lossy:
@@ -68,6 +69,15 @@ class RateLaw:
         if v.told:
             return f"The loop is viscous: {moving}; {fixed}, not told from none."
         return f"There is no loop to be told from none: {fixed}; {moving}."
+
+
+def _beside(found: Value) -> str:
+    """Value ± half, both to the place of the half's second digit: no "1e+02" for a person."""
+    if not found.half > 0.0 or not math.isfinite(found.half):
+        return f"{found.value:.3g} ± {found.half:.2g}"
+    places = 1 - math.floor(math.log10(found.half))
+    value, half = round(found.value, places), round(found.half, places)
+    return f"{value:.{max(places, 0)}f} ± {half:.{max(places, 0)}f}"
 
 
 def widths(ramps: list[Ramp], curve: Curve, windup: Array, tau: Array) -> list[Width]:

@@ -26,7 +26,7 @@ class Lines(Screen):
                 self.write(f"{event['text']}\n")
             case "run":
                 self._title, self._duration, self._tenth = event["title"], event["duration_s"], 0
-                self.write(f"{self._title}: {self._duration:.0f} s of rig time\n")
+                self.write(f"{self._title}: at most {self._duration:.0f} s of rig time\n")
             case "progress":
                 self._progress(event)
 

@@ -1,0 +1,29 @@
+"""What a command loads is what it makes a person wait for: told by the list of modules, not by a clock."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+
+def loaded(statement: str) -> set[str]:
+    """Top-level modules after `statement` in a fresh interpreter."""
+    told = subprocess.run(
+        [sys.executable, "-c", f"{statement}\nimport sys; print(*{{m.partition('.')[0] for m in sys.modules}})"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return set(told.stdout.splitlines()[-1].split())
+
+
+@pytest.mark.slow
+def test_an_analysis_and_its_report_load_no_scipy_and_no_compiler() -> None:
+    assert not loaded("import rig.commands.analyse, rig.analysis.analyse, rig.report.page") & {"scipy", "numba"}
+
+
+@pytest.mark.slow
+def test_the_overview_of_verbs_loads_nothing_heavier_than_argparse() -> None:
+    heavy = {"numpy", "pyarrow", "scipy", "numba", "matplotlib", "pydantic", "can", "rich"}
+    statement = "import contextlib\nfrom rig.cli import main\nwith contextlib.suppress(SystemExit): main(['--help'])"
+    assert not loaded(statement) & heavy
