@@ -11,6 +11,7 @@ class Tolerant:
 
     def __init__(self, stream: TextIO | None) -> None:
         self._stream = stream
+        self._own = stream  # its encoding and the like are asked for after it fell silent, too
 
     def write(self, text: str) -> int:
         """As `TextIO.write`; never raises."""
@@ -45,4 +46,4 @@ class Tolerant:
         return self._stream is not None and self._stream.isatty()
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
+        return getattr(self._own, name)

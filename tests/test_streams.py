@@ -26,6 +26,7 @@ def test_a_stream_that_fails_once_is_silent_from_then_on() -> None:
     stream.flush()
     assert stream.write("nor this\n") == 0
     assert not stream.isatty()
+    assert stream.encoding == pipe.encoding  # `hdrig list | head` asks for it before every line
     pipe.close()  # what was still buffered goes nowhere
 
 

@@ -60,5 +60,5 @@ def say(line: str) -> None:
     """Print what a terminal can take: names of folders and words of manifests may be anything."""
     spaced = line.translate({0xA0: " ", 0x202F: " "})  # what holds a number and its unit on one line of a page
     shown = "".join(c if c.isprintable() else "\ufffd" for c in spaced)
-    encoding = sys.stdout.encoding or "utf-8"
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"  # a closed standard output has none
     print(shown.encode(encoding, "replace").decode(encoding))
