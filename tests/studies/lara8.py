@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import os
 import shutil
 import sys
 import tempfile
@@ -27,7 +28,8 @@ import pyarrow.parquet as pq
 Array = npt.NDArray[np.float64]
 Columns = dict[str, Array]
 
-SOURCE: Final = Path("/work/shared/data/lara8/validate.csv")
+SHARED: Final = Path(os.environ.get("HDRIG_SHARED", Path(__file__).resolve().parents[3] / "shared"))
+SOURCE: Final = SHARED / "data" / "lara8" / "validate.csv"
 MAPPING: Final = Path(__file__).parents[2] / "rig/runfile/importing/mappings/lara8-joint3.toml"
 MOTOR_TORQUE: Final = """
 [channels.tau_m]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.trace import prepare, trace
 from rig.core.errors import UsageError
 
-CASES = Path("/work/shared/cases")
+CASES = Path(os.environ.get("HDRIG_SHARED", Path(__file__).resolve().parents[4] / "shared")) / "cases"
 FEW = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "speed_120rpm_1", "speed_300rpm_1", "speed_300rpm_2", "lock_60_1")
 KEYS = ("schema", "runs", "noise_floor", "baseline", "residual", "candidates", "verdict", "effects", "before", "after")
 
