@@ -16,8 +16,8 @@ from rig.streams import Tolerant
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
-    "exit codes: 0 pass, 1 out of limits, 2 usage, 3 not ready, 4 stopped, 5 tripped, 6 incomplete or inconclusive, "
-    "70 internal error, 130 halted"
+    "exit codes: 0 pass, 1 out of limits, 2 usage, 3 not ready, 4 stopped, 5 tripped, 6 incomplete, "
+    "inconclusive, ambiguous or unknown, 70 internal error, 130 halted"
 )
 
 

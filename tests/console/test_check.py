@@ -18,7 +18,7 @@ def looked_at(parameters: Any, procedure: str = "kinematic-error") -> dict[str, 
 def test_what_is_right_comes_with_its_dry_run_and_margins() -> None:
     found = looked_at({"cycles": 1.0})
     assert found["ok"]
-    assert any(line.startswith("duration    101.0 s") for line in found["plan"])
+    assert any(line.startswith("duration    at most 101.0 s") for line in found["plan"])
     speed = next(m for m in found["margins"] if m["what"] == "speed")
     assert (speed["unit"], speed["limit"]) == ("rpm", pytest.approx(600.0))
     assert speed["fraction"] == pytest.approx(9.6 / 600, rel=1e-3)
