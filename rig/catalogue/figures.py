@@ -12,6 +12,7 @@ from typing import Any
 from rig.catalogue.remembered import Remembered
 from rig.catalogue.row import number, text
 from rig.core.errors import UsageError
+from rig.runfile.manifest import contents
 
 NAME = "result.json"
 NAN = math.nan
@@ -68,8 +69,7 @@ def figures(folder: Path) -> Mapping[str, Figure]:
 
 def _fresh(path: str) -> tuple[dict[str, Figure], str]:
     try:
-        with open(path, "rb") as file:
-            said = json.loads(file.read())  # of all in it, tables included, only numbers and words are kept
+        said = json.loads(contents(Path(path)))  # of all in it, tables included, only numbers and words are kept
     except FileNotFoundError:
         return {}, ""
     except OSError as error:

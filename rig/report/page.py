@@ -21,7 +21,7 @@ from rig.report.numbers import duration, number_of
 from rig.report.palette import DARK, LIGHT, variables
 from rig.report.provenance import provenance
 from rig.report.tables import Table, number, tables
-from rig.runfile.manifest import write_atomic
+from rig.runfile.manifest import contents, write_atomic
 
 HERE = Path(__file__).parent
 NAME = "report.html"
@@ -50,8 +50,8 @@ def write(
 def bench(folder: Path) -> dict[str, Any]:
     """The resolved bench of the run; empty where there is none that can be read."""
     try:
-        return tomllib.loads((folder / "bench.toml").read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
+        return tomllib.loads(contents(folder / "bench.toml").decode())
+    except (OSError, ValueError, RecursionError):  # also what is no text file
         return {}
 
 

@@ -15,9 +15,16 @@ def run_folders(root: str, depth: int = 3) -> Iterator[str]:
     except OSError:  # not ours to look into
         return
     with entries:
-        folders = [e.path for e in entries if e.is_dir() and not e.name.startswith(".")]
+        folders = [e.path for e in entries if not e.name.startswith(".") and _is_folder(e)]
     for folder in folders:
         if os.path.exists(f"{folder}/{NAME}"):
             yield folder
         elif depth > 1:
             yield from run_folders(folder, depth - 1)
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link in a ring, or to where nobody may look
+        return False

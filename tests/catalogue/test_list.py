@@ -63,6 +63,14 @@ def test_no_manifest_ends_the_listing(tmp_path_factory: pytest.TempPathFactory, 
     assert "odd/manifest.json" in rows["odd"].problem
 
 
+def test_links_in_a_ring_are_passed_by(tmp_path: Path) -> None:
+    run(tmp_path, "2026-11-20")
+    (tmp_path / "ring").symlink_to("ring")
+    (tmp_path / "to").symlink_to("fro")
+    (tmp_path / "fro").symlink_to("to")
+    assert len(runs(tmp_path)) == 1
+
+
 def test_a_manifest_that_never_ends_keeps_no_listing_waiting(tmp_path: Path) -> None:
     for name in ("pipe", "device", "huge"):
         (tmp_path / name).mkdir()
