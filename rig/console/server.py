@@ -18,6 +18,7 @@ from rig.core.errors import NotReady
 from rig.live.view.viewer import Viewer
 
 LONGEST_STOP = 120.0  # s: a wound-up gear is let out along its ramp, then the run is closed
+HIGHEST = 65535  # 16 bits
 GOODBYE = 1  # s pages have to close their lines
 
 
@@ -93,6 +94,8 @@ class Serving:
 
 
 def _listen(host: str, port: int) -> socket.socket:
+    if not 0 <= port <= HIGHEST:
+        raise NotReady(f"nothing can listen at port {port}: ports go from 0, which finds a free one, to {HIGHEST}")
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         made = socket.socket(family, socket.SOCK_STREAM)
