@@ -60,7 +60,8 @@ def decide(
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
-    names = tuple(name for name in names if name not in unsure)
+    # a line in a sensor is in the columns made from it too: beside one nothing is named
+    names = tuple(name for name in names if name not in unsure and line is None)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
