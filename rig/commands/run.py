@@ -83,10 +83,10 @@ def run(args: argparse.Namespace) -> int:
         refuse_beyond_limits(bench, procedure)
         args.resonance(bench, procedure)
         return 0
-    refuse_beyond_limits(bench, procedure)
-    args.resonance(bench, procedure)
     note = args.note.encode("utf-8", "replace").decode()
     with showing(args.json) as show, view(args.view) as looking_on:
+        refuse_beyond_limits(bench, procedure)
+        args.resonance(bench, procedure)
         return perform(Job(bench, clock, procedure, args.out, note, args.before), show, looking_on)
 
 

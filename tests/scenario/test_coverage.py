@@ -17,7 +17,7 @@ SEEDS = range(1000, 1200)  # fixed before the first count, and never chosen agai
 ABOVE = 1.0  # arcsec
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_order_above_one_arcsec_is_covered_in_90_to_99_percent_of_200_seeds(tmp_path: Path) -> None:
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         runs = list(pool.map(pulls, SEEDS, chunksize=5))

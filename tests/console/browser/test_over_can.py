@@ -16,7 +16,7 @@ from tests.console.browser.look import enabled, in_state, text, until
 from tests.console.browser.rigs import Rig, rig
 from tests.scenario.test_over_the_wire import STALLED
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("browser")]  # real time: a stall of the machine is a trip
 ATTEMPTS = 4
 LOADED = 60.0  # s for what takes a tenth of that on an idle machine
 
