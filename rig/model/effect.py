@@ -76,11 +76,28 @@ class Signals:
     way: Array
     temperature: Array  # °C
     gear: Known
+    thinned: int = 1  # readings that made one row
+
+    def kept(self, order: float, omega: Array) -> Array:
+        """Share (n,) of a wave of `order` periods per turn at `omega` rad/s that is left in the rows: brought down from
+        a higher rate, they have lost what is faster than a third to two thirds of their own. Before that the readings
+        themselves folded it over.
+        """
+        if self.thinned == 1:
+            return np.ones(omega.size)
+        hz, rate = order * np.abs(omega) / (2.0 * np.pi), self.thinned / self.dt
+        folded = np.abs(hz - rate * np.rint(hz / rate)) * self.dt
+        return np.asarray(0.5 + 0.5 * np.cos(np.pi * np.clip(3.0 * folded - 1.0, 0.0, 1.0)))
 
     @cached_property
     def series_slope(self) -> Array:
         """dθ̃_p/dθ_m along the run, as far as it is known, (n,)."""
         return self.gear.kinematic_error.slope(self.theta_m)
+
+    @cached_property
+    def series_bend(self) -> Array:
+        """d²θ̃_p/dθ_m² along the run, as far as it is known, (n,)."""
+        return self.gear.kinematic_error.bend(self.theta_m)
 
     @cached_property
     def series_value(self) -> Array:

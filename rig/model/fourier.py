@@ -55,6 +55,11 @@ class FourierSeries:
         angle, n = np.multiply.outer(theta_m, self.orders), self.orders
         return np.asarray(np.cos(angle) @ (n * np.asarray(self.b)) - np.sin(angle) @ (n * np.asarray(self.a)))
 
+    def bend(self, theta_m: Array) -> Array:
+        """d²θ̃_p/dθ_m² at `theta_m` rad (any shape), rad/rad²."""
+        angle, n2 = np.multiply.outer(theta_m, self.orders), self.orders**2
+        return np.asarray(-np.cos(angle) @ (n2 * np.asarray(self.a)) - np.sin(angle) @ (n2 * np.asarray(self.b)))
+
     def peak_to_peak(self) -> float:
         """max − min over one motor turn, rad, on a grid of 64 points per highest order."""
         grid = np.linspace(0.0, 2 * np.pi, 64 * max(len(self.a), 1), endpoint=False)

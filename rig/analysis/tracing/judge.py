@@ -168,12 +168,19 @@ def _can_be(s: Solution, name: str) -> bool:
 
 def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]]) -> list[str]:
     """Effects of whose law the data say nothing: the interval of the number that scales it (a Stribeck speed, a torque,
-    a time) contains zero. What is left of them is a difference between some runs and others, which many laws make.
+    a time) contains zero, in every term of it. What is left of them is a difference between some runs and others,
+    which many laws make.
     """
-    out = []
-    for term in s.design.terms:
-        loose = [n for n, free in zip(term.effect.shape_names, term.effect.loose, strict=True) if free]
-        scale = [p for p in words.get(term.name, ()) if p.name in loose[:1]]
-        if any(p.ci95[0] <= 0 <= p.ci95[1] for p in scale):
-            out.append(term.name)
-    return list(dict.fromkeys(out))
+    names = dict.fromkeys(term.name for term in s.design.terms)
+    return [name for name in names if (found := _scales(s, name, words)) and all(map(_holds_zero, found))]
+
+
+def _scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:
+    """The first shape parameter that is fitted, of every term of an effect: the second one's is numbered."""
+    effect = next(term.effect for term in s.design.terms if term.name == name)
+    first = [n for n, free in zip(effect.shape_names, effect.loose, strict=True) if free][:1]
+    return [p for p in words.get(name, ()) for n in first if p.name == n or p.name.removeprefix(f"{n}_").isdigit()]
+
+
+def _holds_zero(p: Parameter) -> bool:
+    return p.ci95[0] <= 0 <= p.ci95[1]

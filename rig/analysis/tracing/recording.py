@@ -167,6 +167,7 @@ def _piece(
         way=direction(smooth.same(c["theta_m"], 1), smooth.dt),
         temperature=c["temperature"],
         gear=believed(run),
+        thinned=factor,
         **derived,
     )
 

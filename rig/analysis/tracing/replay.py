@@ -124,9 +124,7 @@ def _led(s: Signals, model: Model, read_m: Array) -> _Led:
     theta, omega, alpha = spline(fine), spline(fine, 1) / s.dt, spline(fine, 2) / s.dt**2
     p = model.gear.kinematic_error
     slope = p.slope(theta)
-    n2 = p.orders**2
-    angle = np.multiply.outer(theta, p.orders)
-    bend = -(np.cos(angle) @ (n2 * np.asarray(p.a)) + np.sin(angle) @ (n2 * np.asarray(p.b)))
+    bend = p.bend(theta)
     lever = 1.0 / s.ratio - slope
     return _Led(theta / s.ratio - p.value(theta), omega * lever, alpha * lever - omega**2 * bend)
 

@@ -13,6 +13,7 @@ from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
+LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 BINS = 60  # of a turn: 6°, a few teeth
 LEVELS = 24  # of a range
 PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
@@ -182,7 +183,7 @@ def spectrum(x: Array, e: Array, orders: Array) -> Array:
 
 
 def _line(r: Rest, channel: str) -> Home | None:
-    """A frequency that stands out in runs of differing speed."""
+    """A frequency that stands out in runs of differing speed; what is slower comes and goes with the motion."""
     hits: dict[int, list[tuple[float, float, float]]] = {}
     for run in np.unique(r.run):
         e, mine = r.e[r.run == run], r.run == run
@@ -190,7 +191,8 @@ def _line(r: Rest, channel: str) -> Home | None:
             continue
         power = np.abs(np.fft.rfft(e * np.hanning(e.size))) ** 2
         hz = np.fft.rfftfreq(e.size, r.dt)
-        top = int(np.argmax(power[3:])) + 3
+        slow = max(3, int(np.searchsorted(hz, LOWEST)))
+        top = int(np.argmax(power[slow:])) + slow
         speed = float(np.mean(np.abs(r.at["speed"][mine])))
         near = slice(max(0, top - 3), top + 4)
         hits.setdefault(round(hz[top] * 5), []).append((hz[top], speed, float(power[near].sum() / power.sum())))

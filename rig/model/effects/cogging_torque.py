@@ -26,8 +26,8 @@ class CoggingTorque(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine."""
-        x = shape[0] * signals.theta_m
-        return {Port.MOTOR_TORQUE: np.stack([np.cos(x), np.sin(x)], 1)}
+        x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m)
+        return {Port.MOTOR_TORQUE: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

@@ -24,6 +24,7 @@ class EncoderInterpolationError(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("side", "lines")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     LEAST: Final = (16, 900)  # lines of motor and load encoder: fewer are orders of the gear
+    MULTIPLES: Final = (1, 3)  # an error that is large against a line is read through itself, and then has a third wave
     TURN: Final = 2.0 * np.pi
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -34,15 +35,18 @@ class EncoderInterpolationError(Effect):
             (LOAD, reach.counts_l, reach.slowest / reach.ratio),
         ):
             highest = min(reach.rate / 3.0 / (speed / self.TURN), counts / 4) if speed > 0 else 0.0
-            out += [(side, float(n)) for n in divisors(int(counts)) if self.LEAST[int(side)] <= n <= highest]
+            lines = {m * n for n in divisors(int(counts)) if n >= self.LEAST[int(side)] for m in self.MULTIPLES}
+            out += [(side, float(n)) for n in sorted(lines) if n <= highest]
         return tuple(out)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the line angle."""
         side, lines = shape
-        x = lines * (signals.theta_l if side == LOAD else signals.theta_m)
-        port = Port.READS_THETA_L if side == LOAD else Port.READS_THETA_M
-        return {port: np.stack([np.cos(x), np.sin(x)], 1)}
+        if side == LOAD:
+            x, kept, port = lines * signals.theta_l, signals.kept(lines, signals.omega_l), Port.READS_THETA_L
+        else:
+            x, kept, port = lines * signals.theta_m, signals.kept(lines, signals.omega_m), Port.READS_THETA_M
+        return {port: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase, named by side and line count."""

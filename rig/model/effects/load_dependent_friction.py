@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -11,34 +11,43 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 
 class LoadDependentFriction(Effect):
-    """τ_f gains μ_L·|T|/N·sgn ω_m, so that the load-only efficiency is 1/(1 + μ_L) when driving
+    """τ_f gains μ_L·T_0/N·|T/T_0|^p·sgn ω_m, T_0 = 20 N·m; with p = 1 the load-only efficiency is 1/(1 + μ_L)
 
-    Teeth that slide otherwise when the load drives have another μ_L then: one for either flow of power.
+    Friction of a mixed film grows less than the load, of teeth that dig in more: p is fitted. Teeth that slide
+    otherwise when the load drives have another μ_L then: one for either flow of power.
     """
 
     name: ClassVar[str] = "load_dependent_friction"
     in_short: ClassVar[str] = "friction grows with transmitted torque"
     source: ClassVar[str] = "tuttle1992"
-    shape_names: ClassVar[tuple[str, ...]] = ("by_flow",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent")
+    loose: ClassVar[tuple[bool, ...]] = (False, True)
+    AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
+    EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One μ_L, or one for either flow of power."""
-        return ((0.0,), (1.0,))
+        return ((0.0, 1.0), (1.0, 1.0))
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """The flow is chosen, not fitted."""
+        return (0.0, 1.0), self.EXPONENTS
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, or two: motor driving, load driving."""
-        loss = np.abs(signals.torque) / signals.ratio * signals.way
-        if not shape[0]:
+        by_flow, exponent = shape
+        loss = self.AT / signals.ratio * np.abs(signals.torque / self.AT) ** exponent * signals.way
+        if not by_flow:
             return {Port.MOTOR_TORQUE: loss[:, None]}
         driving = signals.torque * signals.way > 0
         return {Port.MOTOR_TORQUE: np.stack([loss * driving, loss * ~driving], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """μ_L, one or two."""
+        """μ_L at T_0, one or two, and how the friction grows with the load."""
         names = ("mu_L_driving", "mu_L_driven") if fit.shape[0] else ("mu_L",)
         unit = np.eye(fit.covariance.shape[0])
-        return tuple(parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "1") for i, name in enumerate(names))
+        shares = (parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "1") for i, name in enumerate(names))
+        return (*shares, parameter("exponent", fit.shape[1], fit.half_width(unit[-1]), "1"))
 
     def plausible(self, fit: Fit) -> bool:
         """Losses grow."""

@@ -29,10 +29,10 @@ class ToothMeshError(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine, with their lever."""
         k = shape[0]
-        x = k * signals.theta_m
+        x, kept = k * signals.theta_m, signals.kept(k, signals.omega_m)
         return {
-            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
-            Port.LEVER: np.stack([-k * np.sin(x), k * np.cos(x)], 1),
+            Port.KINEMATIC_ERROR: np.stack([kept * np.cos(x), kept * np.sin(x)], 1),
+            Port.LEVER: np.stack([-k * kept * np.sin(x), k * kept * np.cos(x)], 1),
         }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

@@ -11,11 +11,16 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 from rig.model.memory import resonated
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
+BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
 
 
 class TorsionalMode(Effect):
     """An inertia J_2 hangs on the load (or the motor) by a spring of its own: it resists with J_2·H·ω̇,
     H = ω²/(s² + 2ζωs + ω²). Far below ω it is just more inertia, which the baseline already has.
+
+    The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ that goes through
+    it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever is that of the other angle. Of a mode above what the
+    equations are compared at that is all there is to see.
     """
 
     name: ClassVar[str] = "torsional_mode"
@@ -33,23 +38,39 @@ class TorsionalMode(Effect):
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
-        return tuple((side, float(f), self.ZETA) for side in (LOAD, MOTOR) for f in frequencies)
+        modes = tuple((side, float(f), self.ZETA) for side in (LOAD, MOTOR) for f in frequencies)
+        return (*modes, *((side, float(max(reach.band, self.LOWEST)), self.ZETA) for side in (BEFORE, AFTER)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((0.0, 1.0), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
+        return ((LOAD, AFTER), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column: the acceleration behind the spring."""
+        """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m)."""
         side, frequency, zeta = shape
+        if side >= BEFORE:
+            return self._twist(signals, side)
         alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
         # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
         alpha = np.where(np.abs(signals.omega_m) > self.EXCITED, alpha, 0.0)
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: resonated(alpha, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]}
 
+    def _twist(self, s: Signals, side: float) -> Mapping[Port, Array]:
+        lever = 1.0 / s.ratio - s.series_slope
+        through = s.torque * lever
+        if side == AFTER:
+            # the wave generator's inertia, say half of J_m, its friction and the gear are beyond it
+            through = s.tau_m - 0.5 * s.gear.J_m * s.alpha_m
+        return {
+            Port.KINEMATIC_ERROR: (lever * through)[:, None],
+            Port.MOTOR_TORQUE: (s.torque * s.series_bend * through)[:, None],
+        }
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Inertia, frequency and damping."""
+        """Inertia, frequency and damping; of a stiff coupling its compliance."""
+        if fit.shape[0] >= BEFORE:
+            return (parameter("coupling_compliance", fit.coefficients[0], fit.half_width(np.eye(4)[0]), "rad/(N·m)"),)
         inertia, _, frequency, zeta = np.eye(4)[:, : fit.covariance.shape[0]]
         return (
             parameter("J_2", fit.coefficients[0], fit.half_width(inertia), "kg·m²"),
@@ -58,5 +79,5 @@ class TorsionalMode(Effect):
         )
 
     def plausible(self, fit: Fit) -> bool:
-        """An inertia is positive."""
+        """An inertia is positive, and so is a compliance."""
         return bool(fit.coefficients[0] > 0)
