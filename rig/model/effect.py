@@ -51,6 +51,16 @@ class Port(StrEnum):
 
 
 @dataclass(frozen=True)
+class Moved:
+    """How one run moved the motor: from `start` to `end` s of the campaign, mean |ω_m| rad/s and mean ω_m²."""
+
+    start: float
+    end: float
+    speed: float
+    square: float
+
+
+@dataclass(frozen=True)
 class Signals:
     """A piece of one run on a uniform time grid, shapes (n,), SI, and what is known of the gear so far.
 
@@ -77,6 +87,7 @@ class Signals:
     temperature: Array  # °C
     gear: Known
     thinned: int = 1  # readings that made one row
+    past: tuple[Moved, ...] = ()  # of the whole campaign
 
     def kept(self, order: float, omega: Array) -> Array:
         """Share (n,) of a wave of `order` periods per turn at `omega` rad/s that is left in the rows: brought down from
@@ -88,6 +99,15 @@ class Signals:
         hz, rate = order * np.abs(omega) / (2.0 * np.pi), self.thinned / self.dt
         folded = np.abs(hz - rate * np.rint(hz / rate)) * self.dt
         return np.asarray(0.5 + 0.5 * np.cos(np.pi * np.clip(3.0 * folded - 1.0, 0.0, 1.0)))
+
+    def heat(self, t_w: float) -> Array:
+        """What the motor's friction has turned into heat since the campaign began, leaking with `t_w` s: J, (n,)."""
+        out = np.zeros(self.t.size)
+        for run in self.past:
+            power = self.gear.tau_c * run.speed + self.gear.B_m * run.square
+            since, until = np.maximum(self.t - run.start, 0.0), np.maximum(self.t - run.end, 0.0)
+            out += power * t_w * (np.exp(-until / t_w) - np.exp(-since / t_w))
+        return out
 
     @cached_property
     def series_slope(self) -> Array:
@@ -121,6 +141,8 @@ class Known:
     J_m: float
     J_l: float
     kinematic_error: FourierSeries
+    tau_c: float = 0.0  # N·m and N·m·s/rad, the motor's friction
+    B_m: float = 0.0
     torque_zero: float = 0.0  # N·m, what the torque sensor reads without torque; `torque` is without it
 
 

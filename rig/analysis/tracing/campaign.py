@@ -11,6 +11,7 @@ import numpy as np
 from rig.analysis.tracing.membership import one_rig, starts
 from rig.analysis.tracing.recording import Recording, record
 from rig.core.errors import HdrigError, UsageError
+from rig.model.effect import Moved
 from rig.runfile.run import Run
 
 WORKERS = 2  # numpy leaves the interpreter's lock for nearly all of the work
@@ -46,7 +47,7 @@ def read_campaign(folder: Path) -> Campaign:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {'; '.join(notes)[:300]}")
     runs, odd = _same_gear(sorted(runs, key=lambda r: (r.start, r.name)))
     runs = _same_sensors(runs)
-    return Campaign(folder.name, tuple(runs), any(run.simulated for run in opened), tuple(notes + odd))
+    return Campaign(folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes + odd))
 
 
 def _open(places: list[Path]) -> tuple[list[Run], list[str]]:
@@ -80,6 +81,18 @@ def _same_sensors(runs: list[Recording]) -> list[Recording]:
         replace(run, noise={n: min(rms, least.get(n, rms) / run.thinned**0.5) for n, rms in run.noise.items()})
         for run in runs
     ]
+
+
+def _with_past(runs: list[Recording]) -> tuple[Recording, ...]:
+    """Every run with what all of them did: friction that warms a drive leaves its heat to the next run."""
+    past = tuple(_moved(run) for run in runs)
+    return tuple(replace(run, pieces=tuple(replace(p, past=past) for p in run.pieces)) for run in runs)
+
+
+def _moved(run: Recording) -> Moved:
+    omega = np.concatenate([p.omega_m for p in run.pieces])
+    start, end = float(run.pieces[0].t[0]), float(run.pieces[-1].t[-1])
+    return Moved(start, end, float(np.mean(np.abs(omega))), float(np.mean(omega**2)))
 
 
 def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:

@@ -301,6 +301,8 @@ def known_of(values: Mapping[str, float], before: Known = UNKNOWN) -> Known:
         J_m=values["J_m"] if values["J_m"] > 0 else before.J_m,
         J_l=values["J_l"] if values["J_l"] > 0 else before.J_l,
         torque_zero=values["tau_l0"],
+        tau_c=max(values["tau_c"], 0.0),
+        B_m=max(values["B_m"], 0.0),
         kinematic_error=FourierSeries(
             tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
         ),

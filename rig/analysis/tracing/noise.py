@@ -74,6 +74,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in found], weights=n)))
         kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
         by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
+        by_run |= _never_compared(eq, e, channel, among, found)
         local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
@@ -92,6 +93,18 @@ def _alone(
     said = {eq.runs[i].said for s in found for i in s.pair}
     rest = [i for i in among if eq.runs[i].said not in said and (i, channel) in e]
     return [s for i in rest if (s := neighbours(eq, e, (i, channel))) is not None]
+
+
+def _never_compared(
+    eq: Equations, e: Mapping[Key, Array], channel: str, among: Sequence[int], found: Sequence[Scatter]
+) -> dict[Key, float]:
+    """In M, locked runs of which no two were compared: all that is left of them counts as noise.
+
+    A motor that creeps against a spring sticks and slips: its friction is no other run's, and judges nothing.
+    """
+    compared = {eq.runs[i].procedure for s in found for i in s.pair}
+    rest = [i for i in among if eq.runs[i].locked and eq.runs[i].procedure not in compared]
+    return {(i, "M"): float(np.sqrt(np.mean(e[i, "M"] ** 2))) for i in rest if channel == "M" and (i, "M") in e}
 
 
 def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: float) -> float:

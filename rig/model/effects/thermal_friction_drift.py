@@ -10,8 +10,14 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
 
+CLOCK, HEAT = 0.0, 1.0  # of the law: warm by the time of day, or by what friction has turned into heat
+
+
 class ThermalFrictionDrift(Effect):
-    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·exp(−t/t_w), t since the campaign began      [wolf2018]
+    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in either of two laws:
+
+    0: c = exp(−t/t_w), t since the campaign began      [wolf2018]
+    1: c = exp(−β·H(t)), H the heat of its own friction, which leaks with t_w: fast runs warm it, pauses cool it
 
     What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on.
     """
@@ -20,24 +26,35 @@ class ThermalFrictionDrift(Effect):
     in_short: ClassVar[str] = "friction falls as the drive warms"
     source: ClassVar[str] = "wolf2018"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("t_w",)
-    loose: ClassVar[tuple[bool, ...]] = (True,)
+    shape_names: ClassVar[tuple[str, ...]] = ("t_w", "law", "beta")
+    loose: ClassVar[tuple[bool, ...]] = (True, False, True)
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
+    LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
+    BETA: Final = 1e-3  # 1/J: 0.03/K of a lubricant in a gear box of 30 J/K
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Time constants the campaign is long enough for."""
-        return tuple((t,) for t in self.TIMES if t < 2 * reach.duration)
+        clocks = [(t, CLOCK, self.BETA) for t in self.TIMES if t < 2 * reach.duration]
+        return (*clocks, *((t, HEAT, self.BETA) for t in self.LEAKS if t < 2 * reach.duration))
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """The law is chosen; β from a big cold gear box to a small one that gets hot."""
+        return (self.TIMES[0] / 3, self.TIMES[-1] * 3), (CLOCK, HEAT), (self.BETA / 50, self.BETA * 20)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Constant and viscous part."""
-        cold = np.exp(-signals.t / shape[0])
+        t_w, law, beta = shape
+        cold = np.exp(-beta * signals.heat(t_w)) if law == HEAT else np.exp(-signals.t / t_w)
         return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, and its time constant."""
-        constant, viscous, time = np.eye(3)[:, : fit.covariance.shape[0]]
-        return (
+        constant, viscous, time, _, per_joule = np.eye(5)
+        cold = (
             parameter("tau_cold", fit.coefficients[0], fit.half_width(constant), "N·m"),
             parameter("B_cold", fit.coefficients[1], fit.half_width(viscous), "N·m·s/rad"),
             parameter("t_w", fit.shape[0], fit.half_width(time), "s"),
         )
+        if fit.shape[1] == CLOCK:
+            return cold
+        return (*cold, parameter("beta", fit.shape[2], fit.half_width(per_joule), "1/J"))
