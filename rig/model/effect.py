@@ -242,6 +242,10 @@ class Effect(ABC):
             return ()
         return tuple((float(low), float(high)) for low, high in zip(grid.min(0) / 3, grid.max(0) * 3, strict=True))
 
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
+        return False
+
     def expands(self, shape: Shape) -> bool:
         """True when the columns are an expansion about a shape that should equal the coefficients."""
         return False

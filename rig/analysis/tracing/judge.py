@@ -13,7 +13,7 @@ from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
 from rig.analysis.tracing.search import possible, reduced
 from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
-from rig.model.effect import Array, Parameter
+from rig.model.effect import Array, Parameter, Reach
 
 FAIR = 0.04  # of an effect's work: a fifth of its size
 FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
@@ -166,13 +166,14 @@ def _can_be(s: Solution, name: str) -> bool:
     return all(possible(s, t, s.x[d.place(i)]) for i, t in enumerate(d.terms) if t.name == name)
 
 
-def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]]) -> list[str]:
-    """Effects of whose law the data say nothing: the interval of the number that scales it (a Stribeck speed, a torque,
-    a time) contains zero, in every term of it. What is left of them is a difference between some runs and others,
-    which many laws make.
+def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: Reach) -> list[str]:
+    """Effects of whose law the data say nothing, in any term: the interval of the number that scales it (a Stribeck
+    speed, a torque, a time) contains zero, or it is a resonance beyond all that was excited. What is left of them is a
+    difference between some runs and others, which many laws make.
     """
     names = dict.fromkeys(term.name for term in s.design.terms)
-    return [name for name in names if (found := _scales(s, name, words)) and all(map(_holds_zero, found))]
+    zero = [name for name in names if (found := _scales(s, name, words)) and all(map(_holds_zero, found))]
+    return [*zero, *(name for name in names if name not in zero and _out_of_reach(s, name, covered))]
 
 
 def _scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:
@@ -184,3 +185,8 @@ def _scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) ->
 
 def _holds_zero(p: Parameter) -> bool:
     return p.ci95[0] <= 0 <= p.ci95[1]
+
+
+def _out_of_reach(s: Solution, name: str, covered: Reach) -> bool:
+    terms = [term for term in s.design.terms if term.name == name]
+    return all(term.effect.beyond(term.shape, covered) for term in terms)

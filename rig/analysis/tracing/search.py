@@ -52,9 +52,10 @@ class Search:
     runs: tuple[int, ...]
     keys: tuple[Key, ...]
     covered: Reach
+    refused: frozenset[str]
 
     def ranked(self, s: Solution, u: dict[str, Array]) -> list[Scored]:
-        """All terms by evidence, best first; those too small to matter or with an impossible sign are left out."""
+        """All terms by evidence, best first; refused ones and those with an impossible sign are left out."""
         n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in self.keys)
         tried: dict[str, int] = {}
         for term in self.bank.terms:
@@ -66,6 +67,7 @@ class Search:
             evidence = found.drop / 2 - k / 2 * np.log(n) - np.log(tried[term.name])
             out.append((evidence, found, term))
         out.sort(key=lambda item: -item[0])
+        out = [item for item in out if item[2].name not in self.refused]
         likely = [(e, f, term) for e, f, term in out if e > 0 and possible(s, term, f.coefficients)]
         return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in likely[:60]]
 
@@ -88,11 +90,12 @@ def search(
     covered: Reach,
     floors: Mapping[Key, float],
     ranking: tuple[Scored, ...] = (),
+    refused: frozenset[str] = frozenset(),
 ) -> Found:
     """Add the best term again and again, then drop what the later ones made needless. `ranking` is that of the first
-    round when this is no first search."""
+    round when this is no first search; effects `refused` are not tried."""
     s = fit(d)
-    fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered)
+    fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered, refused)
     u = cross(bank, d, keys, 0)
     for _ in range(MOST - len(d.terms)):
         if still(s, floors):

@@ -9,19 +9,18 @@ from pathlib import Path
 from rig.analysis.tracing.bank import Bank, fill, reach
 from rig.analysis.tracing.campaign import Campaign, read_campaign
 from rig.analysis.tracing.channels import known_of
-from rig.analysis.tracing.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.equations import Equations, Noise, equations, spoiling
+from rig.analysis.tracing.hearing import fitted_floors, heard, heard_again
 from rig.analysis.tracing.holdout import Split, split
-from rig.analysis.tracing.judge import Court, convicted, court, unresolved
+from rig.analysis.tracing.judge import Court, court
 from rig.analysis.tracing.model import Solution, design, fit
-from rig.analysis.tracing.noise import Measured, floor_of, guess, measure
+from rig.analysis.tracing.noise import Measured, guess, measure
 from rig.analysis.tracing.own import Own, find
-from rig.analysis.tracing.parameters import effects
-from rig.analysis.tracing.report import own_shares, report
+from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
-from rig.analysis.tracing.search import Found, polished, reduced, relawed, search, still
-from rig.analysis.tracing.thresholds import NAMED
+from rig.analysis.tracing.search import Found, relawed, search, still
 from rig.core.errors import UsageError
-from rig.model.effect import Parameter, Reach
+from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
 
 
@@ -47,26 +46,15 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     covered = reach([p.eq.runs[i] for i in runs])
     start = fit(design(p.eq, (), runs))
     found = Found(start, ())
-    if not still(start, _floors(p)):
+    bank: Bank | None = None
+    if not still(start, fitted_floors(p)):
         bank = fill(p.eq, list(CATALOGUE.values()), runs, covered)
-        found = search(start.design, bank, runs, start.keys, covered, _floors(p))
+        found = search(start.design, bank, runs, start.keys, covered, fitted_floors(p))
         p, found = _looked_again(p, found, bank, covered)
-    solution, held, worths = convicted(found.solution, p.court)
-    if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
-        solution = polished(solution, runs, covered)
-        solution, held, worths = convicted(solution, p.court)
-    p, solution = _own_convicted(p, solution)
-    solution, held, worths = convicted(solution, p.court)
-    words = _in_words(solution, runs)
-    if vague := unresolved(solution, words):
-        gone = [i for i, term in enumerate(solution.design.terms) if term.name in vague]
-        solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
-        words = _in_words(solution, runs)
-    return report(p, found, solution, held, worths, words)
-
-
-def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
-    return effects(s, runs) if s.design.terms else {}
+    case = heard(p, found, runs, covered)
+    if bank is not None:
+        case = heard_again(case, found, bank, runs, covered)
+    return report(case.p, found, case.solution, case.held, case.worths, case.words)
 
 
 def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
@@ -95,10 +83,6 @@ def _built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured
     return Prepared(campaign, parts, bare, eq, measured, baseline, court(eq, measured, parts.held_out), own)
 
 
-def _floors(p: Prepared) -> dict[Key, float]:
-    return {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
-
-
 def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
     """What each run has to itself and the floor, looked for beside the effects that were found, and what they uncover.
 
@@ -116,17 +100,4 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
         measured = replace(measured, noise=measured.noise.free("A"))
     again = _built(p.campaign, p.split, eq, measured, own)
     s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
-    return again, search(s.design, bank, runs, s.keys, covered, _floors(again), found.ranking)
-
-
-def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
-    """Without effects of each run's own that take too little of the held-out excess to be named."""
-    shares = own_shares(p, s)
-    failing = [name for name, share in shares.items() if share < NAMED]
-    if not failing:
-        return p, s
-    left = p.own.without(failing)
-    again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
-    eq = replace(s.design.eq, own=left.columns())
-    again = replace(again, court=court(again.eq, again.measured, p.split.held_out))
-    return again, fit(design(eq, s.design.terms, p.split.fitted))
+    return again, search(s.design, bank, runs, s.keys, covered, fitted_floors(again), found.ranking)

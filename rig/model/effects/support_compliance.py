@@ -36,6 +36,10 @@ class SupportCompliance(Effect):
         """Any frequency that is compared; damping of steel to rubber."""
         return ((0.7 * self.LOWEST, 1.2 * reach.band), (0.005, 0.5))
 
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """A mode that the fit pushed out of the band."""
+        return shape[0] > 1.15 * reach.band
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in both readings."""
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))

@@ -9,7 +9,6 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-
 CLOCK, HEAT = 0.0, 1.0  # of the law: warm by the time of day, or by what friction has turned into heat
 
 

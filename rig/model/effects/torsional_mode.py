@@ -45,6 +45,10 @@ class TorsionalMode(Effect):
         """Any frequency that is compared; damping of steel to rubber."""
         return ((LOAD, AFTER), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
 
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
+        return shape[0] < BEFORE and shape[1] > 1.15 * reach.band
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m)."""
         side, frequency, zeta = shape
