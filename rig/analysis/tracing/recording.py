@@ -168,6 +168,7 @@ def _piece(
         temperature=c["temperature"],
         gear=believed(run),
         thinned=factor,
+        past=(),
         **derived,
     )
 

@@ -18,9 +18,9 @@ class TorsionalMode(Effect):
     """An inertia J_2 hangs on the load (or the motor) by a spring of its own: it resists with J_2·H·ω̇,
     H = ω²/(s² + 2ζωs + ω²). Far below ω it is just more inertia, which the baseline already has.
 
-    The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ that goes through
-    it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever is that of the other angle. Of a mode above what the
-    equations are compared at that is all there is to see.
+    The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ
+    that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever
+    is that of the other angle. Of a mode above what the equations are compared at that is all there is to see.
     """
 
     name: ClassVar[str] = "torsional_mode"
