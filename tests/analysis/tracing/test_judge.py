@@ -8,7 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.judge import unsteadiness
+from rig.analysis.tracing.equations import Term
+from rig.analysis.tracing.judge import unresolved, unsteadiness
+from rig.model.effect import Parameter
+from rig.model.effects.torsional_mode import TorsionalMode
+from tests.contract.test_effects import REACH
 
 RNG = np.random.default_rng(2)
 KEYS = [(i, "M") for i in range(6)]
@@ -37,3 +41,20 @@ def test_the_same_size_everywhere_is_steady_whatever_the_noise() -> None:
 def test_a_compromise_between_runs_is_told_by_its_spread() -> None:
     halves = {k: 1.5 if i % 2 else 0.5 for i, k in enumerate(KEYS)}
     assert solved(halves, 0.3) == pytest.approx(0.5, abs=0.02)
+
+
+def found(frequency: float, *scales: tuple[float, float]) -> list[str]:
+    """What stays unresolved of a mode at `frequency` Hz whose frequencies have those intervals."""
+    terms = tuple(Term(TorsionalMode(), (0.0, frequency, 0.04)) for _ in scales)
+    solution: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
+    words = [Parameter(f"frequency_{i}" if i > 1 else "frequency", 50.0, c, "Hz") for i, c in enumerate(scales, 1)]
+    return unresolved(solution, {"torsional_mode": words}, REACH)
+
+
+def test_a_law_is_unresolved_only_when_no_term_of_it_shows_its_scale() -> None:
+    assert found(50.0, (-3.0, 90.0)) == ["torsional_mode"]
+    assert found(50.0, (-3.0, 90.0), (48.0, 52.0)) == []
+
+
+def test_a_resonance_above_the_band_is_no_resonance() -> None:
+    assert found(1.19 * REACH.band, (48.0, 52.0)) == ["torsional_mode"]

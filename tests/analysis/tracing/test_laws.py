@@ -1,0 +1,62 @@
+"""What the columns of single effects stand for, beside the same thing worked out another way."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.smoothing import thin
+from rig.model.effect import Moved, Port
+from rig.model.effects.load_dependent_friction import LoadDependentFriction
+from rig.model.effects.torsional_mode import AFTER, BEFORE, TorsionalMode
+from tests.contract.test_effects import KNOWN, N, motion
+
+RAW, FACTOR = 1e-3, 4
+
+
+@pytest.mark.parametrize("hz", [10.0, 60.0, 80.0, 125.0, 170.0, 250.0, 430.0, 510.0, 853.0, 990.0])
+def test_a_fast_wave_is_in_the_columns_as_far_as_it_is_left_in_the_thinned_readings(hz: float) -> None:
+    t = RAW * np.arange(20000)
+    read, first = thin(np.cos(2 * np.pi * hz * t), FACTOR)
+    s = dataclasses.replace(motion(n=read.size), dt=RAW * FACTOR, thinned=FACTOR)
+    column = np.cos(2 * np.pi * hz * (t[first] + s.dt * np.arange(read.size))) * s.kept(
+        1.0, np.full(read.size, 2 * np.pi * hz)
+    )
+    assert float(np.sqrt(np.mean((read - column) ** 2))) < 0.1
+
+
+def test_readings_that_were_kept_as_they_are_keep_every_wave() -> None:
+    assert (motion().kept(9000.0, np.full(5, 300.0)) == 1.0).all()
+
+
+def test_heat_comes_from_friction_stays_with_a_slow_leak_and_goes_with_a_fast_one() -> None:
+    gear = dataclasses.replace(KNOWN, tau_c=0.2, B_m=1e-3)
+    run = Moved(start=100.0, end=150.0, speed=40.0, square=1600.0)
+    power = 0.2 * 40.0 + 1e-3 * 1600.0
+    at = dataclasses.replace(motion(n=4), t=np.array([50.0, 125.0, 150.0, 400.0]), gear=gear, past=(run,))
+    np.testing.assert_allclose(at.heat(1e7), power * np.array([0.0, 25.0, 50.0, 50.0]), rtol=1e-4)
+    np.testing.assert_allclose(at.heat(20.0)[1], power * 20.0 * (1 - np.exp(-25 / 20)))
+    assert at.heat(20.0)[3] < 1e-3 * power
+
+
+@pytest.mark.parametrize("side", [BEFORE, AFTER])
+def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(side: float) -> None:
+    """The wave generator stands behind the encoder by the twist, where the gear's error and its lever are others."""
+    s, soft, p = motion(), 1e-3, KNOWN.kinematic_error
+    through = s.torque * (1 / N - p.slope(s.theta_m))
+    s = dataclasses.replace(s, tau_m=through + 0.5 * KNOWN.J_m * s.alpha_m)
+    twist = soft * through
+    behind = s.theta_m - twist
+    error = (s.theta_m - behind) / N + p.value(behind) - p.value(s.theta_m)
+    torque = -s.torque * (p.slope(behind) - p.slope(s.theta_m))
+    ports = TorsionalMode().columns(s, (side, 70.0, 0.04))
+    np.testing.assert_allclose(soft * ports[Port.KINEMATIC_ERROR][:, 0], error, atol=2e-3 * np.abs(error).max())
+    np.testing.assert_allclose(soft * ports[Port.MOTOR_TORQUE][:, 0], torque, atol=2e-3 * np.abs(torque).max())
+
+
+def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
+    s = motion()
+    column = LoadDependentFriction().columns(s, (0.0, 1.0))[Port.MOTOR_TORQUE][:, 0]
+    np.testing.assert_allclose(column, np.abs(s.torque) / N * s.way, atol=1e-15)
