@@ -24,7 +24,6 @@ from rig.analysis.tracing.result import Floor, Found, Trace
 from rig.analysis.tracing.ripple import ripples
 from rig.analysis.tracing.search import Found as Searched
 from rig.analysis.tracing.suspects import candidates
-from rig.analysis.tracing.thresholds import MISSING
 from rig.analysis.tracing.unknown import smooth_term
 from rig.analysis.tracing.verdict import decide
 from rig.model.effect import Array, Parameter
@@ -48,8 +47,8 @@ def report(
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
     shares = {w.name: w.share for w in worths} | own_shares(p, s)
-    unsure = [w.name for w in worths if w.left > MISSING]  # beside so much that is unknown a name would be a guess
-    ruling = decide(p, s, tuple(shares), unsure, before, after, floors, found)
+    left = {w.name: w.left for w in worths}
+    ruling = decide(p, s, tuple(shares), left, before, after, floors, found)
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}

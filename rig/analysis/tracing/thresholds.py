@@ -39,6 +39,7 @@ HARMFUL: Final = 1.1  # RMS of a loud channel over that without the effect: what
 PLAIN_ENOUGH: Final = 0.9  # of the best coordinate's share: a simpler one that does nearly as well is said instead
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand
+AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there it is not what it is called
 CLOSE: Final = 0.985  # of an effect's evidence another one must reach to be called a rival
 STILL: Final = 1.02  # RMS over floor of a channel below which nothing is looked for: its floor is not known better
 STILL_RUN: Final = 1.25  # the same of a single run

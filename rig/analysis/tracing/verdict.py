@@ -13,7 +13,7 @@ from rig.analysis.tracing.model import Solution
 from rig.analysis.tracing.next_run import deciding
 from rig.analysis.tracing.result import NextRun, Status, Verdict
 from rig.analysis.tracing.search import Found
-from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, MOSTLY
+from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.analysis.tracing.unknown import Home, home
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE
@@ -37,13 +37,13 @@ def decide(
     p: Prepared,
     s: Solution,
     weighed: Sequence[str],
-    unsure: Sequence[str],
+    left: Mapping[str, float],
     before: Mapping[Key, Array],
     after: Mapping[Key, Array],
     floors: Mapping[Key, float],
     found: Found,
 ) -> Ruling:
-    """From held-out ratios and the effects that may be named, `unsure` not where something unknown is left."""
+    """From held-out ratios and the effects that may be named, with what is `left` over the floor where each acts."""
     order = {r.term.name: i for i, r in enumerate(found.ranking)}
     names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
     total, single = worst(p, after)
@@ -54,14 +54,15 @@ def decide(
     if not loud:
         return _settled(p, names, found, first, total)
     where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
-    if line is None and names and done > MOSTLY and total < 2 * EXPLAINED:
+    if line is None and names and done > MOSTLY and total < 2 * EXPLAINED and max(left.values(), default=0.0) < AMISS:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
-    # a line in a sensor is in the columns made from it too: beside one nothing is named
-    names = tuple(name for name in names if name not in unsure and line is None)
+    # a line in a sensor is in the columns made from it too: beside one nothing is named, and where much is left of
+    # what an effect should explain its name would be a guess
+    names = tuple(name for name in names if left.get(name, 0.0) <= MISSING and line is None)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
