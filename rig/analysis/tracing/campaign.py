@@ -14,6 +14,7 @@ from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.run import Run
 
+LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
 WORKERS = 2  # numpy leaves the interpreter's lock for nearly all of the work
 
 
@@ -66,7 +67,12 @@ def _record(run: Run, start: float) -> Recording | str:
         made = record(run, start)
     except (HdrigError, ValueError) as error:
         return f"{run.name} was left out: {error}."
-    return made if made.pieces else f"{run.name} was left out: no {0.1:g} s of it without a gap."
+    if not made.pieces:
+        return f"{run.name} was left out: no 0.1 s of it without a gap."
+    turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
+    if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
+        return f"{run.name} was left out: its motor went {turned:.2f} of a turn, a kinematic error needs a whole one."
+    return made
 
 
 def _same_sensors(runs: list[Recording]) -> list[Recording]:

@@ -82,6 +82,20 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     return Measured(Noise(sigma, kappa, local), by_run, white, how)
 
 
+def quieter(one: Measured, other: Measured) -> Measured:
+    """Of each channel the floor that is lower, and the offset of a run's own that is smaller: beside effects that are
+    there repeats differ less, not more."""
+    best = {c: min((one, other), key=lambda m: m.noise.sigma[c]) for c in CHANNELS}
+    noise = Noise(
+        {c: m.noise.sigma[c] for c, m in best.items()},
+        {c: m.noise.kappa[c] for c, m in best.items()},
+        {c: min(one.noise.local[c], other.noise.local[c]) for c in CHANNELS},
+    )
+    by_run = {key: rms for c, m in best.items() for key, rms in m.by_run.items() if key[1] == c}
+    white = {key: rms for c, m in best.items() for key, rms in m.white.items() if key[1] == c}
+    return Measured(noise, by_run, white, {c: m.how[c] for c, m in best.items() if c in m.how})
+
+
 def _alone(
     eq: Equations, e: Mapping[Key, Array], channel: str, among: Sequence[int], found: Sequence[Scatter]
 ) -> list[Scatter]:

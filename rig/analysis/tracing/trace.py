@@ -14,7 +14,7 @@ from rig.analysis.tracing.hearing import fitted_floors, heard, heard_again
 from rig.analysis.tracing.holdout import Split, split
 from rig.analysis.tracing.judge import Court, court
 from rig.analysis.tracing.model import Solution, design, fit
-from rig.analysis.tracing.noise import Measured, guess, measure
+from rig.analysis.tracing.noise import Measured, guess, measure, quieter
 from rig.analysis.tracing.own import Own, find
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
@@ -95,7 +95,7 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
     own = find(free, p.split)
     with_own = fit(design(replace(eq, own=own.columns()), s.design.terms, runs))
-    measured = measure(with_own, runs)
+    measured = quieter(p.measured, measure(with_own, runs))
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
     again = _built(p.campaign, p.split, eq, measured, own)

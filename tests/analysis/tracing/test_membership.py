@@ -1,8 +1,12 @@
 """Which runs of a folder are traced together, and when they were taken."""
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
+import pytest
+
+from rig.analysis.tracing import campaign
 from rig.analysis.tracing.membership import one_rig, starts
 
 
@@ -35,3 +39,16 @@ def test_runs_without_a_campaign_are_kept_as_they_are() -> None:
 def test_the_rig_s_own_time_counts_where_the_campaign_says_it_of_every_run() -> None:
     assert starts([run("a", 1, 20.0), run("b", 2, 620.0)]) == [0.0, 600.0]
     assert starts([run("a", 1, 20.0), run("b", 2)]) == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("turns", "locked", "left_out"), [(0.4, False, True), (0.4, True, False), (1.2, False, False)])
+def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
+    turns: float, locked: bool, left_out: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    piece = SimpleNamespace(theta_m=np.linspace(0.0, 2 * np.pi * turns, 50))
+    made = SimpleNamespace(pieces=(piece,), locked=locked, procedure="kinematic_error")
+    monkeypatch.setattr(campaign, "record", lambda run, start: made)
+    found = campaign._record(cast(Any, SimpleNamespace(name="jog")), 0.0)
+    assert (
+        found == "jog was left out: its motor went 0.40 of a turn, a kinematic error needs a whole one."
+    ) is left_out
