@@ -11,6 +11,7 @@ import contextlib
 import struct
 from typing import ClassVar
 
+from drivers.limits402 import set_limits
 from drivers.node import Mapped, Node, Refused, emergency_text
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import (
@@ -46,6 +47,8 @@ SHOWN = STATUS[1:2]
 MOTION = (Mapped(0x6064, 0, 32, "i"),)
 CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
 NOTHING = (0, 0)  # for the targets of other modes, in the fixed RPDOs of some drives
+LIMITED, LAGS = 1 << 11, 1 << 13  # of the statusword: internal limit, following error (other modes: no meaning)
+BEHIND = {Mode.TORQUE: LIMITED, Mode.VELOCITY: LIMITED, Mode.POSITION: LIMITED | LAGS}
 KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
@@ -119,20 +122,10 @@ class Cia402(Drive):
     def _configure(self) -> None:
         self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
         self.node.produce_heartbeat()
-        limit = min(round(self.place.torque_limit / self._rated * PERMILLE), 0xFFFF)
-        self._prefer(0x6072, struct.pack("<H", limit), "its torque is limited by this program alone")
-        for code in (0x605A, 0x605C, 0x605E):  # quick stop, disable operation, fault reaction: drive function off
-            self._prefer(code, struct.pack("<h", 0), "it reacts in a way of its own before its torque goes off")
+        set_limits(self.node, self.place)
         self._take_mode(Mode.TORQUE)
         self.guarded = self._arm()
         self._disarm()
-
-    def _prefer(self, index: int, value: bytes, otherwise: str) -> None:
-        """Write an object if it is there; a drive that insists on another value is remarked on."""
-        try:
-            self.node.write_if_there(index, 0, value)
-        except Refused as why:
-            self.node.remarks.append(f"{why}: {otherwise}")
 
     def _take_mode(self, mode: Mode) -> None:
         """Targets of `mode` in RPDO 1, and in 6060h. The node is pre-operational."""
@@ -247,7 +240,7 @@ class Cia402(Drive):
         word, mode, permille, position = self._inputs.values
         self.voltage = bool(int(word) & VOLTAGE)
         self._judge(int(word), mode)
-        flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & 1 << 11 else 0
+        flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & BEHIND[self.mode] else 0
         if latched != self._last.t:
             jump = self._angle.step(int(position))
             if jump:

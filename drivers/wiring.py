@@ -24,6 +24,7 @@ class Place:
     torque_rated: float = 0.0  # N·m
     torque_limit: float = 0.0  # N·m
     speed_limit: float = 0.0  # rad/s at its shaft, more is no measurement
+    following: float = 0.0  # rad that it may lag behind its reference at that speed; 0: nobody has said
     range: float = 0.0  # N·m of a torque sensor, either way
     period: float = 0.001  # s, one tick of the loop
 

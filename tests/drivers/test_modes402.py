@@ -11,6 +11,7 @@ from drivers.profile402 import counts_position, signed32, speed_unit
 from drivers.targets402 import Scale
 from drivers.wiring import Place
 from rig.bench import read
+from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Mode, Position, Torque, Velocity
 from rig.interrupts import Interrupts
@@ -156,6 +157,33 @@ def test_what_is_no_number_asks_for_nothing(value: float):
     assert Scale(PLACE).within(Mode.TORQUE, value, 0.001) == (0, 0.0)
     assert Scale(PLACE).within(Mode.VELOCITY, value, 0.001) == (0, 0.0)
     assert Scale(PLACE).within(Mode.POSITION, value, 0.001) == (0, 0.0)
+
+
+def test_the_drive_is_told_how_far_it_may_lag_and_for_how_long():
+    w = connected()
+    objects, limits = w.twin.drive.objects, w.bench.limits
+    widest = limits.following + limits.following_time * limits.speed  # rad, of the guard
+    assert objects.find(0x6065, 0).number == math.ceil(widest / TURN * 10_000)
+    assert objects.find(0x6066, 0).number == 50  # ms
+
+
+def test_a_motor_that_cannot_follow_in_position_mode_is_stopped_by_the_drive_itself():
+    w = connected()
+    drive = w.instruments.drive
+    w.twin.world.lock_output()
+    w.twin.drive.objects.find(0x6072, 0).value = 10  # per mille of the rated torque: too weak to wind the gear up
+    drive.enable(Mode.POSITION)
+    w.instruments.start()
+    lagging = 0
+    for tick in range(400):  # no guard here, and a reference that runs away at 60 rad/s
+        w.instruments.latch()
+        sample = w.instruments.read(w.wire.wait_until(w.wire.now() + 0.001))
+        lagging += bool(sample.flags & Flag.SATURATED_DRIVE)
+        w.instruments.write(Position(0.06 * tick))
+    assert lagging >= 50  # as long as the drive puts up with it
+    assert "emergency 8611h, following error" in drive.trouble
+    assert w.twin.drive.drive_state is DriveState.FAULT
+    assert w.twin.world.truth().tau_m == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_procedure_without_a_reference_is_refused_in_words():

@@ -66,6 +66,7 @@ def meet(
     node = ForeignNode(channel, NODE, dict(objects), **more)
     role = {Cia402: "drive", Cia404: "torque_sensor", Cia406: "load_encoder"}[kind]  # type: ignore[index]
     numbers = {"counts_per_turn": 4096, "torque_rated": 3.0, "torque_limit": 5.0, "speed_limit": 62.8, "range": 50.0}
+    numbers["following"] = 6.5
     driver = kind(wiring, Place(role, {"bus": "rig", "node": NODE}, period=0.001, **numbers))
     OPEN.extend((node, driver))
     return driver, node
@@ -219,6 +220,16 @@ def test_a_bare_drive_is_walked_and_commanded_whatever_it_says_of_what_it_lacks(
     assert node.objects[0x6071, 0] == struct.pack("<h", 200)
     assert drive.halt()
     assert node.objects[0x6041, 0] == b"\x40\0"
+
+
+def test_a_drive_that_watches_its_following_error_is_told_how_far_and_one_that_does_not_is_said_to() -> None:
+    watching = {**DRIVE, (0x6065, 0): bytes(4), (0x6066, 0): bytes(2)}
+    drive, node = meet(Cia402, watching, tpdos=STATUS, rpdos=COMMAND)
+    drive.connect()
+    assert (node.number(0x6065), node.number(0x6066)) == (4238, 50)  # 6.5 rad of 4096 counts a turn, upwards; ms
+    bare, _ = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND)
+    bare.connect()
+    assert "has no following error window (6065h): in position mode this program alone watches" in told(bare)
 
 
 def test_a_drive_without_anything_that_guards_it_says_so() -> None:
