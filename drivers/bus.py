@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import can
 
+from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
 
@@ -47,7 +48,7 @@ class Bus:
         channel: str,
         clock: Clock,
         options: Mapping[str, Any],
-        connect: Callable[..., Any] = can.Bus,
+        connect: Callable[..., Any] = connect_alone,
         stamps: Callable[[], float] = time.time,
     ) -> None:
         self.name = name

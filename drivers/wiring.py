@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import can
-
 from drivers.bus import CANOPEN, Bus
+from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
 
@@ -47,7 +46,7 @@ class Wiring:
 
     clock: Clock
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    connect: Callable[..., Any] = can.Bus  # what opens a bus
+    connect: Callable[..., Any] = connect_alone  # what opens a bus
     stamps: Callable[[], float] = time.time  # what its time stamps count on
     _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
