@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 from rig.bench import ClockName
 from rig.campaign.changes import bare, changes_between
@@ -70,7 +71,7 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     Returns the exit code: PASS when every run was made, or skipped by somebody. Raises HdrigError when it came to an
     end before anything was recorded.
     """
-    exit, session.facts = Exit.INTERNAL, {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
+    exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
         settle(session, journal, desk)
         exit = make_runs(session, campaign, journal, desk)
@@ -83,6 +84,11 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
         desk.say(str(error))
         journal.close("stopped" if session.interrupts.count else "failed", str(error))
     return exit
+
+
+def check_facts(journal: Journal) -> dict[str, Any]:
+    """What the manifests of proofs and weighings say: they tell later whether the encoders kept their zero."""
+    return {"campaign": {"uid": journal.book["uid"], "kind": "check", "session": len(journal.book["sessions"])}}
 
 
 def _closing(journal: Journal) -> str:

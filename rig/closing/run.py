@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
-from rig.campaign.run import settle
+from rig.campaign.run import check_facts, settle
 from rig.closing.loop import Closing
 from rig.closing.story import End
 from rig.core.errors import Exit, HdrigError
@@ -19,7 +19,7 @@ def conduct(closing: Closing) -> Exit:
     to an end before anything was recorded.
     """
     session, journal = closing.session, closing.journal
-    session.facts = {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
+    session.facts = check_facts(journal)
     exit, status, sentence = Exit.INTERNAL, "failed", "an internal error ended it"
     try:
         settle(session, journal, closing.desk)
