@@ -8,7 +8,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from rig.core.errors import RecorderError
+from rig.core.errors import DataError, RecorderError
+from rig.core.regular import regular
 from rig.runfile.manifest import parse, told, utc_now
 
 NAME = "events.jsonl"
@@ -42,11 +43,18 @@ class EventLog:
 
 
 def read_events(folder: Path) -> list[dict[str, Any]]:
-    """The events of a run in order; none where there is no file. A line torn by a kill, or no object, is left out."""
+    """The events of a run in order; none where there is no file. A line torn by a kill, or no object, is left out.
+
+    Raises DataError when it is no file, or cannot be read.
+    """
+    path = folder / NAME
     try:
-        lines = (folder / NAME).read_bytes().split(b"\n")
+        regular(path)
+        lines = path.read_bytes().split(b"\n")
     except FileNotFoundError:
         return []
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror}") from error
     found = []
     for line in lines:
         try:
