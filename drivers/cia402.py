@@ -11,7 +11,8 @@ import contextlib
 import struct
 from typing import ClassVar
 
-from drivers.limits402 import set_limits
+from drivers.limits402 import set_limits, stops_when_alone
+from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
 from drivers.node import Mapped, Node, Refused, emergency_text
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import (
@@ -130,27 +131,21 @@ class Cia402(Drive):
     def _take_mode(self, mode: Mode) -> None:
         """Targets of `mode` in RPDO 1, and in 6060h. The node is pre-operational."""
         target = TARGETS[mode]
-        supported = self.node.read_uint(0x6502, default=target.supported)
-        if not supported & target.supported:
-            bit = target.supported.bit_length() - 1
-            raise NotReady(
-                f"{self.node.who} does not offer cyclic {mode} mode (6502h = {supported:#x}, bit {bit} is 0)"
-            )
         if mode is Mode.VELOCITY:
             code = self.node.read_uint(0x60A9, default=0)
             unit = speed_unit(code, self.place.counts_per_turn)
             if unit is None:
                 raise NotReady(f"{self.node.who} tells speeds in a unit not known here (60A9h = {code:08X}h)")
             self._scale.speed_unit = unit
+        choose(self.node, mode)
         others = [other.object for other in TARGETS.values() if other is not target]
         self._outputs.arrange(target.mapped, [*CHOSEN, *others])
-        if mode is not Mode.POSITION:
-            self.node.put(target.object.at, 0, bytes(target.object.bits // 8))
-        self.node.put(0x6060, 0, struct.pack("<b", target.number))  # some cannot be read; 6061h tells before enabling
         self.mode = mode
 
     def _arm(self) -> str:
         """Have the drive stop by itself when this host falls silent; by what, in words. "" when it cannot."""
+        if not stops_when_alone(self.node):
+            return ""
         limit = round(1000 * self.place.options.get("watchdog", 0.1))
         host = self.bus.host_node
         with contextlib.suppress(Refused):
@@ -190,21 +185,38 @@ class Cia402(Drive):
         if not self._connected:
             raise NotReady("the drive is not connected")
         if mode is not self.mode:
-            self.node.pause()
-            self._take_mode(mode)
-            self.node.start()
+            self._change(mode)
         self._scale.position = self._direction * self.node.read_int(0x6064) * self._step
         self._walk(SHUTDOWN, "ready to switch on")
         self._walk(SWITCH_ON, "switched on")
-        told, wanted = self.node.read_int(0x6061), TARGETS[mode].number
-        if told != wanted:
-            raise NotReady(f"{self.node.who} did not take {mode} mode: 6061h is {told}, expected {wanted}")
+        rest_all(self.node)
+        if not (confirmed := shows(self.node, mode)) and shown(self.node) != UNDECIDED:
+            raise self._other_mode()
         self._arm()
         self._walk(ENABLE, "operation enabled")
+        if not confirmed and not shows(self.node, mode):
+            raise self._other_mode()
         self._angle.forget()
         self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
         self._written = self.bus.clock.now()
         self._enabled = True
+
+    def _change(self, mode: Mode) -> None:
+        before = self.mode
+        self.node.pause()
+        try:
+            self._take_mode(mode)
+        except NotReady:
+            with contextlib.suppress(NotReady):  # the reason for the first is the one to tell
+                self._take_mode(before)
+            raise
+        finally:
+            self.node.start()
+
+    def _other_mode(self) -> NotReady:
+        self.halt()
+        told, wanted = shown(self.node), TARGETS[self.mode].number
+        return NotReady(f"{self.node.who} did not take {self.mode} mode: 6061h is {told}, expected {wanted}")
 
     def _command(self, controlword: int, raw: int) -> bool:
         return self._outputs.send(controlword, raw, TARGETS[self.mode].number, *NOTHING)

@@ -99,9 +99,29 @@ def test_a_setpoint_of_another_kind_than_enabled_for_is_not_sent():
 def test_a_mode_the_drive_does_not_offer_is_refused_with_its_word():
     w = connected()
     w.twin.drive.objects.find(0x6502, 0).value = 1 << 9
+    w.twin.drive.mode_stuck = True
     with pytest.raises(NotReady, match=r"does not offer cyclic velocity mode \(6502h = 0x200, bit 8 is 0\)"):
         w.instruments.drive.enable(Mode.VELOCITY)
     assert w.twin.drive.drive_state is not DriveState.OPERATION_ENABLED
+
+
+def test_a_mode_that_is_not_listed_and_taken_all_the_same_is_used_and_remarked_on():
+    w = wired()
+    w.twin.drive.objects.find(0x6502, 0).value = 0x24
+    w.instruments.connect()
+    assert any("bit 9 is 0); it took it all the same" in remark for remark in w.instruments.drive.remarks)
+    w.instruments.drive.enable(Mode.TORQUE)
+    assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
+
+
+def test_a_mode_that_was_refused_leaves_the_drive_fit_for_the_other():
+    w = connected()
+    w.twin.drive.objects.find(0x60A9, 0).value = 0
+    with pytest.raises(NotReady, match="60A9h"):
+        w.instruments.drive.enable(Mode.VELOCITY)
+    w.instruments.drive.enable(Mode.TORQUE)
+    assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
+    assert int(w.twin.drive.mode) == 10
 
 
 def test_a_unit_of_speed_nobody_knows_is_refused():
@@ -204,3 +224,18 @@ def test_frames_on_the_wire_are_those_of_the_standard():
     w.instruments.write(Position(-TURN / 100))
     w.wire.wait_until(w.wire.now() + 0.001)
     assert seen == [struct.pack("<Hi", 0x0F, -100)]
+
+
+def test_a_drive_that_does_nothing_when_its_host_falls_silent_is_told_to_fault_or_counts_as_unguarded():
+    w = wired()
+    silent = w.twin.drive.objects.find(0x6007, 0)
+    silent.value = 0
+    w.instruments.connect()
+    assert silent.number == 1
+    assert w.instruments.drive.guarded.startswith("heartbeat consumer")
+    w = wired()
+    silent = w.twin.drive.objects.find(0x6007, 0)
+    silent.value, silent.writable = 0, False
+    w.instruments.connect()
+    assert w.instruments.drive.guarded == ""
+    assert any("when this program falls silent" in remark for remark in w.instruments.drive.remarks)

@@ -246,6 +246,27 @@ def test_a_mode_that_can_be_written_and_not_read_is_confirmed_by_6061h() -> None
     assert node.objects[0x6061, 0] == b"\x0a"
 
 
+def test_a_drive_that_shows_its_mode_only_when_enabled_is_enabled_with_every_target_at_rest() -> None:
+    targets = {(0x607A, 0): b"\x11\x22\0\0", (0x6064, 0): b"\x07\0\0\0", (0x60FF, 0): b"\1\0\0\0"}
+    drive, node = meet(Cia402, {**DRIVE, **targets}, tpdos=STATUS, rpdos=COMMAND, ways=Ways(mode_when_enabled=True))
+    drive.connect()
+    drive.enable()
+    assert node.objects[0x6061, 0] == b"\x0a"
+    assert node.objects[0x607A, 0] == b"\x07\0\0\0"  # where it is: had it been in position mode it would have stayed
+    assert node.objects[0x60FF, 0] == bytes(4)
+    fresh(drive)
+    assert drive.trouble == ""
+
+
+def test_a_drive_that_stays_in_another_mode_is_not_enabled() -> None:
+    drive, node = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND, ways=Ways(other_mode=8))
+    drive.connect()
+    with pytest.raises(NotReady, match="did not take torque mode: 6061h is 8, expected 10"):
+        drive.enable()
+    time.sleep(0.02)
+    assert node.objects[0x6041, 0] == b"\x40\0"
+
+
 def test_a_drive_whose_fixed_rpdo_is_off_is_not_commanded_through_it() -> None:
     off = [Tpdo(0x200 + NODE | OFF, 255, [0x60400010, 0x60710010])]
     drive, _ = meet(Cia402, {**DRIVE}, tpdos=STATUS, rpdos=off, ways=Ways(insists_on_no_rtr=True))
