@@ -20,6 +20,8 @@ PATIENCE = 0.3  # s for 6061h to follow 6060h
 def choose(node: Node, mode: Mode) -> None:
     """Write 6060h. Raises NotReady when the drive will not, or does not list the mode and does not take it either."""
     target = TARGETS[mode]
+    if node.lacks(target.object.at):  # small nodes take it into a PDO all the same
+        raise NotReady(f"{node.who} has no target {mode} ({target.object.at:04X}h): it cannot be run in that mode")
     listed = node.read_uint(0x6502, default=target.supported)
     bit = target.supported.bit_length() - 1
     unlisted = f"{node.who} does not offer cyclic {mode} mode (6502h = {listed:#x}, bit {bit} is 0)"

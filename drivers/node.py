@@ -32,6 +32,7 @@ PATIENCE = 3.5  # heartbeats that may stay away
 TRIES = 5  # questions of 0.3 s each before a node is not there: some take a second to boot
 TWICE = 5  # answers more than there were SYNCs that are no accident
 OWED = 200  # answers at most that a node held up may give all at once, later
+NO_OBJECT = 0x06020000  # abort code
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
 MISSING = object()
 
@@ -149,6 +150,16 @@ class Node:
             raise Refused(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
         except (SdoCommunicationError, can.CanError) as why:
             raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
+
+    def lacks(self, index: int) -> bool:
+        """The node says, by the standard's own code, that there is no such object. Raises NotReady when it is silent."""
+        try:
+            self._sdo.upload(index, 0)
+        except SdoAbortedError as why:
+            return bool(why.code == NO_OBJECT)
+        except (SdoCommunicationError, can.CanError) as why:
+            raise NotReady(f"{self.who} does not answer (reading {index:04X}h: {why})") from None
+        return False
 
     def read_uint(self, index: int, sub: int = 0, default: int | None = None) -> int:
         """An unsigned number, whatever its size. Raises NotReady."""
