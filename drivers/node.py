@@ -152,7 +152,7 @@ class Node:
             raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
 
     def lacks(self, index: int) -> bool:
-        """The node says, by the standard's own code, that there is no such object. Raises NotReady when it is silent."""
+        """The node says, by the standard's own code, that there is no such object. Raises NotReady: it is silent."""
         try:
             self._sdo.upload(index, 0)
         except SdoAbortedError as why:
