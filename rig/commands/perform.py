@@ -18,6 +18,7 @@ from rig.core.procedure import Procedure
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
+from rig.procedures.unwind import Unwind
 from rig.procedures.weigh import Weigh
 from rig.report.record import as_json
 from rig.session import Done, Session
@@ -96,7 +97,7 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
 def finding(procedure: Procedure, done: Done) -> str:
     """What a procedure with an answer of its own found; "" when the analysis gives it."""
     match procedure:
-        case SignAndScale() | Weigh() | LockCheck():
+        case SignAndScale() | Weigh() | LockCheck() | Unwind():
             return str(done.ending.finding.sentence)
         case StepTest():
             return response_of(done.folder).sentence
