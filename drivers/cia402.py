@@ -11,9 +11,10 @@ import contextlib
 import struct
 from typing import ClassVar
 
-from drivers.limits402 import set_limits, stops_when_alone
+from drivers import watchdog402
+from drivers.limits402 import set_limits
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
-from drivers.node import Mapped, Node, Refused, emergency_text
+from drivers.node import Mapped, Node, emergency_text
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import (
     DISABLE,
@@ -147,25 +148,10 @@ class Cia402(Drive):
         self.mode = mode
 
     def _arm(self) -> str:
-        """Have the drive stop by itself when this host falls silent; by what, in words. "" when it cannot."""
-        if not stops_when_alone(self.node):
-            return ""
-        limit = round(1000 * self.place.options.get("watchdog", 0.1))
-        host = self.bus.host_node
-        with contextlib.suppress(Refused):
-            if host and self.node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
-                return f"heartbeat consumer of the drive, {limit} ms, set and read back"
-        with contextlib.suppress(Refused):
-            if self.node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
-                return f"RPDO timeout of the drive, {limit} ms, set and read back"
-        return ""
+        return watchdog402.arm(self.node, round(1000 * self.place.options.get("watchdog", 0.1)))
 
     def _disarm(self) -> None:
-        """Between runs nobody talks to the drive, and that is no fault."""
-        if self.guarded.startswith("heartbeat"):
-            self.node.put(0x1016, 1, struct.pack("<I", 0))
-        elif self.guarded:
-            self.node.put(0x1400, 5, struct.pack("<H", 0))
+        watchdog402.disarm(self.node, self.guarded)
 
     def _first_reading(self) -> None:
         self.bus.frames.clear()
@@ -322,12 +308,25 @@ class Cia402(Drive):
             if self._inputs.take() != NEVER and state_of(int(self._inputs.values[0])) not in ENERGISED:
                 return True
             self._hold(DISABLE)
+        return self._off_by_sdo()
+
+    def _off_by_sdo(self) -> bool:
+        """Who lives and is not operational takes no PDOs: somebody else has stopped it, enabled as it may be."""
+        if self.bus.dead or not self.node.aside(self.bus.clock.now()):
+            return False
+        with contextlib.suppress(NotReady):
+            self.node.pause()  # one that is stopped answers nothing
+            self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
+            return state_of(self.node.read_uint(0x6041)) not in ENERGISED
         return False
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
         if not self._connected:
             raise NotReady("the drive is not connected")
+        if self.node.aside(self.bus.clock.now()):
+            self.node.revive()
+            self.node.start()
         for word in (DISABLE, RESET, DISABLE):
             self._hold(word)
             self.bus.wait(0.01, lambda: False)

@@ -15,8 +15,7 @@ from drivers.wiring import Place
 
 PATIENCE = 50  # ms outside of the following error window before the drive faults: the guard, which says why, is faster
 WIDEST = 0xFFFFFFFE  # counts: 0xFFFFFFFF would switch the window off
-FAULTS, NOTHING = 1, 0  # of 6007h: a lost connection is a fault, is nothing to it
-NO_CHANGE = 1  # of 1029h:1: a lost connection changes nothing in the node
+FAULTS = 1  # of 6007h: a lost connection is a fault
 REACTIONS = (0x605A, 0x605C, 0x605E)  # quick stop, disable operation, fault reaction
 
 
@@ -29,14 +28,6 @@ def set_limits(node: Node, place: Place) -> None:
     _prefer(node, 0x6007, struct.pack("<h", FAULTS), "what it does when this program falls silent is its own choice")
     for code in REACTIONS:  # drive function off
         _prefer(node, code, struct.pack("<h", 0), "it reacts in a way of its own before its torque goes off")
-
-
-def stops_when_alone(node: Node) -> bool:
-    """Whether a lost connection, once noticed, stops the drive, as far as it says. Raises NotReady."""
-    reaction = node.read(0x6007, 0, b"")
-    if reaction:
-        return int.from_bytes(reaction[:2], "little") != NOTHING
-    return node.read_uint(0x1029, 1, default=0) != NO_CHANGE
 
 
 def _limit_lag(node: Node, place: Place) -> None:

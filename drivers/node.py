@@ -241,6 +241,10 @@ class Node:
             told = "nothing" if self.state is None else NMT_NAMES.get(self.state, f"state {self.state:#x}")
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
 
+    def aside(self, now: float) -> bool:
+        """It lives, and says that it is not operational: it takes and tells no PDOs."""
+        return self.beats and now - self.heard < PATIENCE * PRODUCE / 1000 and self.state != OPERATIONAL
+
     def answered(self, frame: Frame) -> None:
         """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error.
 
