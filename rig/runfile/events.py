@@ -13,6 +13,7 @@ from rig.core.regular import regular
 from rig.runfile.manifest import parse, told, utc_now
 
 NAME = "events.jsonl"
+LONGEST_LINE = 2**20  # bytes; an event of ours is a sentence, and a line of 200 MB takes minutes to parse
 
 
 class EventLog:
@@ -43,7 +44,7 @@ class EventLog:
 
 
 def read_events(folder: Path) -> list[dict[str, Any]]:
-    """The events of a run in order; none where there is no file. A line torn by a kill, or no object, is left out.
+    """The events of a run in order; none where there is no file. A line torn by a kill, of no object or endless is left out.
 
     Raises DataError when it is no file, or cannot be read.
     """
@@ -56,7 +57,7 @@ def read_events(folder: Path) -> list[dict[str, Any]]:
     except OSError as error:
         raise DataError(f"{path} cannot be read: {error.strerror}") from error
     found = []
-    for line in lines:
+    for line in (line for line in lines if len(line) <= LONGEST_LINE):
         try:
             event = parse(line)
         except ValueError:

@@ -129,3 +129,9 @@ def test_no_file_beside_the_samples_is_waited_for(folder: Path, put: Callable[[P
 def test_a_file_the_disk_cannot_read_is_a_finding(folder: Path) -> None:
     replaced(folder, "samples.parquet", lambda path: path.symlink_to("/proc/self/mem"))  # reads as an I/O error
     assert any("Input/output error" in f.sentence for f in verify(folder))
+
+
+def test_a_line_of_two_hundred_megabytes_is_no_event(folder: Path) -> None:
+    with open(folder / "events.jsonl", "ab") as file:
+        file.truncate(200 * 2**20)  # sparse: zero bytes, which is what a file system may leave after a power cut
+    assert read_events(folder) == [{"kind": "note"}]
