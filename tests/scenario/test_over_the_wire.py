@@ -65,7 +65,7 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Twin]:
     doors.mkdir()
     options = ["--bus", "can", "--control", "control", "--serial", "serial", "--slcan", "slcan", "--odrive", "odrive"]
     process = subprocess.Popen(
-        [*HDRIG, "twin", *options, "--socketcand", "0", "--for", "600"], cwd=doors, stdout=subprocess.PIPE, text=True
+        [*HDRIG, "twin", *options, "--socketcand", "0", "--for", "3600"], cwd=doors, stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     lines = []
