@@ -44,7 +44,7 @@ class EventLog:
 
 
 def read_events(folder: Path) -> list[dict[str, Any]]:
-    """The events of a run in order; none where there is no file. A line torn by a kill, of no object or endless is left out.
+    """The events of a run in order; none where there is no file. A line torn by a kill is left out, as is what is none.
 
     Raises DataError when it is no file, or cannot be read.
     """
