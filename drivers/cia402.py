@@ -24,10 +24,10 @@ from drivers.profile402 import (
     SHUTDOWN,
     SWITCH_ON,
     TURN,
-    counts_position,
     speed_unit,
     state_of,
 )
+from drivers.scales402 import compare_scales
 from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
@@ -42,7 +42,6 @@ NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
-SCALE_TOLERANCE = 0.02  # a rated torque that differs by more is another scale, not rounding
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
@@ -88,7 +87,7 @@ class Cia402(Drive):
         identity = self.node.identify(PROFILE)
         self.node.pause()
         self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
-        self._compare_scales()
+        compare_scales(self.node, self.place)
         self._configure()
         self.node.start()
         self._connected = True
@@ -97,30 +96,6 @@ class Cia402(Drive):
         if self.trouble:  # in fault already: with its code in words
             self.trouble = f"{self.trouble}: {self._error()}"
         return identity
-
-    def _compare_scales(self) -> None:
-        if not (told := self.node.read_uint(0x6076, default=0)):
-            self.node.remarks.append(f"{self.node.who} tells no rated torque (6076h): {self._rated:g} N·m is trusted")
-        rated = told / 1000 or self._rated
-        if abs(rated / self._rated - 1) > SCALE_TOLERANCE:
-            raise NotReady(
-                f"{self.node.who} says its rated torque is {rated:g} N·m (6076h), motor.torque_rated in the bench file "
-                f"is {self._rated:g} N·m: every torque would be off by a factor of {rated / self._rated:.4g}"
-            )
-        increments, turns = (self.node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
-        if increments > 1 and turns and abs(increments / turns - self.place.counts_per_turn) > 0.5:
-            raise NotReady(
-                f"{self.node.who} counts {increments / turns:g} per turn (608Fh), motor.counts_per_turn in the bench "
-                f"file is {self.place.counts_per_turn}"
-            )
-        unit = self.node.read_uint(0x60A8, default=0)
-        if not counts_position(unit):
-            raise NotReady(
-                f"{self.node.who} tells positions in another unit (60A8h = {unit:08X}h), expected increments"
-            )
-        motor, shaft = (self.node.read_uint(0x6091, sub, default=1) for sub in (1, 2))
-        if motor != shaft:
-            raise NotReady(f"{self.node.who} has a gear of {motor}:{shaft} of its own (6091h), expected 1:1")
 
     def _configure(self) -> None:
         for told in (*STATUS[2:], *MOTION):
