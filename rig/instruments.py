@@ -94,20 +94,21 @@ class Instruments:
             flags |= STALE_M
         oldest = last[0] = t_m
         theta_l, counts_l, tau_l = NAN, 0, NAN
-        if self.load_encoder is not None:
-            t_l, theta_l, counts_l, more = self.load_encoder.read()
+        encoder, sensor = self.load_encoder, self.torque_sensor
+        if encoder is not None:
+            t_l, theta_l, counts_l, more = encoder.read()
             flags |= more
-            fault = fault or self.load_encoder.trouble
+            fault = fault or encoder.trouble
             if t_l == last[1]:
                 flags |= STALE_L
             last[1] = t_l
             self.offsets[0].add(t_l - t_m)
             if t_l < oldest:
                 oldest = t_l
-        if self.torque_sensor is not None:
-            t_tau, tau_l, more = self.torque_sensor.read()
+        if sensor is not None:
+            t_tau, tau_l, more = sensor.read()
             flags |= more
-            fault = fault or self.torque_sensor.trouble
+            fault = fault or sensor.trouble
             if t_tau == last[2]:
                 flags |= STALE_TAU
             if tau_l != self._tau:
