@@ -34,18 +34,28 @@ def wait() -> None:
     signal.sigtimedwait({signal.SIGUSR1}, 10.0)
 
 
-def test_an_interrupt_in_an_import_comes_when_the_module_is_whole(slow: str) -> None:
-    with pytest.raises(KeyboardInterrupt), after_imports():
-        importlib.import_module(slow)
+def load(name: str) -> None:
+    with after_imports():
+        importlib.import_module(name)
         wait()
+
+
+def press() -> None:
+    with after_imports():
+        os.kill(os.getpid(), signal.SIGINT)
+        wait()
+
+
+def test_an_interrupt_in_an_import_comes_when_the_module_is_whole(slow: str) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        load(slow)
     assert sys.modules[slow].WHOLE == 499500
 
 
 def test_an_interrupt_elsewhere_comes_at_once_and_handlers_are_given_back() -> None:
     before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGALRM)
-    with pytest.raises(KeyboardInterrupt), after_imports():
-        os.kill(os.getpid(), signal.SIGINT)
-        wait()
+    with pytest.raises(KeyboardInterrupt):
+        press()
     assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGALRM)) == before
 
 
