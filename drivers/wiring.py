@@ -13,6 +13,9 @@ from rig.core.clock import Clock
 from rig.core.errors import UsageError
 
 
+UNASKED = {"slcan": {"timeout": 0.0}}  # s; python-can's 1 ms is waited at every look at an empty line, four a tick
+
+
 @dataclass(frozen=True)
 class Place:
     """What the bench file says of one device: its own keys, and the numbers it has to agree with."""
@@ -60,7 +63,7 @@ class Wiring:
             raise UsageError(f"{place.where}.bus = '{name}': no such bus; the bench file has {known}")
         if name not in self._buses:
             section = self.sections[name]
-            options = {**section.get("options", {})}
+            options = {**UNASKED.get(section["interface"], {}), **section.get("options", {})}
             if section.get("bitrate"):
                 options["bitrate"] = section["bitrate"]
             made = Bus(
