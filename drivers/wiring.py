@@ -12,7 +12,6 @@ from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
 
-
 UNASKED = {"slcan": {"timeout": 0.0}}  # s; python-can's 1 ms is waited at every look at an empty line, four a tick
 
 
