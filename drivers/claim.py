@@ -86,6 +86,7 @@ class Alone:
         self.send: Callable[..., None] = bus.send
         self.recv: Callable[..., can.Message | None] = bus.recv
         self.flush_tx_buffer: Callable[[], None] = bus.flush_tx_buffer
+        self.fileno: Callable[[], int] = bus.fileno
 
     def shutdown(self) -> None:
         """Leave the bus, then let others at it."""
