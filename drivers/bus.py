@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import select
 import struct
 import time
@@ -14,6 +15,8 @@ import can
 from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
+
+logging.getLogger("can").setLevel(logging.CRITICAL)  # what matters of it we say in sentences
 
 SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
 OPERATIONAL = 0x05
