@@ -33,12 +33,13 @@ SHORT: dict[str, dict[str, Any]] = SHORTER | {
     "load-sweep": {"weights": (0.0, 3.0), "amplitude_deg": 360.0, "frequency": 0.05},
     "assembly-sweep": {"depths_mm": (0.15,), "reference": 2, "weights": (0.0,), "amplitude_deg": 360.0,
                        "frequency": 0.05},
-    "identify": {"speeds_rpm": (120.0, 200.0), "cycles": 0.5, "revolutions": 15, "lock_cycles": 1},
+    "identify": {"speeds_rpm": (120.0, 200.0), "cycles": 0.5, "revolutions": 15, "lock_cycles": 1,
+                 "friction_rpm": "60,120,200", "lock_rate": 5.0},
 }  # fmt: skip
 PATIENT = ("--set", "limits.stale_s=0.6", "--set", "devices.drive.watchdog=0.7")  # a busy machine is not the subject
 APART = "motor and load disagree by"  # at 14 °/s a load angle that is 30 ms late looks like a gear wound up by 0.43°
 TRIES = 4
-LONGEST = 900.0  # s, of identify with its friction run
+LONGEST = 900.0  # s
 
 
 @dataclass(frozen=True)
