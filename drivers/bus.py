@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import logging
+import select
 import struct
 import time
 from collections.abc import Callable, Mapping
@@ -10,8 +12,11 @@ from typing import Any, NamedTuple
 
 import can
 
+from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
+
+logging.getLogger("can").setLevel(logging.CRITICAL)  # what matters of it we say in sentences
 
 SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
 OPERATIONAL = 0x05
@@ -47,7 +52,7 @@ class Bus:
         channel: str,
         clock: Clock,
         options: Mapping[str, Any],
-        connect: Callable[..., Any] = can.Bus,
+        connect: Callable[..., Any] = connect_alone,
         stamps: Callable[[], float] = time.time,
     ) -> None:
         self.name = name
@@ -152,7 +157,7 @@ class Bus:
         if self._can is None or self.dead:
             return False
         try:
-            message = self._can.recv(timeout)
+            message = self._can.recv(0.0) or (self._recv(timeout) if timeout > 0.0 else None)
         except GARBLED:
             self.garbled += 1
             return True
@@ -166,6 +171,17 @@ class Bus:
         elif not (message.is_extended_id or message.is_remote_frame):
             self._keep(message.arbitration_id, bytes(message.data), message.timestamp)
         return True
+
+    def _recv(self, timeout: float) -> can.Message | None:
+        """Asleep until something comes: who looks again and again keeps the adapter from the processor."""
+        try:
+            waiting = self._can.fileno()
+        except (AttributeError, NotImplementedError):  # a bus within the process
+            return self._can.recv(timeout)  # type: ignore[no-any-return]
+        if waiting < 0:
+            return self._can.recv(timeout)  # type: ignore[no-any-return]
+        select.select([waiting], [], [], timeout)
+        return self._can.recv(0.0)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
         now = self.clock.now()

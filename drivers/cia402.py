@@ -11,7 +11,10 @@ import contextlib
 import struct
 from typing import ClassVar
 
-from drivers.node import Mapped, Node, Refused, emergency_text
+from drivers import watchdog402
+from drivers.limits402 import set_limits
+from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
+from drivers.node import Mapped, Node, emergency_text
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import (
     DISABLE,
@@ -21,10 +24,10 @@ from drivers.profile402 import (
     SHUTDOWN,
     SWITCH_ON,
     TURN,
-    counts_position,
     speed_unit,
     state_of,
 )
+from drivers.scales402 import compare_scales
 from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
@@ -39,13 +42,15 @@ NEVER = -1e9  # s, a latch time older than any
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
-SCALE_TOLERANCE = 0.02  # a rated torque that differs by more is another scale, not rounding
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
+TELLS = {0x6077: "torque", 0x6064: "position"}
 MOTION = (Mapped(0x6064, 0, 32, "i"),)
 CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
 NOTHING = (0, 0)  # for the targets of other modes, in the fixed RPDOs of some drives
+LIMITED, LAGS = 1 << 11, 1 << 13  # of the statusword: internal limit, following error (other modes: no meaning)
+BEHIND = {Mode.TORQUE: LIMITED, Mode.VELOCITY: LIMITED, Mode.POSITION: LIMITED | LAGS}
 KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
@@ -82,7 +87,7 @@ class Cia402(Drive):
         identity = self.node.identify(PROFILE)
         self.node.pause()
         self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
-        self._compare_scales()
+        compare_scales(self.node, self.place)
         self._configure()
         self.node.start()
         self._connected = True
@@ -92,88 +97,36 @@ class Cia402(Drive):
             self.trouble = f"{self.trouble}: {self._error()}"
         return identity
 
-    def _compare_scales(self) -> None:
-        if not (told := self.node.read_uint(0x6076, default=0)):
-            self.node.remarks.append(f"{self.node.who} tells no rated torque (6076h): {self._rated:g} N·m is trusted")
-        rated = told / 1000 or self._rated
-        if abs(rated / self._rated - 1) > SCALE_TOLERANCE:
-            raise NotReady(
-                f"{self.node.who} says its rated torque is {rated:g} N·m (6076h), motor.torque_rated in the bench file "
-                f"is {self._rated:g} N·m: every torque would be off by a factor of {rated / self._rated:.4g}"
-            )
-        increments, turns = (self.node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
-        if increments > 1 and turns and abs(increments / turns - self.place.counts_per_turn) > 0.5:
-            raise NotReady(
-                f"{self.node.who} counts {increments / turns:g} per turn (608Fh), motor.counts_per_turn in the bench "
-                f"file is {self.place.counts_per_turn}"
-            )
-        unit = self.node.read_uint(0x60A8, default=0)
-        if not counts_position(unit):
-            raise NotReady(
-                f"{self.node.who} tells positions in another unit (60A8h = {unit:08X}h), expected increments"
-            )
-        motor, shaft = (self.node.read_uint(0x6091, sub, default=1) for sub in (1, 2))
-        if motor != shaft:
-            raise NotReady(f"{self.node.who} has a gear of {motor}:{shaft} of its own (6091h), expected 1:1")
-
     def _configure(self) -> None:
+        for told in (*STATUS[2:], *MOTION):
+            if self.node.lacks(told.at):  # small nodes take it into a PDO all the same, and tell zeros
+                raise NotReady(f"{self.node.who} does not tell its {TELLS[told.at]} ({told.at:04X}h)")
         self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
         self.node.produce_heartbeat()
-        limit = min(round(self.place.torque_limit / self._rated * PERMILLE), 0xFFFF)
-        self._prefer(0x6072, struct.pack("<H", limit), "its torque is limited by this program alone")
-        for code in (0x605A, 0x605C, 0x605E):  # quick stop, disable operation, fault reaction: drive function off
-            self._prefer(code, struct.pack("<h", 0), "it reacts in a way of its own before its torque goes off")
+        set_limits(self.node, self.place)
         self._take_mode(Mode.TORQUE)
         self.guarded = self._arm()
         self._disarm()
 
-    def _prefer(self, index: int, value: bytes, otherwise: str) -> None:
-        """Write an object if it is there; a drive that insists on another value is remarked on."""
-        try:
-            self.node.write_if_there(index, 0, value)
-        except Refused as why:
-            self.node.remarks.append(f"{why}: {otherwise}")
-
     def _take_mode(self, mode: Mode) -> None:
         """Targets of `mode` in RPDO 1, and in 6060h. The node is pre-operational."""
         target = TARGETS[mode]
-        supported = self.node.read_uint(0x6502, default=target.supported)
-        if not supported & target.supported:
-            bit = target.supported.bit_length() - 1
-            raise NotReady(
-                f"{self.node.who} does not offer cyclic {mode} mode (6502h = {supported:#x}, bit {bit} is 0)"
-            )
         if mode is Mode.VELOCITY:
             code = self.node.read_uint(0x60A9, default=0)
             unit = speed_unit(code, self.place.counts_per_turn)
             if unit is None:
                 raise NotReady(f"{self.node.who} tells speeds in a unit not known here (60A9h = {code:08X}h)")
             self._scale.speed_unit = unit
+        choose(self.node, mode)
         others = [other.object for other in TARGETS.values() if other is not target]
         self._outputs.arrange(target.mapped, [*CHOSEN, *others])
-        if mode is not Mode.POSITION:
-            self.node.put(target.object.at, 0, bytes(target.object.bits // 8))
-        self.node.put(0x6060, 0, struct.pack("<b", target.number))  # some cannot be read; 6061h tells before enabling
         self.mode = mode
 
     def _arm(self) -> str:
-        """Have the drive stop by itself when this host falls silent; by what, in words. "" when it cannot."""
-        limit = round(1000 * self.place.options.get("watchdog", 0.1))
-        host = self.bus.host_node
-        with contextlib.suppress(Refused):
-            if host and self.node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
-                return f"heartbeat consumer of the drive, {limit} ms, set and read back"
-        with contextlib.suppress(Refused):
-            if self.node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
-                return f"RPDO timeout of the drive, {limit} ms, set and read back"
-        return ""
+        return watchdog402.arm(self.node, round(1000 * self.place.options.get("watchdog", 0.1)))
 
     def _disarm(self) -> None:
-        """Between runs nobody talks to the drive, and that is no fault."""
-        if self.guarded.startswith("heartbeat"):
-            self.node.put(0x1016, 1, struct.pack("<I", 0))
-        elif self.guarded:
-            self.node.put(0x1400, 5, struct.pack("<H", 0))
+        watchdog402.disarm(self.node, self.guarded)
 
     def _first_reading(self) -> None:
         self.bus.frames.clear()
@@ -197,21 +150,38 @@ class Cia402(Drive):
         if not self._connected:
             raise NotReady("the drive is not connected")
         if mode is not self.mode:
-            self.node.pause()
-            self._take_mode(mode)
-            self.node.start()
+            self._change(mode)
         self._scale.position = self._direction * self.node.read_int(0x6064) * self._step
         self._walk(SHUTDOWN, "ready to switch on")
         self._walk(SWITCH_ON, "switched on")
-        told, wanted = self.node.read_int(0x6061), TARGETS[mode].number
-        if told != wanted:
-            raise NotReady(f"{self.node.who} did not take {mode} mode: 6061h is {told}, expected {wanted}")
+        rest_all(self.node)
+        if not (confirmed := shows(self.node, mode)) and shown(self.node) != UNDECIDED:
+            raise self._other_mode()
         self._arm()
         self._walk(ENABLE, "operation enabled")
+        if not confirmed and not shows(self.node, mode):
+            raise self._other_mode()
         self._angle.forget()
         self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
         self._written = self.bus.clock.now()
         self._enabled = True
+
+    def _change(self, mode: Mode) -> None:
+        before = self.mode
+        self.node.pause()
+        try:
+            self._take_mode(mode)
+        except NotReady:
+            with contextlib.suppress(NotReady):  # the reason for the first is the one to tell
+                self._take_mode(before)
+            raise
+        finally:
+            self.node.start()
+
+    def _other_mode(self) -> NotReady:
+        self.halt()
+        told, wanted = shown(self.node), TARGETS[self.mode].number
+        return NotReady(f"{self.node.who} did not take {self.mode} mode: 6061h is {told}, expected {wanted}")
 
     def _command(self, controlword: int, raw: int) -> bool:
         return self._outputs.send(controlword, raw, TARGETS[self.mode].number, *NOTHING)
@@ -247,7 +217,7 @@ class Cia402(Drive):
         word, mode, permille, position = self._inputs.values
         self.voltage = bool(int(word) & VOLTAGE)
         self._judge(int(word), mode)
-        flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & 1 << 11 else 0
+        flags = int(Flag.SATURATED_DRIVE) if self._scale.clipped or int(word) & BEHIND[self.mode] else 0
         if latched != self._last.t:
             jump = self._angle.step(int(position))
             if jump:
@@ -313,12 +283,25 @@ class Cia402(Drive):
             if self._inputs.take() != NEVER and state_of(int(self._inputs.values[0])) not in ENERGISED:
                 return True
             self._hold(DISABLE)
+        return self._off_by_sdo()
+
+    def _off_by_sdo(self) -> bool:
+        """Who lives and is not operational takes no PDOs: somebody else has stopped it, enabled as it may be."""
+        if self.bus.dead or not self.node.aside(self.bus.clock.now()):
+            return False
+        with contextlib.suppress(NotReady):
+            self.node.pause()  # one that is stopped answers nothing
+            self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
+            return state_of(self.node.read_uint(0x6041)) not in ENERGISED
         return False
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
         if not self._connected:
             raise NotReady("the drive is not connected")
+        if self.node.aside(self.bus.clock.now()):
+            self.node.revive()
+            self.node.start()
         for word in (DISABLE, RESET, DISABLE):
             self._hold(word)
             self.bus.wait(0.01, lambda: False)

@@ -42,6 +42,8 @@ class Cia406(Encoder):
         """Identify, compare the scale, map 6004h on SYNC, start. Raises NotReady."""
         self.node.open()
         identity = self.node.identify(PROFILE)
+        if self.node.lacks(0x6004):
+            raise NotReady(f"{self.node.who} does not tell its position (6004h)")
         self.node.pause()
         per_turn, modulus = self._scale()
         if per_turn != self.place.counts_per_turn:

@@ -32,6 +32,7 @@ PATIENCE = 3.5  # heartbeats that may stay away
 TRIES = 5  # questions of 0.3 s each before a node is not there: some take a second to boot
 TWICE = 5  # answers more than there were SYNCs that are no accident
 OWED = 200  # answers at most that a node held up may give all at once, later
+NO_OBJECT = 0x06020000  # abort code
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
 MISSING = object()
 
@@ -150,6 +151,16 @@ class Node:
         except (SdoCommunicationError, can.CanError) as why:
             raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
 
+    def lacks(self, index: int) -> bool:
+        """The node says, by the standard's own code, that there is no such object. Raises NotReady: it is silent."""
+        try:
+            self._sdo.upload(index, 0)
+        except SdoAbortedError as why:
+            return bool(why.code == NO_OBJECT)
+        except (SdoCommunicationError, can.CanError) as why:
+            raise NotReady(f"{self.who} does not answer (reading {index:04X}h: {why})") from None
+        return False
+
     def read_uint(self, index: int, sub: int = 0, default: int | None = None) -> int:
         """An unsigned number, whatever its size. Raises NotReady."""
         raw = self.read(index, sub, MISSING if default is None else default.to_bytes(8, "little"))
@@ -229,6 +240,10 @@ class Node:
         if not self.bus.wait(PATIENCE * PRODUCE / 1000, lambda: self.state == wanted):
             told = "nothing" if self.state is None else NMT_NAMES.get(self.state, f"state {self.state:#x}")
             raise NotReady(f"{self.who} did not become {NMT_NAMES[wanted]}; its heartbeat says {told}")
+
+    def aside(self, now: float) -> bool:
+        """It lives, and says that it is not operational: it takes and tells no PDOs."""
+        return self.beats and now - self.heard < PATIENCE * PRODUCE / 1000 and self.state != OPERATIONAL
 
     def answered(self, frame: Frame) -> None:
         """Its newest answer to a SYNC: two nodes of one number both answer, a single frame may come twice by error.

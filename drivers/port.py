@@ -7,6 +7,7 @@ import termios
 
 import serial
 
+from drivers.claim import Claim, claim_port
 from rig.core.errors import NotReady
 
 GONE = (serial.SerialException, OSError, termios.error)  # pyserial 3.5 raises all three for the same pulled plug
@@ -24,15 +25,18 @@ class Port:
         self._made.timeout, self._made.write_timeout = 0, 0.2  # s; a write to a peer that does not read would block
         self._made.exclusive = True
         self._made.rts, self._made.dtr = rts, dtr
+        self._claim: Claim | None = None
 
     def open(self) -> None:
         """Raises NotReady with the reason."""
         if self._made.is_open:
             return
         try:
+            self._claim = claim_port(self.path)
             self._made.open()
             self._made.reset_input_buffer()
         except GONE as why:
+            self.close()
             raise NotReady(f"{self.who} could not be opened: {why}") from None
         self.dead = ""
 
@@ -62,3 +66,5 @@ class Port:
         """Idempotent; never raises."""
         with contextlib.suppress(*GONE):
             self._made.close()
+        if self._claim is not None:
+            self._claim.release()

@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import can
-
 from drivers.bus import CANOPEN, Bus
+from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
+
+UNASKED = {"slcan": {"timeout": 0.0}}  # s; python-can's 1 ms is waited at every look at an empty line, four a tick
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class Place:
     torque_rated: float = 0.0  # N·m
     torque_limit: float = 0.0  # N·m
     speed_limit: float = 0.0  # rad/s at its shaft, more is no measurement
+    following: float = 0.0  # rad that it may lag behind its reference at that speed; 0: nobody has said
     range: float = 0.0  # N·m of a torque sensor, either way
     period: float = 0.001  # s, one tick of the loop
 
@@ -46,7 +48,7 @@ class Wiring:
 
     clock: Clock
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    connect: Callable[..., Any] = can.Bus  # what opens a bus
+    connect: Callable[..., Any] = connect_alone  # what opens a bus
     stamps: Callable[[], float] = time.time  # what its time stamps count on
     _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
@@ -60,7 +62,7 @@ class Wiring:
             raise UsageError(f"{place.where}.bus = '{name}': no such bus; the bench file has {known}")
         if name not in self._buses:
             section = self.sections[name]
-            options = {**section.get("options", {})}
+            options = {**UNASKED.get(section["interface"], {}), **section.get("options", {})}
             if section.get("bitrate"):
                 options["bitrate"] = section["bitrate"]
             made = Bus(

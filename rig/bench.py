@@ -166,6 +166,7 @@ class Bench:
             torque_rated=f.motor.torque_rated,
             torque_limit=min(f.motor.torque_limit, f.limits.torque),
             speed_limit=limits.speed / (f.gear.N if role == "load_encoder" else 1.0),
+            following=limits.following + limits.following_time * limits.speed,
             range=f.torque_sensor.range if f.torque_sensor else 0.0,
             period=1.0 / f.loop.rate,
         )

@@ -12,6 +12,7 @@ from typing import TextIO, cast
 from rig import __version__
 from rig.commands import CATALOGUE
 from rig.core.errors import Exit, HdrigError
+from rig.ctrl_c import after_imports
 from rig.streams import Tolerant
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
@@ -41,7 +42,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     out, err = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = cast(TextIO, Tolerant(out)), cast(TextIO, Tolerant(err))
     try:
-        return _verb(list(sys.argv[1:] if argv is None else argv))
+        with after_imports():
+            return _verb(list(sys.argv[1:] if argv is None else argv))
     except HdrigError as error:
         print(f"hdrig: {error}", file=sys.stderr)
         return int(error.exit)

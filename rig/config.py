@@ -10,13 +10,13 @@ from __future__ import annotations
 import tomllib
 from datetime import date
 from pathlib import Path
-from stat import S_ISDIR, S_ISREG
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from rig.config_effects import EffectsSection
 from rig.core.errors import UsageError
+from rig.core.regular import regular
 from rig.quantities import NotNegative, Positive, quantity
 from rig.quantities import Strict as Strict  # these two also for readers of other files of the same kind
 from rig.quantities import nearest as nearest
@@ -257,10 +257,7 @@ def read_bench(text: str, source: str) -> BenchFile:
 def load_text(path: Path) -> str:
     """The text of a configuration file, which is a regular file: a device or a pipe never ends. Raises UsageError."""
     try:
-        found = path.stat()
-        if S_ISDIR(found.st_mode):
-            raise UsageError(f"cannot read {path}: it is a folder; expected a TOML file")
-        if not S_ISREG(found.st_mode) or found.st_size > LONGEST:
+        if regular(path).st_size > LONGEST:
             raise UsageError(f"{path} is no text file of at most {LONGEST // 2**20} MiB; expected a TOML file")
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError:

@@ -65,18 +65,21 @@ class Guard:
             start = self.start = sample
             self._ranges[Position] = (sample.theta_m, self.travel, NAN)
         lim = self.limits
+        _, theta_m, theta_l, omega_m, tau_m, tau_l, age, _, _, _, fault = sample
+        ask, theta_ref, omega_ref = asked
+        turned, followed = theta_m - start.theta_m, theta_l - start.theta_l
         if (
-            not sample.fault
-            and sample.age <= lim.stale
-            and -lim.speed <= sample.omega_m <= lim.speed
-            and -lim.torque * TORQUE_MARGIN <= sample.tau_m <= lim.torque * TORQUE_MARGIN
-            and -self.travel <= sample.theta_m - start.theta_m <= self.travel
-            and (self.shaft_torque is None or -self.shaft_torque <= sample.tau_l <= self.shaft_torque)
-            and (self.twist is None or abs(self.twist_of(sample)) <= self.twist)
-            and (self.load_travel is None or abs(sample.theta_l - start.theta_l) <= self.load_travel)
-            and abs(asked[0]) < math.inf
-            and not abs(asked.theta_ref - sample.theta_m)
-            > lim.following + lim.following_time * abs(asked.omega_ref)  # NaN: no reference, nothing to follow
+            not fault
+            and age <= lim.stale
+            and -lim.speed <= omega_m <= lim.speed
+            and -lim.torque * TORQUE_MARGIN <= tau_m <= lim.torque * TORQUE_MARGIN
+            and -self.travel <= turned <= self.travel
+            and (self.shaft_torque is None or -self.shaft_torque <= tau_l <= self.shaft_torque)
+            and (self.twist is None or abs(turned / self.ratio - followed) <= self.twist)
+            and (self.load_travel is None or abs(followed) <= self.load_travel)
+            and abs(ask) < math.inf
+            and not abs(theta_ref - theta_m)
+            > lim.following + lim.following_time * abs(omega_ref)  # NaN: no reference, nothing to follow
         ):
             return None
         return next((trip for rule in RULES if (trip := rule(self, sample, asked)) is not None), None)

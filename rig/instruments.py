@@ -15,6 +15,9 @@ from rig.core.sample import NAN, Sample, Setpoint
 from rig.latching import LatchOffsets
 
 FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
+STALE_M, STALE_L, STALE_TAU = int(Flag.STALE_M), int(Flag.STALE_L), int(Flag.STALE_TAU)
+FROZEN_TAU = int(Flag.FROZEN_TAU)  # plain integers: one operation on an enum costs as much as a whole reading
+new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid every tick
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 NEVER = -1e9  # s, a latch time older than any
 
@@ -85,41 +88,40 @@ class Instruments:
         devices' own latch times, so that a host that stalls within a tick does not pass for a silent device.
         """
         last = self._last
-        motor = self.drive.read()
-        oldest = t_m = motor[0]
-        flags = motor[4] | self._mark
+        t_m, theta_m, counts_m, tau_m, flags, fault = self.drive.read()
+        flags |= self._mark
         if t_m == last[0]:
-            flags |= Flag.STALE_M
-        last[0] = t_m
-        theta_l, counts_l, tau_l, fault = NAN, 0, NAN, motor[5]
-        if self.load_encoder is not None:
-            t_l, theta_l, counts_l, more = self.load_encoder.read()
+            flags |= STALE_M
+        oldest = last[0] = t_m
+        theta_l, counts_l, tau_l = NAN, 0, NAN
+        encoder, sensor = self.load_encoder, self.torque_sensor
+        if encoder is not None:
+            t_l, theta_l, counts_l, more = encoder.read()
             flags |= more
-            fault = fault or self.load_encoder.trouble
+            fault = fault or encoder.trouble
             if t_l == last[1]:
-                flags |= Flag.STALE_L
+                flags |= STALE_L
             last[1] = t_l
             self.offsets[0].add(t_l - t_m)
             if t_l < oldest:
                 oldest = t_l
-        if self.torque_sensor is not None:
-            t_tau, tau_l, more = self.torque_sensor.read()
+        if sensor is not None:
+            t_tau, tau_l, more = sensor.read()
             flags |= more
-            fault = fault or self.torque_sensor.trouble
+            fault = fault or sensor.trouble
             if t_tau == last[2]:
-                flags |= Flag.STALE_TAU
+                flags |= STALE_TAU
             if tau_l != self._tau:
                 self._tau, self._tau_since = tau_l, t_tau
             elif t_tau - self._tau_since > FROZEN:
-                flags |= Flag.FROZEN_TAU
+                flags |= FROZEN_TAU
             last[2] = t_tau
             self.offsets[1].add(t_tau - t_m)
             if t_tau < oldest:
                 oldest = t_tau
         t = t_m - self.started
-        age = now - oldest
-        omega = self.speed_filter.step(t, motor[1])
-        return Sample(t, motor[1], theta_l, omega, motor[3], tau_l, age, motor[2], counts_l, int(flags), fault)
+        omega = self.speed_filter.step(t, theta_m)
+        return new(Sample, (t, theta_m, theta_l, omega, tau_m, tau_l, now - oldest, counts_m, counts_l, flags, fault))
 
     def look(self) -> Sample:
         """A sample outside of a run: devices that read when they are asked are asked, and given time to answer."""

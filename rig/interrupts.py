@@ -26,7 +26,7 @@ class Interrupts:
     @property
     def count(self) -> int:
         """1 stop, 2 or more halt."""
-        return max(self._signals, self._keyed)
+        return self._keyed if self._keyed > self._signals else self._signals
 
     @count.setter
     def count(self, value: int) -> None:

@@ -13,17 +13,21 @@ class LatchOffsets:
 
     def __init__(self) -> None:
         self.count = 0
-        self._mean = 0.0  # s
-        self._squares = 0.0  # s², about the mean
+        self._first = 0.0  # s; the sums are about it: offsets differ little, their squares would drown in its own
+        self._sum = 0.0  # s
+        self._squares = 0.0  # s²
 
     def add(self, offset: float) -> None:
-        """One row whose channel was latched `offset` s after the motor angle, as told, by Welford's recurrence."""
+        """One row whose channel was latched `offset` s after the motor angle, as told."""
+        if not self.count:
+            self._first = offset
         self.count += 1
-        away = offset - self._mean
-        self._mean += away / self.count
-        self._squares += away * (offset - self._mean)
+        away = offset - self._first
+        self._sum += away
+        self._squares += away * away
 
     def summary(self) -> dict[str, float | int]:
         """What `timing.json` holds of it; times in s."""
-        deviation = math.sqrt(self._squares / (self.count - 1)) if self.count > 1 else 0.0
-        return {"mean": self._mean, "deviation": deviation, "rows": self.count}
+        mean = self._sum / max(self.count, 1)
+        spread = max(self._squares - mean * self._sum, 0.0)  # s², about the mean
+        return {"mean": self._first + mean, "deviation": math.sqrt(spread / max(self.count - 1, 1)), "rows": self.count}

@@ -106,6 +106,7 @@ class Loop:
         clock, read, write = self.instruments.clock, self.instruments.read, self.instruments.write
         latch = self.instruments.latch
         check, allowed, put, late = self.guard.check, self.guard.allowed, self.sink.put, self.timing.add
+        interrupts = self.interrupts
         period, start, k = setting.period, clock.now(), 0
         steps: Steps = self.setpoints.steps(procedure, setting)
         asked: Setpoint = next(steps)
@@ -128,11 +129,12 @@ class Loop:
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)
-            if self.interrupts.count > 1:
+            ends = interrupts.count
+            if ends > 1:
                 self.instruments.safe()  # before any word about it is written down
                 self._last_row(sample, asked)
                 return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
-            if self.interrupts.count or self.interrupts.held:
+            if ends or interrupts.held:
                 steps = self._course(steps, procedure, setting)
             try:
                 asked = steps.send(sample)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from math import floor
 
 from rig.core.channels import Flag
 
@@ -32,7 +33,7 @@ class Counter:
 
     def count(self, theta: float) -> int:
         """Counts at the true angle `theta` rad."""
-        return math.floor(theta * self.per_radian) - self.first
+        return floor(theta * self.per_radian) - self.first
 
     def distorted(self, theta: float, value: Callable[[float], float]) -> float:
         """`theta` with its part since power-up seen through `value`."""

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rig.core.errors import HdrigError
+from rig.core.errors import Exit, HdrigError, UsageError
+from rig.model.gear import Gear
 from sim import kernel
 from sim.energy import Hidden, Ledger, potential
 from sim.parameters import TwinParameters
-from sim.vector import bristles, pack, slips
+from sim.vector import bristles, fastest_rate, pack, slips
 
 FAILURES = {
     kernel.NOT_FINITE: "its state is no longer finite",
@@ -19,8 +20,13 @@ FAILURES = {
 }
 
 
+FASTEST = kernel.C_MODE / kernel.H_LEAST  # 1/s; a gear with a faster rate needs shorter substeps than there are
+
+
 class PlantFailure(HdrigError):
-    """The simulated rig cannot be followed any further; never a finite but wrong answer."""
+    """The simulated rig cannot be followed any further; never a finite but wrong answer. Its numbers are no gear's."""
+
+    exit = Exit.USAGE
 
 
 class Truth(NamedTuple):
@@ -48,7 +54,7 @@ class Plant:
     What the paper's model lacks comes on top as `parameters.effects` says. Where load changes the kinematic error the
     balance is d(T+V)/dt + losses − work = (K·φ + B_sp·φ̇)·θ̃_p·ġ/g; the ledger has it as `schedule`.
 
-    `refine` divides the substeps, for tests of convergence.
+    `refine` divides the substeps, for tests of convergence. Raises UsageError for a gear too stiff to be followed.
     """
 
     def __init__(self, parameters: TwinParameters, theta_m: float = 0.0, refine: float = 1.0) -> None:
@@ -59,6 +65,7 @@ class Plant:
         self.place(theta_m)
 
     def _fit(self, parameters: TwinParameters) -> None:
+        _refuse_too_fast(parameters.gear)
         self.parameters = parameters
         self.vector = pack(parameters, self.refine)
         self._pass = kernel.advance_full if parameters.effects.in_the_plant else kernel.advance
@@ -120,3 +127,13 @@ class Plant:
         """Energy in, lost and stored since the start."""
         entries = self.state[kernel.IN_MOTOR : kernel.IN_SCHEDULE + 1].tolist()
         return Ledger(*[*entries, self.energy() - self._start])
+
+
+def _refuse_too_fast(gear: Gear) -> None:
+    rate = fastest_rate(gear)
+    if not rate <= FASTEST:  # NaN too
+        raise UsageError(
+            f"the twin cannot follow a gear of K = {gear.K:g} N·m/rad, J_m = {gear.J_m:g} kg·m², J_l = {gear.J_l:g} "
+            f"kg·m², B_m = {gear.B_m:g}, B_sp = {gear.B_sp:g}, B_l = {gear.B_l:g} N·m·s/rad: its fastest rate is "
+            f"{rate:.3g} 1/s, expected at most {FASTEST:.3g} 1/s"
+        )

@@ -5,10 +5,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 from rig.bench import ClockName
 from rig.campaign.changes import bare, changes_between
 from rig.campaign.journal import Journal
+from rig.campaign.leaving import came_to_something
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
 from rig.core.errors import Exit, HdrigError, NotReady
@@ -66,19 +68,27 @@ def open_session(
 def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
     """Make every run of `journal` that is not settled yet. Its folder is closed, with its status, on every way out.
 
-    Returns the exit code: PASS when every run was made, or skipped by somebody.
+    Returns the exit code: PASS when every run was made, or skipped by somebody. Raises HdrigError when it came to an
+    end before anything was recorded.
     """
-    exit, session.facts = Exit.INTERNAL, {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
+    exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
         settle(session, journal, desk)
         exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
         journal.close(status, _closing(journal))
     except HdrigError as error:
+        if not came_to_something(journal):
+            raise
         exit = error.exit
         desk.say(str(error))
         journal.close("stopped" if session.interrupts.count else "failed", str(error))
     return exit
+
+
+def check_facts(journal: Journal) -> dict[str, Any]:
+    """What the manifests of proofs and weighings say: they tell later whether the encoders kept their zero."""
+    return {"campaign": {"uid": journal.book["uid"], "kind": "check", "session": len(journal.book["sessions"])}}
 
 
 def _closing(journal: Journal) -> str:

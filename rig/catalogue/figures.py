@@ -56,7 +56,8 @@ def refuse_unknown(word: str, seen: set[str]) -> None:
     if not seen & set(names_of(word)):
         from rig.quantities import nearest  # it brings pydantic, which a trend need not wait for
 
-        raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, {*WORDS, *seen})}")
+        others = {*WORDS, *seen} - {word}  # a word people use that none of these runs can answer
+        raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}")
 
 
 def figures(folder: Path) -> Mapping[str, Figure]:

@@ -100,7 +100,9 @@ def text(value: object) -> str:
         said = str(value) if isinstance(value, str | int | float) else ""
     except ValueError:  # an integer of more than 4300 digits
         return ""
-    return said if said.isascii() else said.encode(errors="replace").decode()  # half a surrogate pair cannot be written
+    if said.isprintable():
+        return said
+    return "".join(c if c.isprintable() else "\ufffd" for c in said)  # no terminal, page or figure may be steered by it
 
 
 def number(value: object) -> float | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from rig.campaign.journal import Journal
-from rig.campaign.run import settle
+from rig.campaign.leaving import came_to_something
+from rig.campaign.run import check_facts, settle
 from rig.closing.loop import Closing
 from rig.closing.story import End
 from rig.core.errors import Exit, HdrigError
@@ -14,10 +15,11 @@ EXITS = {End.NOTHING: Exit.PASS, End.EXPLAINED: Exit.PASS, End.STOPPED: Exit.STO
 def conduct(closing: Closing) -> Exit:
     """Proof and tare, then the rounds. Returns the exit code: PASS when the loop is closed, INCOMPLETE when it is not.
 
-    A rig that is told to stop, or an error, leaves both books so that --resume goes on.
+    A rig that is told to stop, or an error, leaves both books so that --resume goes on. Raises HdrigError when it came
+    to an end before anything was recorded.
     """
     session, journal = closing.session, closing.journal
-    session.facts = {"campaign": {"uid": journal.book["uid"], "kind": "check"}}
+    session.facts = check_facts(journal)
     exit, status, sentence = Exit.INTERNAL, "failed", "an internal error ended it"
     try:
         settle(session, journal, closing.desk)
@@ -25,6 +27,8 @@ def conduct(closing: Closing) -> Exit:
         exit, sentence = EXITS.get(story.end, Exit.INCOMPLETE), story.sentence
         status = "stopped" if story.end is End.STOPPED else "completed"
     except HdrigError as error:
+        if not came_to_something(journal):
+            raise
         exit, sentence = error.exit, str(error)
         status = "stopped" if session.interrupts.count else "failed"
         closing.desk.say(sentence)

@@ -12,7 +12,7 @@ from typing import Any
 from rig.analysis.tracing.record import document
 from rig.analysis.tracing.result import Status, Trace
 from rig.core.errors import NotReady, UsageError
-from rig.runfile.manifest import told, write_atomic
+from rig.runfile.manifest import contents, parse, told, write_atomic
 
 NAME = "close-loop.json"
 SCHEMA = "hdrig.close-loop/1"
@@ -107,7 +107,7 @@ def read_story(folder: Path) -> Story:
     """The story so far. Raises UsageError when there is none."""
     path = folder / NAME
     try:
-        book = json.loads(path.read_bytes())
+        book = parse(contents(path))
         if book.pop("schema") != SCHEMA:
             raise KeyError("schema")
         rounds = tuple(Round(**_tuples(r) | {"status": Status(r["status"])}) for r in book.pop("rounds"))

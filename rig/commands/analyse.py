@@ -101,9 +101,14 @@ BESIDE: Mapping[str, Callable[[Run], Run | None]] = {
 def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
     """Figures from samples that are not those that were closed would be worth nothing. Raises DataError."""
     from rig.runfile.finalise import describe
+    from rig.runfile.manifest import told
 
-    said = manifest.get("files", {}).get("samples.parquet", {}).get("sha256")
-    if said and (folder / "samples.parquet").exists() and describe(folder / "samples.parquet")["sha256"] != said:
+    said, path = manifest.get("files", {}).get("samples.parquet", {}).get("sha256"), folder / "samples.parquet"
+    if not said or not path.exists():
+        return
+    with told(DataError, f"{path} cannot be read"):
+        same = describe(path)["sha256"] == said
+    if not same:
         raise DataError(
             "samples.parquet is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
         )

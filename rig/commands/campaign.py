@@ -14,6 +14,7 @@ from rig.bench import read as read_bench
 from rig.campaign import dry_run, summary
 from rig.campaign.changes import ByHand, deeds
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
+from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, Plan, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -114,12 +115,13 @@ def _resume(args: argparse.Namespace) -> int:
 def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.Namespace, show: Show) -> int:
     """Every run that is open, then the summary on stdout; the exit code."""
     show.bench(campaign.bench, clock)
-    show.say(f"campaign folder {journal.folder}")
     with (
+        swept(journal),
         view(args.view) as looking_on,
         at_the_rig(show) as (interrupts, person),
         open_session(campaign, journal, clock, interrupts, args.note, person, Onlookers(show, looking_on)) as session,
     ):
+        show.say(f"campaign folder {journal.folder}")
         args.before(session, show)
         exit = conduct(session, campaign, journal, Terminal(campaign.bench, person, show))
     text = "\n".join(summary.lines(journal)) + "\n"

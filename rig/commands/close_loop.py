@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
 from rig.campaign.journal import Journal, new_journal, read_journal
+from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -88,12 +89,13 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
 
     bench = campaign.bench
     show.bench(bench, clock)
-    show.say(f"campaign folder {journal.folder}")
     before = float(journal.book["rig_time_s"])
     with (
+        swept(journal),
         at_the_rig(show) as (interrupts, person),
         open_session(campaign, journal, clock, interrupts, note, person, show) as session,
     ):
+        show.say(f"campaign folder {journal.folder}")
         closing = Closing(
             session, campaign, journal, Terminal(bench, person, show), look,
             lambda: (before + session.instruments.clock.now()) / 60, story,

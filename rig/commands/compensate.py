@@ -44,8 +44,6 @@ def run(args: argparse.Namespace) -> int:
     bench, clock = open_bench(args)
     gear = _gear(args)
     folder = args.out / f"{utc_now()[:10]}-{utc_now()[11:13]}{utc_now()[14:16]}{utc_now()[17:19]}-compensation"
-    with told(NotReady, f"{folder} cannot be made"):
-        folder.mkdir(parents=True)
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     from rig.runfile.folder import create_in

@@ -15,9 +15,11 @@ from rig.commands.show.show import Show
 from rig.core.errors import Exit
 from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
+from rig.procedures.jog import Jog
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
+from rig.procedures.unwind import Unwind
 from rig.procedures.weigh import Weigh
 from rig.report.record import as_json
 from rig.session import Done, Session
@@ -96,7 +98,7 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
 def finding(procedure: Procedure, done: Done) -> str:
     """What a procedure with an answer of its own found; "" when the analysis gives it."""
     match procedure:
-        case SignAndScale() | Weigh() | LockCheck():
+        case SignAndScale() | Weigh() | LockCheck() | Unwind() | Jog():
             return str(done.ending.finding.sentence)
         case StepTest():
             return response_of(done.folder).sentence

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rig.commands.folders import expand, for_each
 from rig.commands.folders import runs_argument as arguments
+from rig.commands.list_ import say
 from rig.core.errors import Exit
 
 __all__ = ["arguments", "run"]
@@ -21,5 +22,5 @@ def recover_one(folder: Path) -> Exit:
     """Says what was found and made of it."""
     from rig.runfile.recover import recover
 
-    print(recover(folder).sentence)
+    say(recover(folder).sentence)
     return Exit.PASS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,24 +35,53 @@ def reference_beside(run: Run) -> Run | None:
 
 
 def reference_of_one_zero(run: Run) -> Run | None:
-    """The same, of the same session of the same campaign: a lock test turns too little to show that the motor's encoder
-    was switched off in between, and then the slope of another part of the error would be taken off.
+    """The same, of the same campaign, from one zero of the motor's encoder: a lock test turns too little to show that
+    it was switched off in between, and then the slope of another part of the error would be taken off.
+
+    Of the same session; else of another one, where a proof of the lock test's own session shows the zero to be that of
+    the slow run: a campaign that was stopped and taken up again.
     """
-    return _beside(run, _one_zero)
+    return _beside(run, _one_session) or _of_another_session(run)
+
+
+def _of_another_session(run: Run) -> Run | None:
+    slow = _beside(run, _one_campaign)
+    if slow is None:
+        return None
+    from rig.analysis.one_zero import shown_common, zero_between
+    from rig.analysis.reference import kinematic_error_reference
+    from rig.analysis.tame import Tame
+
+    series = kinematic_error_reference(Tame(slow))
+    if series is None:
+        return None
+    return slow if any(shown_common(zero_between(Tame(check), series)) for check in _checks(run)) else None
+
+
+def _checks(run: Run) -> Iterator[Run]:
+    """Proofs and weighings of the session `run` is of."""
+    return _runs(run.path.resolve().parent / "checks", lambda about: _same_session(run.manifest, about))
 
 
 def _beside(run: Run, fits: Callable[[Mapping[str, Any], Mapping[str, Any]], bool]) -> Run | None:
+    here = run.path.resolve().parent
+    found = [
+        other for other in _runs(here, lambda about: fits(run.manifest, about)) if other.path.name != run.path.name
+    ]
+    return min(found, key=lambda other: _apart(run, other)) if found else None
+
+
+def _runs(folder: Path, fits: Callable[[Mapping[str, Any]], bool]) -> Iterator[Run]:
+    """Those directly in `folder` whose manifest `fits`, as they are named."""
     from rig.runfile import manifest
     from rig.runfile.run import Run
 
-    found: list[Run] = []
-    for path in sorted(run.path.resolve().parent.glob(f"*/{manifest.NAME}")):
+    for path in sorted(folder.glob(f"*/{manifest.NAME}")):
         try:
-            if path.parent.name != run.path.name and fits(run.manifest, manifest.read(path.parent)):
-                found.append(Run.open(path.parent))
+            if fits(manifest.read(path.parent)):
+                yield Run.open(path.parent)
         except HdrigError:  # somebody else's folder, or a damaged one: not the one to compare with
             continue
-    return min(found, key=lambda other: _apart(run, other)) if found else None
 
 
 def _apart(run: Run, other: Run) -> float:
@@ -62,10 +91,22 @@ def _apart(run: Run, other: Run) -> float:
     return abs((run.started - other.started).total_seconds())
 
 
-def _one_zero(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+def _one_session(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return _same_session(run, other) and _alike(run, other)
+
+
+def _one_campaign(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return _shared(run, other, "uid") and _alike(run, other)
+
+
+def _same_session(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return _shared(run, other, "uid") and _shared(run, other, "session")
+
+
+def _shared(run: Mapping[str, Any], other: Mapping[str, Any], key: str) -> bool:
+    """Whether both are said to be of one campaign, or of one session of it."""
     mine, theirs = run.get("campaign") or {}, other.get("campaign") or {}
-    one = all(mine.get(key) == theirs.get(key) for key in ("uid", "session"))
-    return bool(mine.get("uid")) and one and _alike(run, other)
+    return bool(mine.get(key)) and mine.get(key) == theirs.get(key)
 
 
 def _alike(run: Mapping[str, Any], other: Mapping[str, Any]) -> bool:

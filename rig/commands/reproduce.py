@@ -14,6 +14,7 @@ from rig.bench import read as read_bench
 from rig.campaign import summary
 from rig.campaign.journal import NAME as JOURNAL
 from rig.campaign.journal import new_journal
+from rig.campaign.leaving import swept
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import planned
 from rig.campaign.run import conduct, open_session
@@ -68,11 +69,12 @@ def make(args: argparse.Namespace, ahead: Ahead) -> tuple[Path, Exit]:
     desk = ReadAhead if clock == "virtual" else Recording
     with showing(json=False) as show:
         show.bench(bench, clock)
-        show.say(f"campaign folder {journal.folder}")
         with (
+            swept(journal),
             at_the_rig(show) as (interrupts, person),
             open_session(campaign, journal, clock, interrupts, args.note, person, show) as session,
         ):
+            show.say(f"campaign folder {journal.folder}")
             exit = conduct(session, campaign, journal, desk(bench, person, show, ahead))
         show.leave(exit)
     text = "\n".join(summary.lines(journal)) + "\n"

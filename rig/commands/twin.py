@@ -8,6 +8,7 @@ import signal
 from pathlib import Path
 
 from rig.bench import read, twin_parameters
+from rig.commands.ask_twin import HELP, ask
 from rig.core.errors import Exit, UsageError
 from rig.realtime import RealTime
 
@@ -18,6 +19,9 @@ MOTOR_CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig twin`."""
+    parser.add_argument(
+        "ask", nargs="*", metavar="ASK", help="of one that runs already: free, lock, hang 3, status … (see below)"
+    )
     parser.add_argument("--bench", default="twin", metavar="FILE", help="bench file with a [twin] section")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
     parser.add_argument("--bus", type=Path, default=FOLDER / "can", metavar="PATH", help="socket of the CAN bus")
@@ -31,10 +35,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--control", type=Path, default=FOLDER / "control", metavar="PATH", help="command channel")
     parser.add_argument("--bitrate", type=float, default=1e6, metavar="BIT/S", help="of the bus; inf: takes no time")
     parser.add_argument("--for", type=float, default=math.inf, dest="seconds", metavar="SECONDS", help="then stop")
+    parser.epilog = HELP
 
 
 def run(args: argparse.Namespace) -> int:
-    """Serve until SIGTERM, SIGINT, `stop` on the command channel or the time is up."""
+    """Serve until SIGTERM, SIGINT, `stop` on the command channel or the time is up; or ask one that does."""
+    if args.ask:
+        print("\n".join(ask(args.control, args.ask)))
+        return Exit.PASS
     if not args.bitrate > 0.0:
         raise UsageError(f"--bitrate {args.bitrate:g}: expected more than 0 bit/s, for example 1e6")
     if not 0.0 <= args.rate <= MOST_LINES:

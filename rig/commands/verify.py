@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rig.commands.folders import expand, for_each
 from rig.commands.folders import runs_argument as arguments
+from rig.commands.list_ import say
 from rig.core.errors import Exit
 
 __all__ = ["arguments", "run"]
@@ -23,7 +24,7 @@ def verify_one(folder: Path) -> Exit:
 
     findings = verify(folder)
     broken = any(finding.level == "error" for finding in findings)
-    print(f"{folder.name}: {'BROKEN' if broken else 'sound'}")
+    say(f"{folder.name}: {'BROKEN' if broken else 'sound'}")
     for finding in findings:
-        print(f"  {finding.level:7s} {finding.sentence}")
+        say(f"  {finding.level:7s} {finding.sentence}")
     return Exit.INCOMPLETE if broken else Exit.PASS

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 
 @dataclass(frozen=True)
@@ -14,12 +15,12 @@ class Triangle:
     frequency: float  # Hz
     cycles: float
 
-    @property
+    @cached_property  # asked for every tick
     def duration(self) -> float:
         """s"""
         return self.cycles / self.frequency
 
-    @property
+    @cached_property
     def speed(self) -> float:
         """Slope 4·A·f, rad/s."""
         return 4.0 * self.amplitude * self.frequency

@@ -21,6 +21,7 @@ import numpy as np
 
 from rig.core.channels import CHANNELS
 from rig.core.errors import RecorderError
+from rig.core.regular import regular
 from rig.core.sample import Sample
 
 NO_COUNTS = -(2**63)  # a raw count that was not measured; null in the files. A count whose angle is NaN is null too
@@ -77,6 +78,7 @@ class Ring:
         """An existing ring. Only the recorder asks for `writable`. Raises RecorderError when it is not a ring."""
         access = mmap.ACCESS_WRITE if writable else mmap.ACCESS_READ
         try:
+            regular(path)
             with open(path, "r+b" if writable else "rb") as file:
                 mapped = mmap.mmap(file.fileno(), 0, access=access)
         except (OSError, ValueError) as error:  # ValueError: an empty file

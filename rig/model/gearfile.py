@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import DataError, UsageError
+from rig.core.regular import regular
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 
@@ -169,6 +170,7 @@ def _parameter(p: Parameter, unit: str) -> dict[str, Any]:
 def read(path: Path) -> GearFile:
     """The gear file at `path`. Raises UsageError: no such file, no TOML, a key or value that is wrong."""
     try:
+        regular(path)
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise UsageError(f"{path} is not UTF-8 text; expected a gear file in TOML") from None

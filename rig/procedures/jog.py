@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
@@ -12,12 +12,20 @@ from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 
+DEG = math.pi / 180
 RPM = math.pi / 30
 TURN = 2.0 * math.pi
 MOST_TURNS = 10.0  # of the motor: a fifth of a turn of the output at 1:50, in sight of whoever jogs
 MOST_RPM = 60.0  # of the motor: a turn a second can be followed by eye
 ACCELERATION = 10.0  # rad/s²: 60 rpm in 0.6 s
 SETTLE = 0.3  # s held before its torque goes off
+
+
+class Jogged(NamedTuple):
+    """How far it came."""
+
+    turned: float  # rad, of the motor
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -56,7 +64,7 @@ class Jog(Procedure):
         return {"output_locked": False, "speed_rpm": math.copysign(self.speed_rpm, self.turns), "note": "jog"}
 
     def steps(self, setting: Setting) -> Steps:
-        """Turn, hold for a moment."""
+        """Turn, hold for a moment. Returns a Jogged."""
         pid, way = Pid(setting.control, setting.period), self.reference
         sample = yield Torque(0.0)
         home = sample.theta_m
@@ -64,3 +72,5 @@ class Jog(Procedure):
             offset, omega_ref = way.at(sample.t)
             tau = pid.step(home + offset, omega_ref, sample.theta_m, sample.omega_m)
             sample = yield Torque(tau, home + offset, omega_ref)
+        turned = sample.theta_m - home
+        return Jogged(turned, f"the motor turned {turned / DEG:+.2f}°, {way.distance / DEG:+.2f}° were asked for")

@@ -31,6 +31,14 @@ class WoundUp(NamedTuple):
     sentence: str
 
 
+class Unwound(NamedTuple):
+    """A gear let out."""
+
+    before: float  # N·m at the shaft
+    after: float
+    sentence: str
+
+
 @dataclass(frozen=True)
 class StiffnessLock(Procedure):
     """Wind the locked gear up and down: 0 → +tau_max → −tau_max → 0, held at both ends      [ghorbel2001, App. B]
@@ -120,12 +128,14 @@ class StiffnessLock(Procedure):
         return WoundUp(stiffness, left, told)
 
     def to_rest(self, setting: Setting) -> Steps:
-        """Unwind along a ramp until the shaft shows no torque: neither held nor let go."""
+        """Unwind along a ramp until the shaft shows no torque: neither held nor let go. Returns an Unwound."""
         sample = yield Torque(0.0)
         winding = Winding(setting, self.gain, sample)
         wound = winding.torque
         yield from self._unwind(setting, winding, sample)
-        setting.note(f"unwound from {wound:+.2f} to {winding.torque:+.2f} N·m")
+        told = f"unwound from {wound:+.2f} to {winding.torque:+.2f} N·m"
+        setting.note(told)
+        return Unwound(wound, winding.torque, told)
 
     def _unwind(self, setting: Setting, winding: Winding, sample: Sample) -> Part:
         direction, begin = -math.copysign(1.0, winding.torque), sample.t

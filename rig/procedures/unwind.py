@@ -33,5 +33,5 @@ class Unwind(Procedure):
         return {"output_locked": True, "note": "unwinding before the lock pin is pulled"}
 
     def steps(self, setting: Setting) -> Steps:
-        """As the lock test does when it is stopped."""
+        """As the lock test does when it is stopped. Returns an Unwound."""
         return StiffnessLock(unwind_rate=self.rate).to_rest(setting)

@@ -8,10 +8,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from rig.core.errors import RecorderError
+from rig.core.errors import DataError, RecorderError
+from rig.core.regular import regular
 from rig.runfile.manifest import parse, told, utc_now
 
 NAME = "events.jsonl"
+LONGEST_LINE = 2**20  # bytes; an event of ours is a sentence, and a line of 200 MB takes minutes to parse
 
 
 class EventLog:
@@ -42,13 +44,20 @@ class EventLog:
 
 
 def read_events(folder: Path) -> list[dict[str, Any]]:
-    """The events of a run in order; none where there is no file. A line torn by a kill, or no object, is left out."""
+    """The events of a run in order; none where there is no file. A line torn by a kill is left out, as is what is none.
+
+    Raises DataError when it is no file, or cannot be read.
+    """
+    path = folder / NAME
     try:
-        lines = (folder / NAME).read_bytes().split(b"\n")
+        regular(path)
+        lines = path.read_bytes().split(b"\n")
     except FileNotFoundError:
         return []
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror}") from error
     found = []
-    for line in lines:
+    for line in (line for line in lines if len(line) <= LONGEST_LINE):
         try:
             event = parse(line)
         except ValueError:

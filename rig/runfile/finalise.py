@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rig.core.errors import DataError, UsageError
+from rig.core.regular import regular
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.columns import batch_of_rows, schema_of
@@ -129,6 +130,7 @@ def _refuse_fewer_rows(folder: Path) -> None:
     if not path.exists():
         return
     try:
+        regular(path)
         held = pq.read_metadata(path).num_rows
     except (OSError, pa.ArrowException) as error:
         raise DataError(f"{path} cannot be read, and is not overwritten; move it away and try again") from error
@@ -178,9 +180,10 @@ def raw_files(folder: Path) -> list[Path]:
 
 def describe(path: Path) -> dict[str, Any]:
     """An entry of the manifest's `files`: SHA-256 and size [bytes]. Raises OSError."""
+    size = regular(path).st_size
     with open(path, "rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
-    return {"sha256": digest, "bytes": path.stat().st_size}
+    return {"sha256": digest, "bytes": size}
 
 
 def add_derived(folder: Path, *names: str, **facts: Any) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from rig.core.regular import regular
 from rig.runfile.columns import checksum
 from rig.runfile.manifest import sync_folder
 
@@ -114,6 +115,7 @@ class JournalReader:
     def _whole(self, path: Path) -> Iterator[pa.RecordBatch]:
         """Batches of one file until it ends or is torn. Rows an earlier file already gave are left out."""
         good = 0  # bytes that are whole
+        regular(path)
         with pa.OSFile(str(path)) as source:
             for batch, first in _batches(source):
                 good = source.tell()

@@ -7,12 +7,11 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
-from errno import EISDIR
 from pathlib import Path
-from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from rig.core.errors import HdrigError, UsageError
+from rig.core.regular import regular
 
 SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
@@ -51,14 +50,10 @@ def read(folder: Path) -> Manifest:
 
 
 def contents(path: Path) -> bytes:
-    """What a small regular file holds. Raises OSError, and ValueError for what a listing must not wait for or hold."""
-    found = path.stat()
-    if S_ISDIR(found.st_mode):
-        raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(path))
-    if not S_ISREG(found.st_mode):
-        raise ValueError("it is a device or a pipe")
-    if found.st_size > LONGEST:
-        raise ValueError(f"{found.st_size} bytes long, expected at most {LONGEST}")
+    """What a small regular file holds. Raises OSError, and ValueError for what is too long to hold."""
+    size = regular(path).st_size
+    if size > LONGEST:
+        raise ValueError(f"{size} bytes long, expected at most {LONGEST}")
     return path.read_bytes()
 
 

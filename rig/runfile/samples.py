@@ -13,6 +13,7 @@ import pyarrow.parquet as pq
 
 from rig.core.channels import CHANNEL
 from rig.core.errors import DataError, UsageError
+from rig.core.regular import regular
 from rig.runfile.archive import NAME
 from rig.runfile.columns import Array, as_float
 from rig.runfile.importing.units import known
@@ -47,6 +48,7 @@ class Archive(Samples):
     def __init__(self, path: Path) -> None:
         self.path = path
         with _read(path):
+            regular(path)
             file = pq.ParquetFile(path)
             self.layout = file.schema_arrow
         self._about = file.metadata
@@ -84,7 +86,8 @@ class Journal(Samples):
     def __init__(self, folder: Path) -> None:
         self.path = journal_files(folder)[0]
         reader = JournalReader(folder)
-        batches = list(reader)
+        with _read(self.path):
+            batches = list(reader)
         if reader.layout is None:
             raise DataError(f"{self.path} holds no whole batch of samples")
         self._table = pa.Table.from_batches(batches, reader.layout)
@@ -136,4 +139,5 @@ def _read(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, pa.ArrowException) as error:
-        raise DataError(f"{path} cannot be read: {(str(error) or type(error).__name__).splitlines()[0]}") from error
+        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        raise DataError(f"{path} cannot be read: {said.splitlines()[0]}") from error

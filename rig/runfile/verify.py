@@ -61,13 +61,15 @@ def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
     if not files:
         yield Finding("note", "hashes", "the manifest holds no hashes: whether a file was changed cannot be told")
     for name, said in files.items():
-        path = folder / name
-        if not path.exists():
+        try:
+            same = describe(folder / name)["sha256"] == said.get("sha256")
+        except FileNotFoundError:
             yield Finding("error", "hashes", f"{name} is in the manifest and not in the folder")
-        elif not path.is_file():
-            yield Finding("error", "hashes", f"{name} is no file")
-        elif describe(path)["sha256"] != said.get("sha256"):
-            yield Finding("error", "hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's")
+        except OSError as error:
+            yield Finding("error", "hashes", f"{name} cannot be read: {error.strerror}")
+        else:
+            if not same:
+                yield Finding("error", "hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's")
 
 
 def _read_only(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, final
 
 from rig.campaign import summary
 from rig.campaign.journal import Journal, new_journal, read_journal, record_of, refuse_other_campaign
+from rig.campaign.leaving import swept
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -38,7 +39,8 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
     desk = PageDesk(station, campaign, journal)
     session.root, session.create, session.checks = journal.folder, create_in, "checks"
     try:
-        conduct(session, campaign, journal, desk)
+        with swept(journal):
+            conduct(session, campaign, journal, desk)
     finally:
         session.root, session.create, session.checks = station.root, create, ""
         session.facts = {}

@@ -14,7 +14,7 @@ from sim.wire.objects import I16, I32, REAL32, U8, U16, U32, Abort, AbortCode, E
 from sim.wire.pdo import PdoDefault
 from sim.world import World
 
-NEWTON_METRES = 0x00560000  # 6131: no prefix, newton metre      [cia303]; code 56h from memory, no copy was at hand
+NEWTON_METRES = 0x00560000  # 6131: no prefix, newton metre      [cia303, 4.4 as others transcribed it]
 DIGITS = 3  # 6132: integers in 10⁻³ of the unit
 TARE, ZERO = 0x61726174, 0x6F72657A  # "tara", "zero" as U32
 NOT_VALID, POSITIVE, NEGATIVE = 1 << 0, 1 << 1, 1 << 2  # 6150: invalid, overload

@@ -48,6 +48,7 @@ def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
             "stations": [port.name for port in bus.ports],
             "drive": assembly.drive.drive_state.name,
             "error_code": assembly.drive.error_code.number,
+            "output": "locked" if world.plant.locked else "free",
             "nmt": {node.id: node.state.name for node in assembly.nodes},
             "late": late,
         }

@@ -27,3 +27,15 @@ def test_the_overview_of_verbs_loads_nothing_heavier_than_argparse() -> None:
     heavy = {"numpy", "pyarrow", "scipy", "numba", "matplotlib", "pydantic", "can", "rich"}
     statement = "import contextlib\nfrom rig.cli import main\nwith contextlib.suppress(SystemExit): main(['--help'])"
     assert not loaded(statement) & heavy
+
+
+@pytest.mark.slow
+def test_the_recorder_never_looks_for_pandas() -> None:
+    statement = (
+        "import numpy as np, rig.recorder.__main__\n"
+        "from rig.core.channels import CHANNELS\n"
+        "from rig.runfile.columns import batch_of_rows, schema\n"
+        "kinds = {'float64': 'f8', 'int64': 'i8', 'uint32': 'i8'}\n"
+        "batch_of_rows(np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS]), schema('sim'))"
+    )
+    assert "pandas" not in loaded(statement)

@@ -79,7 +79,8 @@ def test_a_manifest_that_never_ends_keeps_no_listing_waiting(tmp_path: Path) -> 
     with open(tmp_path / "huge/manifest.json", "wb") as sparse:
         sparse.truncate(2**30)
     rows = {row.path.name: row.problem for row in runs(tmp_path)}
-    assert all("is a device or a pipe" in rows[name] for name in ("pipe", "device"))
+    assert "it is a named pipe, expected a regular file" in rows["pipe"]
+    assert "it is a device, expected a regular file" in rows["device"]
     assert "1073741824 bytes long" in rows["huge"]
 
 
@@ -155,3 +156,9 @@ def test_five_thousand_manifests_are_opened_once_each(tmp_path: Path, monkeypatc
     read = manifest.read
     monkeypatch.setattr(manifest, "read", lambda path: opened.append(path) or read(path))
     assert len(runs(tmp_path)) == len(opened) == 50
+
+
+def test_no_word_of_a_manifest_steers_a_terminal_or_a_figure(tmp_path: Path) -> None:
+    run(tmp_path, "2026-11-20", status="\x1b[31mred\u202e", operator="\x00")
+    found = runs(tmp_path)[0]
+    assert (found.status, found.operator) == ("\ufffd[31mred\ufffd", "\ufffd")

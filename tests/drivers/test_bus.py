@@ -9,6 +9,7 @@ import can
 import pytest
 
 from drivers.bus import Bus
+from drivers.wiring import Place, Wiring
 from tests.fakes import FakeClock
 
 EPOCH = 1.7e9  # s, what the adapter's time stamps begin at
@@ -74,3 +75,18 @@ def test_time_stamps_of_another_clock_are_not_looked_at(made, stamp: float):
     bus.drain()
     assert bus.frames[0x181].latched == 1.0
     assert bus.frames[0x181].arrived == 1.0006
+
+
+@pytest.mark.parametrize(
+    ("interface", "given", "passed"),
+    [("slcan", {}, {"timeout": 0.0}), ("slcan", {"timeout": 0.002}, {"timeout": 0.002}), ("socketcan", {}, {})],
+)
+def test_a_serial_adapter_is_never_waited_for_unless_the_bench_says_so(
+    interface: str, given: dict[str, float], passed: dict[str, float]
+):
+    """python-can's slcan waits 1 ms at every look at an empty line unless told otherwise: four times a tick."""
+    asked: dict[str, Any] = {}
+    sections = {"rig": {"interface": interface, "channel": "x", "options": given}}
+    wiring = Wiring(FakeClock(), sections, lambda **options: asked.update(options))
+    wiring.bus(Place("drive", {"bus": "rig"})).open()
+    assert {key: value for key, value in asked.items() if key not in ("interface", "channel")} == passed

@@ -155,11 +155,22 @@ def test_a_bare_drive_with_fixed_pdos_is_walked_and_commanded_and_nothing_guards
 
 def test_a_drive_that_takes_no_positions_in_its_fixed_pdos_is_refused_for_that_mode(wire: VirtualWire):
     writable = {(0x6040, 0), (0x6060, 0), (0x6071, 0)}
-    peer(wire, {**DRIVE, **OTHER}, tpdos=[STATUS, EFFORT], rpdos=[COMMANDS], writable=writable)
+    peer(wire, {**DRIVE, **OTHER, (0x607A, 0): bytes(4)}, tpdos=[STATUS, EFFORT], rpdos=[COMMANDS], writable=writable)
     drive = Cia402(wiring(wire), place("drive"))
     drive.connect()
     with pytest.raises(NotReady, match=r"in the PDOs it takes of its own there is no 607Ah"):
         drive.enable(Mode.POSITION)
+
+
+@pytest.mark.parametrize(
+    ("lacking", "told"),
+    [(0x6077, r"tell its torque \(6077h\)"), (0x6071, r"target torque \(6071h\)"), (0x6064, r"its position \(6064h\)")],
+)
+def test_a_drive_that_would_map_an_object_it_has_not_is_refused_by_name(wire: VirtualWire, lacking: int, told: str):
+    has = {where: value for where, value in {**DRIVE, **OTHER}.items() if where[0] != lacking}
+    peer(wire, has, tpdos=[STATUS, EFFORT], rpdos=[COMMANDS], writable={(0x6040, 0), (0x6060, 0), (0x6071, 0)})
+    with pytest.raises(NotReady, match=told):
+        Cia402(wiring(wire), place("drive")).connect()
 
 
 def test_a_fixed_rpdo_with_an_object_nobody_knows_is_not_guessed_at(wire: VirtualWire):

@@ -11,6 +11,7 @@ from drivers.profile402 import counts_position, signed32, speed_unit
 from drivers.targets402 import Scale
 from drivers.wiring import Place
 from rig.bench import read
+from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Mode, Position, Torque, Velocity
 from rig.interrupts import Interrupts
@@ -98,9 +99,29 @@ def test_a_setpoint_of_another_kind_than_enabled_for_is_not_sent():
 def test_a_mode_the_drive_does_not_offer_is_refused_with_its_word():
     w = connected()
     w.twin.drive.objects.find(0x6502, 0).value = 1 << 9
+    w.twin.drive.mode_stuck = True
     with pytest.raises(NotReady, match=r"does not offer cyclic velocity mode \(6502h = 0x200, bit 8 is 0\)"):
         w.instruments.drive.enable(Mode.VELOCITY)
     assert w.twin.drive.drive_state is not DriveState.OPERATION_ENABLED
+
+
+def test_a_mode_that_is_not_listed_and_taken_all_the_same_is_used_and_remarked_on():
+    w = wired()
+    w.twin.drive.objects.find(0x6502, 0).value = 0x24
+    w.instruments.connect()
+    assert any("bit 9 is 0); it took it all the same" in remark for remark in w.instruments.drive.remarks)
+    w.instruments.drive.enable(Mode.TORQUE)
+    assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
+
+
+def test_a_mode_that_was_refused_leaves_the_drive_fit_for_the_other():
+    w = connected()
+    w.twin.drive.objects.find(0x60A9, 0).value = 0
+    with pytest.raises(NotReady, match="60A9h"):
+        w.instruments.drive.enable(Mode.VELOCITY)
+    w.instruments.drive.enable(Mode.TORQUE)
+    assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
+    assert int(w.twin.drive.mode) == 10
 
 
 def test_a_unit_of_speed_nobody_knows_is_refused():
@@ -158,6 +179,33 @@ def test_what_is_no_number_asks_for_nothing(value: float):
     assert Scale(PLACE).within(Mode.POSITION, value, 0.001) == (0, 0.0)
 
 
+def test_the_drive_is_told_how_far_it_may_lag_and_for_how_long():
+    w = connected()
+    objects, limits = w.twin.drive.objects, w.bench.limits
+    widest = limits.following + limits.following_time * limits.speed  # rad, of the guard
+    assert objects.find(0x6065, 0).number == math.ceil(widest / TURN * 10_000)
+    assert objects.find(0x6066, 0).number == 50  # ms
+
+
+def test_a_motor_that_cannot_follow_in_position_mode_is_stopped_by_the_drive_itself():
+    w = connected()
+    drive = w.instruments.drive
+    w.twin.world.lock_output()
+    w.twin.drive.objects.find(0x6072, 0).value = 10  # per mille of the rated torque: too weak to wind the gear up
+    drive.enable(Mode.POSITION)
+    w.instruments.start()
+    lagging = 0
+    for tick in range(400):  # no guard here, and a reference that runs away at 60 rad/s
+        w.instruments.latch()
+        sample = w.instruments.read(w.wire.wait_until(w.wire.now() + 0.001))
+        lagging += bool(sample.flags & Flag.SATURATED_DRIVE)
+        w.instruments.write(Position(0.06 * tick))
+    assert lagging >= 50  # as long as the drive puts up with it
+    assert "emergency 8611h, following error" in drive.trouble
+    assert w.twin.drive.drive_state is DriveState.FAULT
+    assert w.twin.world.truth().tau_m == pytest.approx(0.0, abs=1e-6)
+
+
 def test_a_procedure_without_a_reference_is_refused_in_words():
     bench = read("twin-canopen", ['control.mode="position"'])
     refuse_mode(bench, KinematicError())
@@ -176,3 +224,18 @@ def test_frames_on_the_wire_are_those_of_the_standard():
     w.instruments.write(Position(-TURN / 100))
     w.wire.wait_until(w.wire.now() + 0.001)
     assert seen == [struct.pack("<Hi", 0x0F, -100)]
+
+
+def test_a_drive_that_does_nothing_when_its_host_falls_silent_is_told_to_fault_or_counts_as_unguarded():
+    w = wired()
+    silent = w.twin.drive.objects.find(0x6007, 0)
+    silent.value = 0
+    w.instruments.connect()
+    assert silent.number == 1
+    assert w.instruments.drive.guarded.startswith("heartbeat consumer")
+    w = wired()
+    silent = w.twin.drive.objects.find(0x6007, 0)
+    silent.value, silent.writable = 0, False
+    w.instruments.connect()
+    assert w.instruments.drive.guarded == ""
+    assert any("when this program falls silent" in remark for remark in w.instruments.drive.remarks)

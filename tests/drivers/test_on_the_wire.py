@@ -10,6 +10,7 @@ import pytest
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Torque
+from sim.wire.frame import Frame
 from sim.wire.states402 import DriveState
 from tests.drivers.running import run
 from tests.drivers.virtual import Wired, wired
@@ -141,3 +142,22 @@ def test_when_the_host_falls_silent_the_drive_stops_by_itself():
     w.wire.wait_until(w.wire.now() + 0.3)
     assert w.twin.drive.drive_state is DriveState.FAULT
     assert w.instruments.drive.guarded == "heartbeat consumer of the drive, 150 ms, set and read back"
+
+
+@pytest.mark.parametrize("command", ["80 01", "02 01"])
+def test_a_drive_that_somebody_else_has_stopped_is_disabled_by_sdo_and_reset_by_an_act(command: str):
+    w = connected()
+    drive, twin = w.instruments.drive, w.twin.drive
+    twin.abort_option.value = 0  # a lost connection is nothing to this one: it stays enabled, and takes no PDOs
+    drive.enable()
+    stranger = w.twin.bus.attach("stranger", lambda frame, t: None)
+    stranger.send(Frame(0x000, bytes.fromhex(command)))
+    w.wire.wait_until(w.wire.now() + 0.1)  # its next heartbeat has told
+    w.instruments.latch()
+    assert drive.read().fault  # its emergency, or that it is stopped, where it may send none
+    assert twin.drive_state is DriveState.OPERATION_ENABLED
+    assert drive.halt()
+    assert twin.drive_state is DriveState.SWITCH_ON_DISABLED
+    drive.reset_fault()
+    drive.enable()
+    assert twin.drive_state is DriveState.OPERATION_ENABLED

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from rig.cli import main
 from rig.core.errors import UsageError
 from rig.procedures.jog import Jog
 from tests.analysis.recorded import Rig
@@ -33,3 +36,8 @@ def test_it_is_no_faster_than_asked() -> None:
 def test_what_is_no_jog_is_refused_with_the_bound(turns: float, speed_rpm: float) -> None:
     with pytest.raises(UsageError, match=r"expected up to (10 turns|60 rpm)"):
         Jog(turns=turns, speed_rpm=speed_rpm)
+
+
+def test_by_name_it_says_how_far_the_motor_turned(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "jog", "--out", str(tmp_path), "--with", "turns=-0.5"]) == 0
+    assert re.search(r"the motor turned -1(79|80)\.\d\d°, -180\.00° were asked for", capsys.readouterr().out)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from rig.bench import read
+from rig.cli import main
 from rig.control.winding import stiffer
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.core.operator import LockOutput
@@ -142,3 +145,8 @@ def test_a_stiffer_loop_keeps_its_damping() -> None:
     four = stiffer(GAINS, 4.0)
     assert (four.Kp, four.Ki) == (4 * GAINS.Kp, 4 * GAINS.Ki)
     assert four.Kd**2 / four.Kp == pytest.approx(GAINS.Kd**2 / GAINS.Kp)
+
+
+def test_unwinding_by_name_says_what_was_let_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "unwind", "--out", str(tmp_path)]) == 0
+    assert re.search(r"^unwound from [+-]\d\.\d\d to [+-]\d\.\d\d N·m$", capsys.readouterr().out, re.MULTILINE)

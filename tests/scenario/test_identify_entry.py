@@ -88,6 +88,27 @@ def test_the_lock_test_of_a_campaign_names_the_slow_run_it_was_freed_by(folder: 
     assert wide[1] - wide[0] > 4 * (high - low)
 
 
+@pytest.mark.slow
+def test_a_lock_test_of_a_campaign_taken_up_again_is_freed_where_a_proof_shows_one_zero(
+    folder: Path, tmp_path: Path
+) -> None:
+    runs = {json.loads(p.read_text())["procedure"]: p.parent for p in folder.glob("*/manifest.json")}
+    proof = next((folder / "checks").glob("*sign-and-scale*"))
+    again = {runs["stiffness_lock"]: tmp_path / "lock", proof: tmp_path / "checks" / "proof"}
+    for source, target in again.items():
+        target.mkdir(parents=True)
+        manifest = json.loads((source / "manifest.json").read_text())
+        assert manifest["campaign"]["session"] == 1
+        manifest["campaign"]["session"] = 2
+        (target / "manifest.json").write_text(json.dumps(manifest))
+        for name in ("samples.parquet", "timing.json", "events.jsonl"):
+            (target / name).symlink_to(source / name)
+    (tmp_path / runs["kinematic_error"].name).symlink_to(runs["kinematic_error"])
+    assert main(["analyse", str(tmp_path / "lock")]) == 0
+    said = json.loads((tmp_path / "lock" / "result.json").read_text())["sentence"]
+    assert f"less the kinematic error of {runs['kinematic_error'].name}" in said
+
+
 def test_every_procedure_that_is_split_finds_its_slow_run_by_itself() -> None:
     from rig.analysis.analyse import AT_SPEED
 

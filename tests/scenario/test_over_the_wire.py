@@ -65,7 +65,7 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Twin]:
     doors.mkdir()
     options = ["--bus", "can", "--control", "control", "--serial", "serial", "--slcan", "slcan", "--odrive", "odrive"]
     process = subprocess.Popen(
-        [*HDRIG, "twin", *options, "--socketcand", "0", "--for", "600"], cwd=doors, stdout=subprocess.PIPE, text=True
+        [*HDRIG, "twin", *options, "--socketcand", "0", "--for", "3600"], cwd=doors, stdout=subprocess.PIPE, text=True
     )
     assert process.stdout is not None
     lines = []
@@ -158,6 +158,33 @@ def test_latch_skew_over_a_bus_and_a_serial_line_is_told_with_its_interval(twin:
     assert half < 60.0
     assert -12_000.0 < torque < -500.0  # lines come a hundred times a second, and are held until the next
     assert "[load_encoder]" in done.stdout
+
+
+def test_two_programs_at_one_bench_are_refused_by_name_and_the_first_runs_on(twin: Twin, tmp_path: Path) -> None:
+    bench = str(twin.bench("twin-can"))
+    patient = ["--set", "limits.stale_s=0.6", "--set", "devices.drive.watchdog=0.7"]
+    command = [*HDRIG, "run", "kinematic-error", "--bench", bench, "--out", str(tmp_path), *SHORT, *patient]
+    command += ["--with", "cycles=1.5"]  # 38 s: the others take a while to start
+    first = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 60
+    while not list(tmp_path.glob("*/*kinematic-error*/journal*")) and time.monotonic() < until:
+        time.sleep(0.1)
+    at_it = ["--bench", bench]
+    verbs = (
+        ["run", "standstill", "--out", str(tmp_path), *at_it],
+        ["reset", *at_it],
+        ["devices", "--interface", "hdrig-unix", "--channel", str(twin.doors / "can")],
+    )
+    others = [
+        subprocess.Popen([*HDRIG, *verb], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for verb in verbs
+    ]
+    for other in others:
+        _, told = other.communicate(timeout=60)
+        assert other.returncode == 3, told
+        assert "could not be opened: " in told
+        assert "is in use by process " in told
+    _, errors = first.communicate(timeout=240)
+    assert "completed" in errors, errors
 
 
 def test_a_program_that_is_killed_leaves_a_drive_without_torque_and_a_run_to_recover(

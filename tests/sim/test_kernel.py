@@ -145,3 +145,11 @@ def test_a_gear_that_cannot_be_is_refused_by_name(twin: TwinParameters) -> None:
         with_gear(twin, J_l=0.0)
     with pytest.raises(UsageError, match=r"breakaway torque tau_s is 0\.1 N·m"):
         with_gear(twin, tau_s=0.1)
+
+
+@pytest.mark.parametrize("number", [{"K": 1e300}, {"K": 1e16}, {"J_m": 1e-300}, {"J_l": 1e-300}, {"B_sp": 1e300}])
+def test_a_gear_too_stiff_to_be_followed_is_refused_by_its_numbers(
+    calm: TwinParameters, number: dict[str, float]
+) -> None:
+    with pytest.raises(UsageError, match=r"cannot follow a gear of K = .* N·m/rad.*expected at most .* 1/s"):
+        Plant(with_gear(calm, **number))

@@ -38,6 +38,8 @@ class Ways:
     mute: bool = False  # no SDO answers at all
     short_answers: bool = False  # SDO answers of 4 bytes
     write_only: frozenset[Address] = frozenset()
+    mode_when_enabled: bool = False  # 6061h follows 6060h in OPERATION ENABLED only, 0 until then
+    other_mode: int = 0  # 6061h shows this one, whatever 6060h holds
     aborts: int = ABSENT  # for what it has not
 
 
@@ -218,8 +220,8 @@ class ForeignNode:
         if address[0] & 0xFF00 in (0x1400, 0x1800) and address[1] == 1 and self.ways.shows_no_rtr:
             value = struct.pack("<I", int.from_bytes(value, "little") | NO_RTR)
         self.objects[address] = value
-        if address == (0x6060, 0):
-            self.objects[0x6061, 0] = value
+        if address == (0x6060, 0) and not self.ways.mode_when_enabled:
+            self.objects[0x6061, 0] = bytes((self.ways.other_mode,)) if self.ways.other_mode else value
         if address == (0x6040, 0):
             self._walk(int.from_bytes(value, "little"))
 
@@ -227,3 +229,5 @@ class ForeignNode:
         now = self.number(0x6041) & 0x6F
         follows = {(0x40, 0x06): 0x21, (0x21, 0x07): 0x23, (0x23, 0x0F): 0x27}
         self.objects[0x6041, 0] = struct.pack("<H", follows.get((now, word), now) if word & 0x02 else 0x40)
+        if self.ways.mode_when_enabled:
+            self.objects[0x6061, 0] = self.objects[0x6060, 0] if self.number(0x6041) == 0x27 else b"\0"

@@ -66,6 +66,7 @@ def meet(
     node = ForeignNode(channel, NODE, dict(objects), **more)
     role = {Cia402: "drive", Cia404: "torque_sensor", Cia406: "load_encoder"}[kind]  # type: ignore[index]
     numbers = {"counts_per_turn": 4096, "torque_rated": 3.0, "torque_limit": 5.0, "speed_limit": 62.8, "range": 50.0}
+    numbers["following"] = 6.5
     driver = kind(wiring, Place(role, {"bus": "rig", "node": NODE}, period=0.001, **numbers))
     OPEN.extend((node, driver))
     return driver, node
@@ -221,6 +222,16 @@ def test_a_bare_drive_is_walked_and_commanded_whatever_it_says_of_what_it_lacks(
     assert node.objects[0x6041, 0] == b"\x40\0"
 
 
+def test_a_drive_that_watches_its_following_error_is_told_how_far_and_one_that_does_not_is_said_to() -> None:
+    watching = {**DRIVE, (0x6065, 0): bytes(4), (0x6066, 0): bytes(2)}
+    drive, node = meet(Cia402, watching, tpdos=STATUS, rpdos=COMMAND)
+    drive.connect()
+    assert (node.number(0x6065), node.number(0x6066)) == (4238, 50)  # 6.5 rad of 4096 counts a turn, upwards; ms
+    bare, _ = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND)
+    bare.connect()
+    assert "has no following error window (6065h): in position mode this program alone watches" in told(bare)
+
+
 def test_a_drive_without_anything_that_guards_it_says_so() -> None:
     drive, node = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND)
     del node.objects[0x1400, 5]
@@ -233,6 +244,27 @@ def test_a_mode_that_can_be_written_and_not_read_is_confirmed_by_6061h() -> None
     drive.connect()
     drive.enable()
     assert node.objects[0x6061, 0] == b"\x0a"
+
+
+def test_a_drive_that_shows_its_mode_only_when_enabled_is_enabled_with_every_target_at_rest() -> None:
+    targets = {(0x607A, 0): b"\x11\x22\0\0", (0x6064, 0): b"\x07\0\0\0", (0x60FF, 0): b"\1\0\0\0"}
+    drive, node = meet(Cia402, {**DRIVE, **targets}, tpdos=STATUS, rpdos=COMMAND, ways=Ways(mode_when_enabled=True))
+    drive.connect()
+    drive.enable()
+    assert node.objects[0x6061, 0] == b"\x0a"
+    assert node.objects[0x607A, 0] == b"\x07\0\0\0"  # where it is: had it been in position mode it would have stayed
+    assert node.objects[0x60FF, 0] == bytes(4)
+    fresh(drive)
+    assert drive.trouble == ""
+
+
+def test_a_drive_that_stays_in_another_mode_is_not_enabled() -> None:
+    drive, node = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND, ways=Ways(other_mode=8))
+    drive.connect()
+    with pytest.raises(NotReady, match="did not take torque mode: 6061h is 8, expected 10"):
+        drive.enable()
+    time.sleep(0.02)
+    assert node.objects[0x6041, 0] == b"\x40\0"
 
 
 def test_a_drive_whose_fixed_rpdo_is_off_is_not_commanded_through_it() -> None:

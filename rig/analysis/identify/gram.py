@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.identify.solve import Solved
+from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array
 
 Complex = npt.NDArray[np.complex128]
@@ -16,6 +17,7 @@ BAND = 2  # orders on either side whose noise is taken as the same: one run has 
 PASSES = 4  # solve, take the noise from what is left, solve again
 SURE = 3.0  # standard errors by which runs must disagree before intervals are widened for it
 ENOUGH = 30  # independent windows: their scatter is then good to an eighth of itself
+MANY = 1e9  # degrees of freedom: the normal law
 FLOOR = 1e-12  # of the rows' own mean square: noise is never taken as less (noiseless data)
 
 
@@ -64,7 +66,9 @@ def solve(rows: Sequence[Rows], fixed: Sequence[Known], size: int) -> Solved | N
     birge = _disagreement(parts, c, covariance)
     count = sum(2.0 * r.y.size / r.inflation for r in rows) + 30.0 * len(fixed)
     influence = {r.stretch: _influence(r, v, c, covariance) for r, v in zip(rows, noise, strict=True)}
-    scale = np.sqrt(birge * _seen(covariance, fixed, rows, influence))
+    student = _student(covariance, fixed, rows, influence)
+    scale = np.sqrt(birge * _seen(covariance, fixed, rows, influence)) * student
+    influence = {stretch: i * student for stretch, i in influence.items()}  # two fits share what is in the covariance
     widened = covariance * np.outer(scale, scale)
     return Solved(c, widened, max(count - size, 1.0), 0.0, float(np.sqrt(np.max(birge))), influence)
 
@@ -98,6 +102,19 @@ def _seen(covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influ
     scatter = sum((np.sum(i**2, axis=0) for i in influence.values()), np.zeros(own.size))
     ratio = (known + scatter) / own
     return np.asarray(ratio if windows >= ENOUGH else np.maximum(ratio, 1.0))
+
+
+def _student(covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influence: Mapping[str, Array]) -> Array:
+    """(p,) by how much Student's factor is above that of the normal law, for as few windows as speak of a coefficient.
+
+    Effective degrees of freedom of Welch and Satterthwaite over the stretches; rows already reduced have their own
+    factor in their variance      [gum, G.4]
+    """
+    each = np.array([np.sum(influence[r.stretch] ** 2, axis=0) for r in rows]).reshape(len(rows), covariance.shape[0])
+    dof = np.array([max(r.y.shape[0] / r.inflation - 1.0, 1.0) for r in rows])[:, None]
+    known = sum((np.einsum("ij,jk,ki->i", covariance, k.H, covariance) for k in fixed), np.zeros(covariance.shape[0]))
+    effective = (each.sum(axis=0) + known) ** 2 / np.maximum(np.sum(each**2 / dof, axis=0), 1e-300)
+    return np.array([t95(min(nu, MANY)) / Z95 for nu in effective])
 
 
 def _influence(rows: Rows, noise: Array, c: Array, covariance: Array) -> Array:

@@ -123,8 +123,11 @@ def gap(found: list[Width], curve: Curve) -> Value | None:
     return Value(float(up.mean() + down.mean()) / K, half / K)
 
 
-def rate_law(found: list[Width]) -> RateLaw | None:
-    """Half width against rate, both directions together; None where the rates span less than a factor of two."""
+def rate_law(found: list[Width], unsure: float = 0.0) -> RateLaw | None:
+    """Half width against rate, both directions together; None where the rates span less than a factor of two.
+
+    `unsure` N·m is half the 95 % interval of what scatters from rate to rate, not from ramp to ramp.
+    """
     rate, half = np.array([x.rate for x in found]), np.array([x.half for x in found])
     way = np.array([float(x.direction) for x in found])
     if rate.size < 4 or not np.isfinite(rate).all() or not rate.max() > SPAN * rate.min() > 0:
@@ -140,8 +143,8 @@ def rate_law(found: list[Width]) -> RateLaw | None:
     variance = float(np.sum((half - design @ found_x) ** 2)) / dof
     u = t95(dof) * np.sqrt(variance * np.diag(np.linalg.inv(design.T @ design)))
     return RateLaw(
-        Value(float(found_x[0]), float(u[0])),
-        Value(float(found_x[1] / rate.max()), float(u[1] / rate.max())),
+        Value(float(found_x[0]), float(np.hypot(u[0], unsure))),
+        Value(float(found_x[1] / rate.max()), float(np.hypot(u[1] / rate.max(), 2**0.5 * unsure / np.ptp(rate)))),
         float(rate.min()),
         float(rate.max()),
     )

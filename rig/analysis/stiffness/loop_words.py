@@ -6,6 +6,7 @@ import numpy as np
 
 from rig.analysis.angle import ARCMIN
 from rig.analysis.findings import Findings
+from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.loop import rate_law
 from rig.analysis.stiffness.measure import SENSOR_GAIN, Stiffness
 
@@ -20,7 +21,8 @@ def add_loop(found: Findings, s: Stiffness) -> str:
     n = len(s.widths)
     how = (
         f"Wind-up between falling and rising ramps at zero torque, at the first rate ({n} ramps passed there at all "
-        "rates). A zero error of the sensor shifts both alike and drops out."
+        "rates). A zero error of the sensor shifts both alike and drops out. In the interval: where within a count of "
+        f"the motor's encoder, {s.count * ARCMIN:.2g} arcmin, the motor stood on either branch."
     )
     found.figure("hysteresis_loss", "Hysteresis loss (gap at zero torque)", width, "arcmin", half, how)
     how = f"∮ τ dw over {s.loops} closed loops at the first rate." if s.loops else "∮ τ dw of the fitted loop."
@@ -34,7 +36,7 @@ def add_loop(found: Findings, s: Stiffness) -> str:
 
 
 def _add_rates(found: Findings, s: Stiffness) -> None:
-    law = rate_law(s.widths)
+    law = rate_law(s.widths, 0.5 * of_width(s.count) * s.run.scale.K)  # half a width of the loop is half of the gap
     if law is None:
         found.cannot.append(
             "Viscous and hysteretic loss: the ramps have one rate; a loop that widens with the rate is viscous, one "

@@ -11,8 +11,9 @@ from rig.analysis.intervals import t95
 from rig.analysis.result import Array
 from rig.analysis.source import Motion
 from rig.analysis.stiffness.branches import Hold, Ramp, cut
+from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.creep import Creep, creep
-from rig.analysis.stiffness.curve import scale_of
+from rig.analysis.stiffness.curve import Curve, scale_of
 from rig.analysis.stiffness.laws import Scale
 from rig.analysis.stiffness.loop import SAME, Value, Width, energy, energy_of, gap, widths
 from rig.analysis.stiffness.points import Points, points_of
@@ -61,6 +62,7 @@ class Stiffness:
     energy: Value  # J per cycle
     loops: int  # closed loops behind the energy; 0: from the fitted loop
     creep: Creep | None
+    count: float  # rad at the output, one of the motor's encoder; 0 unknown
 
 
 def windup_of(motion: Motion) -> Array:
@@ -81,9 +83,11 @@ def cut_run(motion: Motion, tau: Array, error: Array) -> Cut | None:
 
 
 def measure(
-    motion: Motion, tau: Array, reference: FourierSeries | None, knots: tuple[float, float] | None
+    motion: Motion, tau: Array, reference: FourierSeries | None, knots: tuple[float, float] | None, count: float = 0.0
 ) -> Stiffness | None:
-    """Everything a lock test says; None without a ramp long enough. `knots` T1, T2 N·m where the bench has them."""
+    """Everything a lock test says; None without a ramp long enough. `knots` T1, T2 N·m where the bench has them;
+    `count` rad at the output is one of the motor's encoder.
+    """
     run, share = _less_reference(motion, tau, reference)
     if run is None:
         return None
@@ -96,10 +100,11 @@ def measure(
         tilt = without_reference(motion.ratio, swing, "" if reference is None else UNFIT)
     found = widths(run.ramps, curve, run.windup, run.tau)
     main = [w for w in found if not abs(w.rate / found[0].rate - 1.0) > SAME]
-    joules, loops = _energy(run, spring)
+    width = _gap(main, curve, count)
+    joules, loops = _energy(run, spring, width, count)
     ends = np.abs(curve.torque(np.array([run.points.windup.min(), run.points.windup.max()])))
     held = creep(run.holds, curve, run.windup, run.tau, run.t)
-    return Stiffness(run, spring, share, tilt, SECANT * float(ends.min()), found, gap(main, curve), joules, loops, held)
+    return Stiffness(run, spring, share, tilt, SECANT * float(ends.min()), found, width, joules, loops, held, count)
 
 
 def _less_reference(motion: Motion, tau: Array, reference: FourierSeries | None) -> tuple[Cut | None, Share | None]:
@@ -114,12 +119,24 @@ def _less_reference(motion: Motion, tau: Array, reference: FourierSeries | None)
     return cut_run(motion, tau, share.value * error), share
 
 
-def _energy(run: Cut, spring: Spring) -> tuple[Value, int]:
-    """Loss per cycle at the first rate, and from how many loops; from the fitted loop when the run closes none."""
+def _gap(main: list[Width], curve: Curve, count: float) -> Value | None:
+    found = gap(main, curve)
+    return None if found is None else Value(found.value, float(np.hypot(found.half, of_width(count))))
+
+
+def _energy(run: Cut, spring: Spring, width: Value | None, count: float) -> tuple[Value, int]:
+    """Loss per cycle at the first rate, and from how many loops; from the fitted loop when the run closes none.
+
+    One loop shows no scatter of its own: what its width may be off by at zero torque then stands for it, over the
+    whole range.
+    """
     first = next((r for r in run.ramps if r.on_loop), run.ramps[0]).rate
     areas = [area for rate, area in energy(run.ramps, run.points) if not abs(rate / first - 1.0) > SAME]
-    n = len(areas)
-    if n == 0:
-        return Value(energy_of(spring.chosen.curve, 0.0 if np.isnan(first) else first), float("nan")), 0
-    half = t95(n - 1) * float(np.std(areas, ddof=1)) / np.sqrt(n) if n > 1 else float("nan")
-    return Value(float(np.mean(areas)), half), n
+    n, span = len(areas), float(np.ptp(run.points.tau))
+    if n > 1:
+        scatter = t95(n - 1) * float(np.std(areas, ddof=1)) / np.sqrt(n)
+        return Value(float(np.mean(areas)), float(np.hypot(scatter, of_width(count) * span))), n
+    half = float("nan") if width is None else width.half * span
+    if n == 1:
+        return Value(areas[0], half), 1
+    return Value(energy_of(spring.chosen.curve, 0.0 if np.isnan(first) else first), half), 0

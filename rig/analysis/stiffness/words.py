@@ -10,6 +10,7 @@ from rig.analysis.flexibility import declared
 from rig.analysis.reference import kinematic_error_reference
 from rig.analysis.result import Array, Check
 from rig.analysis.source import Motion, Source
+from rig.analysis.stiffness.counts import one_count
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.drawn import add_curves
 from rig.analysis.stiffness.loop_words import add_creep, add_loop
@@ -43,7 +44,7 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
         return
     T1, T2 = declared(run.declared, "T1"), declared(run.declared, "T2")
     error = None if reference is None else kinematic_error_reference(Tame(reference))
-    s = measure(motion, tau, error, (T1, T2) if T1 and T2 else None)
+    s = measure(motion, tau, error, (T1, T2) if T1 and T2 else None, one_count(run, motion))
     if s is None:
         found.sentence = "No ramp of torque long enough for a slope was found."
         found.cannot.append(found.sentence)

@@ -12,12 +12,15 @@ from scipy.interpolate import CubicSpline
 from rig.analysis.source import Motion, motion_of
 from rig.analysis.tracing.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
+from rig.core.errors import UsageError
 from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
+FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
+SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -73,6 +76,7 @@ def record(run: Run, start: float) -> Recording:
     has = frozenset(name for name, values in channels.items() if values is not None)
     t, dt, steady = _grid(channels["t"], run)
     rows = t.size
+    _refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     factor = max(1, round(1 / dt / RATE))
     work = dt * factor
@@ -118,6 +122,13 @@ def _grid(t: Array | None, run: Run) -> tuple[Array, float, bool]:
         said = float(run.manifest.get("sample_rate_hz") or RATE)
         return np.arange(run.rows) / said, 1 / said, False
     return t, float(np.median(np.diff(t))), True
+
+
+def _refuse_sparse(rows: int, dt: float) -> None:
+    if rows < FEWEST:
+        raise UsageError(f"it has {rows} rows, expected at least {FEWEST}")
+    if not dt <= SPARSEST:  # NaN too
+        raise UsageError(f"it has one row every {dt:.4g} s, expected one in {SPARSEST:g} s at most")
 
 
 def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tuple[int, int]]:

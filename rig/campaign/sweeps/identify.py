@@ -22,7 +22,9 @@ class Identify(Sweep):
     speeds_rpm: tuple[float, ...] = field(default=SPEEDS, metadata={"signed": True})  # of the motor, each way
     cycles: float = 2.0  # of the slow triangle
     revolutions: int = 60  # at each speed, open loop
-    lock_cycles: int = 3  # of the lock test, at each of its rates
+    friction_rpm: str = "5,10,20,50,100,200,300,500"  # of the motor, each way under the position loop
+    lock_cycles: int = 3  # of the lock test, at the first of its rates
+    lock_rate: float = 0.75  # N·m/s at the torque sensor: 20 s a quarter
 
     def sections(self) -> list[StepSection]:
         """Lock test last: what it winds up has gone before anything turns again."""
@@ -33,13 +35,13 @@ class Identify(Sweep):
             )
         return [
             _section("kinematic-error", cycles=self.cycles),
-            _section("friction"),
+            _section("friction", speeds_rpm=self.friction_rpm),
             *(
                 _section("constant-torque", speed_rpm=way * speed, revolutions=self.revolutions)
                 for way in (1.0, -1.0)
                 for speed in speeds
             ),
-            _section("stiffness-lock", cycles=self.lock_cycles),
+            _section("stiffness-lock", cycles=self.lock_cycles, rate=self.lock_rate),
         ]
 
 

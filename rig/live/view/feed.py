@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rig.core.errors import HdrigError, RecorderError
+from rig.core.regular import regular
 from rig.live.tail import Tail
 from rig.runfile import manifest
 from rig.runfile.events import NAME
@@ -24,6 +25,7 @@ class EventTail:
     def read(self) -> list[dict[str, Any]]:
         """New events; none where there is no file."""
         try:
+            regular(self._path)
             with open(self._path, "rb") as file:
                 file.seek(self._at)
                 new = file.read()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -14,7 +13,7 @@ from markupsafe import Markup
 from rig.core.errors import NotReady, UsageError
 from rig.report import page as run_page
 from rig.report import words as run_words
-from rig.runfile.manifest import told, write_atomic
+from rig.runfile.manifest import contents, parse, told, write_atomic
 
 HERE = Path(__file__).parent
 SOURCE: Final = "compensation.json"
@@ -25,7 +24,7 @@ WIDE, HIGH, EDGE = 720.0, 220.0, 44.0  # px of a drawing, and its margin for the
 def write(folder: Path) -> Path:
     """Write `folder`/compensation.html from the compensation.json there. Raises UsageError without one, NotReady."""
     try:
-        found = json.loads((folder / SOURCE).read_bytes())
+        found = parse(contents(folder / SOURCE))
     except (OSError, ValueError) as error:
         raise UsageError(f"{folder / SOURCE} cannot be read: {error}") from None
     with told(NotReady, f"{folder / NAME} cannot be written"):

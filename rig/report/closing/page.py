@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -14,7 +13,7 @@ from rig.core.errors import NotReady, UsageError
 from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.words import Ruling
-from rig.runfile.manifest import told, write_atomic
+from rig.runfile.manifest import contents, parse, told, write_atomic
 
 HERE = Path(__file__).parent
 SOURCE: Final = "close-loop.json"
@@ -40,7 +39,7 @@ def write(folder: Path) -> Path:
     """Write `folder`/close-loop.html from the close-loop.json there. Raises UsageError without one, NotReady."""
     path = folder / SOURCE
     try:
-        story = json.loads(path.read_bytes())
+        story = parse(contents(path))
     except (OSError, ValueError) as error:
         raise UsageError(f"{path} cannot be read: {error}") from None
     with told(NotReady, f"{folder / NAME} cannot be written"):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from functools import cache
 
 from rig.report.palette import NAME
 
@@ -94,27 +95,32 @@ def steps(path: str) -> str:
             out.append("z")
             here, last = start, "z"
             continue
-        x, y = (round(float(next(tokens)) * 10) for _ in "xy")
+        x, y = round(float(next(tokens)) * 10), round(float(next(tokens)) * 10)
         dx, dy = x - here[0], y - here[1]
-        if command == "L" and (dx, dy) == (0, 0) and last == "l":
-            continue
-        letter = "m" if command == "M" else "l"
-        body = _tenths(dx) + _join(_tenths(dy))
-        again = letter == "l" == last  # a second m would mean a line
-        out.append(("" if body[0] == "-" else " ") + body if again else letter + body)
-        here, last = (x, y), letter
         if command == "M":
-            start = here
+            out.append(f"m{_tenths(dx)}{_joined(dy)}")
+            start, last = (x, y), "m"
+        elif last != "l":
+            out.append(f"l{_tenths(dx)}{_joined(dy)}")
+            last = "l"
+        elif dx or dy:
+            out.append(_joined(dx) + _joined(dy))  # the letter is not said again; after an m it would mean a line
+        here = (x, y)
     return "".join(out)
 
 
+@cache
 def _tenths(value: int) -> str:
+    """Steps are short and few of them differ: each is worked out once."""
     whole, tenth = divmod(abs(value), 10)
     text = (str(whole) if whole or not tenth else "") + (f".{tenth}" if tenth else "")
     return f"-{text}" if value < 0 else text
 
 
-def _join(text: str) -> str:
+@cache
+def _joined(value: int) -> str:
+    """The same behind another number: a minus parts them, else a blank does."""
+    text = _tenths(value)
     return text if text[0] == "-" else f" {text}"
 
 

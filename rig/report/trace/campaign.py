@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from rig.report.numbers import duration, number_of
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
 from rig.report.words import PROCEDURES, humanise
+from rig.runfile.manifest import contents, parse
 
 
 class RunRow(NamedTuple):
@@ -72,8 +72,8 @@ def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) ->
     found: dict[str, Mapping[str, Any]] = {}
     for path in sorted(folder.glob("*/manifest.json")):
         try:
-            manifest = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError):
+            manifest = parse(contents(path))
+        except (OSError, ValueError):
             continue
         found[path.parent.name] = table(cut(manifest))
     return Provenance(found, traced_with, traced_utc)

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.errors import UsageError
+from rig.core.regular import regular
 from rig.runfile.importing.channel import ChannelMap, read_channel
 from rig.runfile.importing.strict import Section, nearest
 
@@ -84,6 +85,7 @@ def load_mapping(mapping: Path | str) -> Mapping:
             raise UsageError(f"no mapping is called '{mapping}'; {nearest(mapping, shipped())} (or give a .toml file)")
         path = SHIPPED / f"{mapping}.toml"
     try:
+        regular(path)
         return read_mapping(path.read_text(encoding="utf-8"), path.name)
     except UnicodeDecodeError:
         raise UsageError(f"{path} is not UTF-8 text; expected a mapping file in TOML") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rig.core.errors import UsageError
+from rig.core.regular import regular
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 # first bytes, what it is, the suffix it should have
@@ -30,10 +31,8 @@ def identify(head: bytes) -> tuple[str, str]:
 
 def check_kind(path: Path, kind: str) -> None:
     """Raises UsageError when `path` is absent, empty, or not of `kind` ("CSV" is text, so anything unmarked)."""
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder; expected a {kind} file")
     try:
-        size = path.stat().st_size
+        size = regular(path).st_size
         with path.open("rb") as file:
             head = file.read(4096)
     except OSError as error:

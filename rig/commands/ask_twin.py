@@ -1,0 +1,56 @@
+"""What is asked of a twin that runs already: its hand (weights, lock pin), its faults, how it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rig.bench import toml_value
+from rig.core.errors import UsageError
+from rig.twin_hand import TwinHand
+
+HELP = """\
+at a twin that runs already, the one whose command channel is --control:
+  hdrig twin free              take the lock pin out: a run that died may have left the output locked
+  hdrig twin lock              fit it; refused while the output turns
+  hdrig twin hang 3            hang 3 N·m on the output, positive pulls forward; hang 0 takes the weight off
+  hdrig twin reassemble 0.1    wave generator out and in again, 0.1 mm from its depth
+  hdrig twin status            bus, nodes, drive, output; truth: what really happens now, SI
+  hdrig twin stop              end it
+  hdrig twin heal              end every fault that was made
+  hdrig twin help              all it can be asked for, faults among them; as hdrig twin sto active=true"""
+HAND = {
+    "free": ("unlock", ""),
+    "lock": ("lock", ""),
+    "hang": ("load", "tau_ext"),
+    "reassemble": ("reassemble", "depth_mm"),
+}
+
+
+def ask(control: Path, words: Sequence[str]) -> list[str]:
+    """The answer, a line each. Raises UsageError: not understood; NotReady: nobody there, or the twin refuses."""
+    asked = understood(words)
+    answer = TwinHand(str(control)).ask(asked)
+    answer.pop("ok")
+    done = f"SIMULATED: the twin at {control}: {' '.join(words)}"
+    return [done, *(f"  {key:14s} {value}" for key, value in answer.items())]
+
+
+def understood(words: Sequence[str]) -> dict[str, Any]:
+    """`hang 3`, or `VERB KEY=VALUE …` with values as TOML writes them. Raises UsageError."""
+    verb, *rest = words
+    name, own = HAND.get(verb, (verb, ""))
+    out: dict[str, Any] = {"do": name}
+    for word in rest:
+        key, equals, value = word.partition("=")
+        if not equals:
+            key, value = own, word
+        if not key or key in out:
+            raise UsageError(f"hdrig twin {' '.join(words)}: '{word}' is not understood; expected KEY=VALUE")
+        out[key] = toml_value(value)
+    if own == "tau_ext" and own not in out:
+        raise UsageError(
+            f"hdrig twin {verb}: expected the torque on the output in N·m, for example 'hdrig twin hang 3'"
+        )
+    return out

@@ -1,0 +1,88 @@
+"""What a campaign leaves behind that ended before it had begun."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rig.bench import BENCHES, read
+from rig.campaign.journal import Journal, new_journal, read_journal
+from rig.campaign.leaving import came_to_something, swept
+from rig.cli import main
+from rig.core.errors import NotReady
+from rig.runfile.folder import create_in
+from tests.campaign.plans import REST, campaign, plan
+
+VERBS = (
+    ["campaign", "quick"],
+    ["run", "load-sweep"],
+    ["run", "identify"],
+    ["reproduce"],
+    ["close-loop"],
+    ["run", "kinematic-error"],
+)
+
+
+@pytest.fixture
+def no_bus(tmp_path: Path) -> Path:
+    """A bench whose bus is not there, with somebody to make the changes."""
+    text = (BENCHES / "twin-can.toml").read_text(encoding="utf-8")
+    bench = tmp_path / "bench.toml"
+    bench.write_text(text.replace("/tmp/hdrig-twin", str(tmp_path / "nowhere")), encoding="utf-8")
+    return bench
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+def test_a_bus_that_is_missing_leaves_no_folder(
+    verb: list[str], no_bus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main([*verb, "--bench", str(no_bus), "--out", str(out)]) == 3
+    said = capsys.readouterr()
+    assert "no CAN bus at" in said.err
+    assert "goes on with it" not in said.err
+    assert list(out.rglob("*")) == []
+
+
+def test_a_refusal_before_the_first_row_leaves_no_folder_and_is_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*_: object) -> None:
+        raise NotReady("the rig is in fault: it is too hot")
+
+    monkeypatch.setattr("rig.session.session.Session._refuse_now", refused)
+    assert main(["campaign", "quick", "--out", str(tmp_path)]) == 3
+    assert "hdrig: the rig is in fault: it is too hot" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def interrupted(journal: Journal) -> None:
+    with pytest.raises(NotReady), swept(journal):
+        raise NotReady("the bus has gone")
+
+
+@pytest.mark.parametrize("made", [lambda folder: None, lambda folder: create_in(folder / "checks", "other", {})])
+def test_it_stays_where_something_was_recorded_and_says_how_it_ended(
+    made: Callable[[Path], object], tmp_path: Path
+) -> None:
+    journal = new_journal(tmp_path, campaign(REST), "virtual", [])
+    made(journal.folder)
+    kept = came_to_something(journal)
+    interrupted(journal)
+    assert journal.folder.exists() is kept
+    if kept:
+        book = read_journal(journal.folder).book
+        assert (book["status"], book["sentence"], book["process"]) == ("failed", "the bus has gone", None)
+
+
+def test_a_campaign_that_cannot_be_taken_up_is_not_left_running(no_bus: Path, tmp_path: Path) -> None:
+    journal = new_journal(tmp_path, campaign(REST, bench=read(str(no_bus))), "wall", [])
+    (journal.folder / "plan.toml").write_text(plan(REST).text, encoding="utf-8")
+    create_in(journal.folder / "checks", "other", {"status": "completed"})
+    journal.close("stopped", "by the operator")
+    assert main(["campaign", "--resume", str(journal.folder)]) == 3
+    book = read_journal(journal.folder).book
+    assert (book["status"], book["process"]) == ("failed", None)
+    assert "no CAN bus at" in book["sentence"]

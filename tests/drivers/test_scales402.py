@@ -1,0 +1,40 @@
+"""Numbers of a CiA 402 drive that mean something else than the bench file says: refused with both, or remarked on."""
+
+from __future__ import annotations
+
+import pytest
+
+from rig.core.errors import NotReady
+from tests.drivers.virtual import wired
+
+
+@pytest.mark.parametrize(
+    ("index", "sub", "value", "told"),
+    [
+        (0x6076, 0, 3_000_000, r"rated torque is 3000 N·m \(6076h\).* is 3 N·m: .* factor of 1000$"),  # in µN·m
+        (0x6076, 0, 2100, r"factor of 0.7$"),
+        (0x608F, 1, 4096, r"counts 4096 per turn \(608Fh\).*is 10000"),
+        (0x6091, 1, 50, r"has a gear of 50:1 of its own"),
+        (0x60A8, 0, 0x00410000, r"60A8h = 00410000h\), expected increments"),
+        (0x6075, 0, 8485, r"0\.3536 N·m of an ampere .* is 0\.5 N·m/A: off by a factor of 0\.707.* peak and effective"),
+    ],
+)
+def test_a_scale_that_is_another_is_refused_with_both_numbers(index: int, sub: int, value: int, told: str) -> None:
+    w = wired()
+    w.instruments.drive.place.options["torque_constant"] = 0.5  # N·m/A
+    w.twin.drive.objects.find(index, sub).value = value
+    with pytest.raises(NotReady, match=told):
+        w.instruments.connect()
+
+
+def test_a_drive_nobody_has_commissioned_is_remarked_on() -> None:
+    w = wired()
+    w.twin.drive.objects.find(0x6075, 0).value = 3000  # 3 A beside 3 N·m
+    w.instruments.connect()
+    assert any("has anybody entered the motor's data?" in remark for remark in w.instruments.drive.remarks)
+
+
+def test_numbers_that_agree_are_not_remarked_on() -> None:
+    w = wired()
+    w.instruments.connect()
+    assert w.instruments.drive.remarks == []

@@ -1,0 +1,117 @@
+"""`hdrig twin free` and its like: the hand of a twin that runs already, for an operator."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rig.cli import main
+from rig.commands.ask_twin import understood
+from rig.core.errors import UsageError
+from sim.wire.assembly import Assembly
+from sim.wire.control import describe, perform
+from sim.wire.reactor import Reactor
+from sim.wire.verbs import plant_verbs
+from tests.drivers.virtual import wired
+
+
+@pytest.fixture
+def twin(tmp_path: Path) -> Iterator[Assembly]:
+    """A twin whose command channel is `control` in the test's folder; one line a client."""
+    assembly = wired().twin
+    verbs = {**plant_verbs(assembly, Reactor(assembly.agenda)), "help": lambda: describe(verbs)}
+    door = socket.socket(socket.AF_UNIX)
+    door.bind(str(tmp_path / "control"))
+    door.listen()
+
+    def listen() -> None:
+        import json
+
+        while True:
+            try:
+                client, _ = door.accept()
+            except OSError:
+                return
+            with client:
+                client.sendall(json.dumps(perform(verbs, client.makefile("rb").readline())).encode() + b"\n")
+
+    threading.Thread(target=listen, daemon=True).start()
+    yield assembly
+    door.shutdown(socket.SHUT_RDWR)
+    door.close()
+
+
+def ask(tmp_path: Path, *words: str) -> int:
+    return main(["twin", "--control", str(tmp_path / "control"), *words])
+
+
+def test_an_output_left_locked_by_a_run_that_died_is_freed(
+    twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    twin.world.lock_output()
+    assert ask(tmp_path, "status") == 0
+    assert "output         locked" in capsys.readouterr().out
+    assert ask(tmp_path, "free") == 0
+    assert capsys.readouterr().out.startswith("SIMULATED: ")
+    assert not twin.world.plant.locked
+    assert ask(tmp_path, "lock") == 0
+    assert twin.world.plant.locked
+
+
+def test_a_weight_is_hung_by_its_number_alone(twin: Assembly, tmp_path: Path) -> None:
+    twin.world.lock_output()
+    assert ask(tmp_path, "hang", "-2.5") == 0
+    assert twin.world.plant.tau_ext == -2.5
+    assert ask(tmp_path, "hang", "0") == 0
+    assert twin.world.plant.tau_ext == 0.0
+
+
+def test_what_there_is_to_ask_for_is_told(twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ask(tmp_path, "help") == 0
+    assert "unlock" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (["hang"], 2, "expected the torque on the output in N·m"),
+        (["free", "3"], 2, "'3' is not understood; expected KEY=VALUE"),
+        (["hang", "1", "2"], 2, "'2' is not understood"),
+        (["shove"], 3, "no command 'shove'; expected one of"),
+        (["hang", "much"], 3, "the twin refused load"),
+    ],
+)
+def test_what_cannot_be_meant_is_a_sentence(
+    twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], code: int, told: str
+) -> None:
+    assert ask(tmp_path, *words) == code
+    assert told in capsys.readouterr().err
+
+
+def test_where_no_twin_runs_it_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ask(tmp_path, "free") == 3
+    assert "is `hdrig twin` running" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "asked"),
+    [
+        (["sto", "active=true", "fault=false"], {"do": "sto", "active": True, "fault": False}),
+        (["drop", "identifier=0x181", "count=3"], {"do": "drop", "identifier": 0x181, "count": 3}),
+        (["frozen", "device=encoder"], {"do": "frozen", "device": "encoder"}),
+        (["reassemble", "0.1"], {"do": "reassemble", "depth_mm": 0.1}),
+        (["reassemble"], {"do": "reassemble"}),
+    ],
+)
+def test_faults_are_asked_for_by_their_keys(words: list[str], asked: dict[str, Any]) -> None:
+    assert understood(words) == asked
+
+
+def test_a_key_given_twice_is_refused() -> None:
+    with pytest.raises(UsageError, match="active=false"):
+        understood(["sto", "active=true", "active=false"])

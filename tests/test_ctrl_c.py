@@ -1,0 +1,92 @@
+"""Ctrl-C while a program is still being loaded: neither lost nor the cause of another error."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from rig.ctrl_c import after_imports
+
+SLOW = """
+import os, signal
+os.kill(os.getpid(), signal.SIGINT)  # Ctrl-C in the middle of an import
+WHOLE = sum(range(1000))
+"""
+
+
+@pytest.fixture
+def slow(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The name of a module during whose import somebody presses Ctrl-C."""
+    (tmp_path / "pressed_here.py").write_text(SLOW)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "pressed_here", raising=False)
+    return "pressed_here"
+
+
+def wait() -> None:
+    """Until the interrupt comes, 10 s at most."""
+    signal.sigtimedwait({signal.SIGUSR1}, 10.0)
+
+
+def load(name: str) -> None:
+    with after_imports():
+        importlib.import_module(name)
+        wait()
+
+
+def press() -> None:
+    with after_imports():
+        os.kill(os.getpid(), signal.SIGINT)
+        wait()
+
+
+def test_an_interrupt_in_an_import_comes_when_the_module_is_whole(slow: str) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        load(slow)
+    assert sys.modules[slow].WHOLE == 499500
+
+
+def test_an_interrupt_elsewhere_comes_at_once_and_handlers_are_given_back() -> None:
+    before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGALRM)
+    with pytest.raises(KeyboardInterrupt):
+        press()
+    assert (signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGALRM)) == before
+
+
+def test_one_that_waited_goes_to_the_session_that_has_begun_meanwhile(slow: str) -> None:
+    counted: list[int] = []
+    with after_imports():
+        importlib.import_module(slow)
+        before = signal.signal(signal.SIGINT, lambda signum, frame: counted.append(signum))
+        while not counted:
+            signal.pause()
+        signal.signal(signal.SIGINT, before)
+    assert counted == [signal.SIGINT]
+
+
+def test_where_somebody_else_handles_interrupts_nothing_changes() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with after_imports():
+            assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_in_another_thread_nothing_changes() -> None:
+    said: list[object] = []
+
+    def look() -> None:
+        with after_imports():
+            said.append(signal.getsignal(signal.SIGINT))
+
+    thread = threading.Thread(target=look)
+    thread.start()
+    thread.join()
+    assert said == [signal.default_int_handler]
