@@ -97,7 +97,8 @@ def _gaps(run: Run) -> Iterator[Finding]:
     t = run.column("t")
     if t is None or t.size < 3:
         return
-    dt = np.diff(t)
+    with np.errstate(invalid="ignore"):  # a time that is infinite is no gap, nor is it one where there is none
+        dt = np.diff(t)
     period = float(np.median(dt[dt > 0])) if (dt > 0).any() else np.inf  # equal times are stale rows
     gaps, flags = np.flatnonzero(dt > GAP * period), run.flags
     told = ((flags[gaps + 1] & int(Flag.MISSED)) | (flags[gaps] & int(Flag.STALE_M))) > 0

@@ -27,12 +27,12 @@ def columns() -> Columns:
     return {"t": t, "theta_m": theta_m, "theta_l": theta_l, "tau_m": 0.3 + noise[1], "tau_l": 1.0 + noise[2]}
 
 
-def campaign(root: Path, change: Callable[[Columns], Columns], runs: int = 2) -> Path:
-    """Run folders of another logger whose columns went through `change`."""
+def campaign(root: Path, change: Callable[[Columns], Columns], runs: int = 2, **said: Any) -> Path:
+    """Run folders of another logger whose columns went through `change`; `said` goes into the manifest."""
     for number in range(runs):
         folder = root / f"run-{number}"
         folder.mkdir(parents=True)
-        about = {"schema": "hdrig.run/1", "procedure": "constant_torque", "gear": {"ratio": 50}}
+        about = {"schema": "hdrig.run/1", "procedure": "constant_torque", "gear": {"ratio": 50}, **said}
         (folder / "manifest.json").write_text(json.dumps(about))
         pq.write_table(pa.table(change(columns())), folder / "samples.parquet")
     return root
@@ -56,7 +56,7 @@ def test_the_campaign_these_are_made_from_can_be_read(tmp_path: Path) -> None:
         (first(0), "it has 0 rows, expected at least 50"),
         (first(1), "it has 1 rows, expected at least 50"),
         (first(10), "it has 10 rows, expected at least 50"),
-        (times("t", 1000.0), "it has one row every 2 s, expected one in 0.2 s at most"),
+        (times("t", 1000.0), "it has one row every 2 s, expected one every 1e-06 to 0.2 s"),
         (lambda c: {name: x[::500] for name, x in c.items()}, "it has 10 rows"),
         (lambda c: {"t": ["a", "b"], "theta_m": ["x", "y"]}, "holds string, expected numbers"),
     ],
@@ -77,3 +77,22 @@ def test_one_hostile_run_among_good_ones_is_left_out_by_name(tmp_path: Path) -> 
     found = read_campaign(tmp_path)
     assert [run.name for run in found.runs] == ["run-0", "run-1"]
     assert any(note.startswith("short was left out: it has 10 rows") for note in found.notes)
+
+
+@pytest.mark.parametrize("odd", ["word", [1], {"a": 1}, float("nan"), 1e300, 10**400, True, -1], ids=str)
+def test_numbers_of_a_manifest_that_are_none_count_as_not_said(tmp_path: Path, odd: Any) -> None:
+    tables = {"declared": {"K": odd, "J_m": odd}, "conditions": {"tau_ext": odd}}
+    counts = {"encoders": {"motor_counts_per_rev": odd, "load_counts_per_rev": odd}, "sample_rate_hz": odd}
+    assert len(read_campaign(campaign(tmp_path, lambda c: c, **tables, **counts)).runs) == 2
+
+
+def test_readings_no_sensor_gives_count_as_missing(tmp_path: Path) -> None:
+    found = read_campaign(campaign(tmp_path, times("tau_l", 1e300)))
+    assert not any("tau_l" in run.has for run in found.runs)
+    assert "run-0: 5000 values of tau_l are infinite or absurdly large: taken as missing." in found.notes
+
+
+@pytest.mark.parametrize("ratio", [1e300, 1e-300])
+def test_a_ratio_no_gear_has_is_refused(tmp_path: Path, ratio: float) -> None:
+    with pytest.raises(UsageError, match=r"gear\.ratio is 1e.*, expected 0\.001 to 100000"):
+        read_campaign(campaign(tmp_path, lambda c: c, gear={"ratio": ratio}))

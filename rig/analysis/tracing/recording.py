@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from rig.analysis.source import Motion, motion_of
+from rig.analysis.source import Motion, Source, motion_of
+from rig.analysis.tame import LARGEST, RATIOS, Tame, number
 from rig.analysis.tracing.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
@@ -20,6 +22,7 @@ from rig.runfile.run import Run
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
+DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
 SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
@@ -69,12 +72,16 @@ class Recording:
         return replace(self, pieces=tuple(_knowing(piece, known) for piece in self.pieces))
 
 
-def record(run: Run, start: float) -> Recording:
-    """Read the columns the tracer uses. Raises UsageError when the run has no angle it can use."""
+def record(whole_run: Run, start: float) -> Recording:
+    """Read the columns the tracer uses; what is absurd counts as missing. Raises UsageError when the run has no angle
+    it can use, rows too far apart or too close, or a ratio no gear has.
+    """
+    run = Tame(whole_run)
+    _refuse_ratio(run.ratio)
     motion = motion_of(run)
     channels = _channels(run, motion)
     has = frozenset(name for name, values in channels.items() if values is not None)
-    t, dt, steady = _grid(channels["t"], run)
+    t, dt, steady = _grid(channels["t"], whole_run.rows, run)
     rows = t.size
     _refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
@@ -83,7 +90,7 @@ def record(run: Run, start: float) -> Recording:
     sigma = min(BANDWIDTH, TAMEST / work)
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     encoders = run.manifest.get("encoders") or {}
-    tau_ext = float(run.conditions.get("tau_ext") or 0.0)
+    tau_ext = _stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
         for lo, hi in _joined(t, dt, motion, steady)
@@ -103,11 +110,11 @@ def record(run: Run, start: float) -> Recording:
         rate=1 / dt,
         thinned=factor,
         noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=motion.notes if motion else (),
+        notes=(*run.notes, *(motion.notes if motion else ())),
     )
 
 
-def _channels(run: Run, motion: Motion | None) -> dict[str, Array | None]:
+def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
     names = ("tau_m", "tau_l", "temperature")
     if motion is None:
         found: dict[str, Array | None] = {name: run.column(name) for name in names}
@@ -116,19 +123,30 @@ def _channels(run: Run, motion: Motion | None) -> dict[str, Array | None]:
     return {"t": motion.t, "theta_m": motion.theta_m, "theta_l": motion.theta_l, **picked}
 
 
-def _grid(t: Array | None, run: Run) -> tuple[Array, float, bool]:
+def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
     """Time of each row, s between rows, and whether there is a time at all (else rows count)."""
     if t is None or t.size < 3:
-        said = float(run.manifest.get("sample_rate_hz") or RATE)
-        return np.arange(run.rows) / said, 1 / said, False
+        said = abs(_stated(run.manifest, "sample_rate_hz", RATE))
+        return np.arange(rows) / said, 1 / said, False
     return t, float(np.median(np.diff(t))), True
+
+
+def _stated(table: Mapping[str, Any], name: str, default: float) -> float:
+    """The number a manifest states, `default` where it is absent, zero or none."""
+    value = number(table.get(name))
+    return value if 0 < abs(value) < LARGEST else default
+
+
+def _refuse_ratio(ratio: float) -> None:
+    if not RATIOS[0] <= ratio <= RATIOS[1]:
+        raise UsageError(f"gear.ratio is {ratio:g}, expected {RATIOS[0]:g} to {RATIOS[1]:g}")
 
 
 def _refuse_sparse(rows: int, dt: float) -> None:
     if rows < FEWEST:
         raise UsageError(f"it has {rows} rows, expected at least {FEWEST}")
-    if not dt <= SPARSEST:  # NaN too
-        raise UsageError(f"it has one row every {dt:.4g} s, expected one in {SPARSEST:g} s at most")
+    if not DENSEST <= dt <= SPARSEST:  # NaN too
+        raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:g} s")
 
 
 def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tuple[int, int]]:
@@ -151,7 +169,7 @@ def _uniform(t: Array, x: Array, dt: float) -> Array:
 
 
 def _piece(
-    t: Array, c: dict[str, Array], dt: float, factor: int, smooth: Smoother, run: Run, start: float, tau_ext: float
+    t: Array, c: dict[str, Array], dt: float, factor: int, smooth: Smoother, run: Source, start: float, tau_ext: float
 ) -> Signals | None:
     """One piece at the working rate."""
     c = {name: _uniform(t, x, dt) for name, x in c.items()}
@@ -184,7 +202,7 @@ def _piece(
     )
 
 
-def _substituted(c: Mapping[str, Array], dt: float, run: Run, tau_ext: float) -> dict[str, Array]:
+def _substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) -> dict[str, Array]:
     """Stand-ins for readings that are not there, so that columns have something to lean on.
 
     The shaft torque of a free load is what its declared inertia and weight take; one angle is the other's times N, and
@@ -200,14 +218,14 @@ def _substituted(c: Mapping[str, Array], dt: float, run: Run, tau_ext: float) ->
     return out
 
 
-def is_locked(run: Run) -> bool:
+def is_locked(run: Source) -> bool:
     """Whether the output is held."""
     return bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock"
 
 
-def believed(run: Run) -> Known:
+def believed(run: Source) -> Known:
     """The gear as declared, to begin with; a paper-sized one where nothing is."""
-    said = {name: float(run.declared.get(name) or getattr(UNKNOWN, name)) for name in ("K", "J_m", "J_l")}
+    said = {name: abs(_stated(run.declared, name, getattr(UNKNOWN, name))) for name in ("K", "J_m", "J_l")}
     return replace(UNKNOWN, K=said["K"], J_m=said["J_m"], J_l=said["J_l"])
 
 

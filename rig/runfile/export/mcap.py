@@ -6,6 +6,7 @@ A batch of samples in one message would be a quarter of the size, and neither pl
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,14 @@ from rig.core.errors import UsageError
 from rig.runfile.run import Run
 
 TOPIC = "/rig/sample"
+LATEST = 1e12  # s; far beyond what the check in ns allows, and still an integer of it
 
 
 def write(run: Run, path: Path) -> None:
     """Write every measured channel of `run`; a value that was not measured is left out of its message.
 
-    Log time is UTC where the run says when it started, else time since then. Raises UsageError for a run without `t`.
+    Log time is UTC where the run says when it started, else time since then. Raises UsageError for a run without `t`,
+    or with a time that no message can carry.
     """
     if not run.has("t"):
         raise UsageError(f"{run.name} has no t: an MCAP message needs its time; csv and hdf5 do not")
@@ -58,8 +61,16 @@ def _messages(run: Run) -> Iterator[tuple[int, dict[str, Any]]]:
     for batch in run.samples.batches():
         for values in zip(*(batch.column(name).to_pylist() for name in names), strict=True):
             message = {name: value for name, value in zip(names, values, strict=True) if value is not None}
-            if "t" in message:
-                yield start + round(message["t"] * 1e9), message
+            if math.isfinite(message.get("t", math.nan)):
+                yield _log_time(run, start, message["t"]), message
+
+
+def _log_time(run: Run, start: int, t: float) -> int:
+    """`t` s after `start` in ns. Raises UsageError for what 64 bits without a sign cannot say."""
+    at = start + round(t * 1e9) if abs(t) < LATEST else -1
+    if not 0 <= at < 2**64:
+        raise UsageError(f"{run.name} has a sample at t = {t:g} s: an MCAP message lies between 1970 and 2554")
+    return at
 
 
 def _start_ns(run: Run) -> int:
