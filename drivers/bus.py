@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import select
 import struct
 import time
@@ -180,7 +181,9 @@ class Bus:
             return self._can.recv(timeout)  # type: ignore[no-any-return]
         if waiting < 0:
             return self._can.recv(timeout)  # type: ignore[no-any-return]
-        select.select([waiting], [], [], timeout)
+        poll = select.poll()
+        poll.register(waiting, select.POLLIN)
+        poll.poll(math.ceil(1e3 * timeout))
         return self._can.recv(0.0)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
