@@ -40,11 +40,13 @@ def floor(source: str, *flags: str) -> ctypes.CDLL:
 
 @cache
 def peers() -> tuple[Path, str]:
-    """The peers' Python, and what could not be installed, in words. Each is tried by itself: one may fail."""
+    """The peers' Python, and what could not be installed, in words. Each is tried by itself: one may fail. Where there
+    is no network every one does, within half a minute, and the rows that need one say so.
+    """
     python, mark = VENV / "bin" / "python", VENV / "installed.txt"
     wanted = [line for line in (HERE / "requirements.txt").read_text(encoding="utf-8").splitlines() if line.strip()]
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", str(VENV)], check=True)
+    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", str(VENV)], check=False).returncode:
+        return python, "no environment for peers could be made here: python -m venv failed"
     _also(VENV)
     if mark.exists() and mark.read_text(encoding="utf-8").splitlines()[:-1] == wanted:
         return python, mark.read_text(encoding="utf-8").splitlines()[-1]
@@ -61,5 +63,5 @@ def _also(venv: Path) -> None:
 
 
 def _install(python: Path, requirement: str) -> bool:
-    command = [str(python), "-m", "pip", "install", "--quiet", requirement]
+    command = [str(python), "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout", "10", requirement]
     return subprocess.run(command, capture_output=True, check=False).returncode == 0

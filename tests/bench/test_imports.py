@@ -30,12 +30,14 @@ def test_the_overview_of_verbs_loads_nothing_heavier_than_argparse() -> None:
 
 
 @pytest.mark.slow
-def test_the_recorder_never_looks_for_pandas() -> None:
+def test_rows_are_written_and_read_without_a_look_for_pandas() -> None:
     statement = (
-        "import numpy as np, rig.recorder.__main__\n"
+        "import numpy as np, pyarrow as pa, rig.recorder.__main__\n"
         "from rig.core.channels import CHANNELS\n"
-        "from rig.runfile.columns import batch_of_rows, schema\n"
+        "from rig.runfile.columns import as_float, batch_of_rows, schema\n"
         "kinds = {'float64': 'f8', 'int64': 'i8', 'uint32': 'i8'}\n"
-        "batch_of_rows(np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS]), schema('sim'))"
+        "rows = np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS])\n"
+        "table = pa.Table.from_batches([batch_of_rows(rows, schema('sim'))])\n"
+        "[as_float(table.column(c.name)) for c in CHANNELS]"
     )
     assert "pandas" not in loaded(statement)

@@ -14,13 +14,15 @@ class Worker:
     """`peers/<script>.py`, which reads one JSON line a question. Use as a context manager. Raises Unavailable."""
 
     def __init__(self, script: str, *args: str) -> None:
-        python, _ = peers()
+        python, words = peers()
         environment = os.environ | {
             "OPENBLAS_NUM_THREADS": "1",
             "PYTHONPATH": str(HERE.parents[1]),
             "JAX_PLATFORMS": "cpu",
         }
         self.script = script
+        if not python.exists():
+            raise Unavailable(f"{script}: {words}")
         self._process = subprocess.Popen(
             [str(python), str(HERE / "peers" / f"{script}.py"), *args],
             stdin=subprocess.PIPE,

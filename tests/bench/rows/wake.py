@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from typing import ClassVar, final
 
+from rig.core.errors import HdrigError
 from rig.session.observer import Observer
-from tests.bench.figure import AtMost, Figure, ratio
+from tests.bench.built import Unavailable
+from tests.bench.figure import AtMost, Figure, Shown, not_measured, ratio
 from tests.bench.row import Row
 from tests.bench.turns import Rounds
 from tests.bench.wake import Loaded, Wake, floor, ours
@@ -27,11 +29,17 @@ class WakeUp(Row):
     against: ClassVar[str] = "C clock_nanosleep FIFO loop in the same run"
 
     def measure(self, rounds: Rounds) -> list[Figure]:
-        figures = []
-        for words, load in (("idle", nullcontext(Observer())), ("loaded", Loaded())):
+        return [*self._under("idle", nullcontext(Observer()), rounds), *self._under("loaded", Loaded(), rounds)]
+
+    def _under(self, words: str, load: AbstractContextManager[Observer], rounds: Rounds) -> list[Figure]:
+        """All rates under one load; what cannot be had under it says so and does not take the other with it."""
+        figures: list[Figure] = []
+        try:
             with load as looking_on:
                 for rate in RATES:
                     figures += self._rate(rate, looking_on, words, rounds)
+        except (Unavailable, HdrigError) as why:
+            figures.append(not_measured(f"{words}: from here on", Shown(), str(why)))
         return figures
 
     def _rate(self, rate: int, looking_on: Observer, words: str, rounds: Rounds) -> list[Figure]:
