@@ -147,7 +147,17 @@ def to_gear_file(folder: Path) -> int:
     return identify([folder], folder / "gear.toml")
 
 
-LAST = {"identify": to_gear_file}  # what follows the last run of a campaign, by the name of its plan
+def to_load_law(folder: Path) -> int:
+    """Peak to peak against load, on stdout and in the summary."""
+    from rig.commands.load_sweep import load_law_of
+
+    return load_law_of(folder)
+
+
+LAST = {
+    "identify": to_gear_file,
+    "load-sweep": to_load_law,
+}  # what follows the last run of a campaign, by the name of its plan
 
 
 def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:

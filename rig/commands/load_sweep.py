@@ -1,0 +1,68 @@
+"""What stands below the summary of a load sweep: peak to peak by load, up and down, and the law through them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.core.errors import Exit
+
+if TYPE_CHECKING:
+    from rig.analysis.load_law import LoadRun, Ranged
+
+FIGURE = "kinematic_error_peak_to_peak"
+
+
+def load_law_of(folder: Path) -> int:
+    """The table and the law on stdout, and at the end of the campaign's summary."""
+    text = "\n".join(told(runs_of(folder))) + "\n"
+    with (folder / "summary.txt").open("a", encoding="utf-8") as summary:
+        summary.write(f"\n{text}")
+    print(text, end="")
+    return int(Exit.PASS)
+
+
+def runs_of(folder: Path) -> list[LoadRun]:
+    """Every completed slow run of the campaign in `folder` that was analysed."""
+    from rig.analysis.load_law import LoadRun
+
+    found = []
+    for path in sorted(folder.glob("*/result.json")):
+        manifest = json.loads((path.parent / "manifest.json").read_text(encoding="utf-8"))
+        figure = json.loads(path.read_text(encoding="utf-8"))["estimates"].get(FIGURE)
+        if figure is not None and manifest.get("status") == "completed":
+            about = manifest.get("conditions") or {}
+            note = str(about.get("note") or "")
+            found.append(LoadRun(float(about.get("tau_ext") or 0.0), float(figure["value"]), note.endswith("down")))
+    return found
+
+
+def told(runs: Sequence[LoadRun]) -> list[str]:
+    """Lines for people."""
+    from rig.analysis.load_law import down_less_up, load_law
+
+    lines = ["peak to peak of the kinematic error by load, arcsec", "     N·m      up    down"]
+    for load in sorted({r.load for r in runs}, key=abs):
+        ways = [[r.peak_to_peak for r in runs if r.load == load and r.down is down] for down in (False, True)]
+        shown = "".join(f"{sum(way) / len(way):8.2f}" if way else "       –" for way in ways)
+        lines.append(f"{load:8g}{shown}")
+    law, apart = load_law(runs), down_less_up(runs)
+    if apart is not None:
+        lines.append(f"down less up {_shown(apart, 'arcsec')}, mean over the loads that were run both ways")
+    if law is None:
+        return [*lines, "no law fitted: it takes five runs at four loads or more"]
+    if not law.falls:
+        return [*lines, f"load makes no difference that is told from none; the runs scatter by {law.rms:.2g} arcsec"]
+    return [
+        *lines,
+        f"P(T) = P_∞ + (P_0 − P_∞)·exp(−|T|/T_c), rms left {law.rms:.2g} arcsec, 95 % intervals:",
+        f"  P_0 {_shown(law.P_0, 'arcsec')}, P_∞ {_shown(law.P_inf, 'arcsec')}, T_c {_shown(law.T_c, 'N·m')}",
+    ]
+
+
+def _shown(found: Ranged, unit: str) -> str:
+    from rig.report.numbers import estimate
+
+    return estimate(found.value, (found.low, found.high), unit)
