@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key, Term
 from rig.analysis.tracing.recording import Recording
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Effect, Reach
 
 Single = npt.NDArray[np.float32]

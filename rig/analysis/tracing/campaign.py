@@ -10,12 +10,13 @@ import numpy as np
 
 from rig.analysis.tracing.membership import one_rig, starts
 from rig.analysis.tracing.recording import Recording, record
+from rig.analysis.tracing.signs import odd_angles
+from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
-WORKERS = 2  # numpy leaves the interpreter's lock for nearly all of the work
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,8 @@ def _record(run: Run, start: float) -> Recording | str:
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
         return f"{run.name} was left out: its motor went {turned:.2f} of a turn, a kinematic error needs a whole one."
-    return made
+    odd = odd_angles(made)
+    return made if odd is None else f"{run.name} was left out: {odd}."
 
 
 def _same_sensors(runs: list[Recording]) -> list[Recording]:

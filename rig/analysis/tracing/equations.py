@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import CHANNELS, Rows, footprint, is_measured, rows, shared_columns, unmasked
 from rig.analysis.tracing.recording import Recording
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import MEASURED, Array, Effect, Known, Shape
 
 Key = tuple[int, str]  # run, channel

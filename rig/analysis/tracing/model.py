@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.campaign import WORKERS
 from rig.analysis.tracing.channels import BASELINE, INDEX
 from rig.analysis.tracing.equations import Equations, Key, Term
 from rig.analysis.tracing.thresholds import LAG, LATEST, MESH, SECOND
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle

@@ -19,6 +19,7 @@ from rig.analysis.tracing.own import Own, find
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.search import Found, relawed, search, still
+from rig.analysis.tracing.signs import refuse_negative, refuse_odd_torques
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
@@ -65,8 +66,12 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
         raise UsageError(
             f"{campaign.name}: no run to fit, or none to test with, has two angles or an angle and a torque"
         )
+    refuse_odd_torques(campaign.runs, campaign.name)
+    if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
+        raise UsageError(f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one")
     eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
     s = fit(design(eq, (), parts.fitted))
+    refuse_negative(s, campaign.name)
     measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
     eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
