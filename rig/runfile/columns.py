@@ -65,6 +65,12 @@ def batch_of_rows(rows: Array, layout: pa.Schema) -> pa.RecordBatch:
     return pa.RecordBatch.from_arrays(columns, schema=layout)
 
 
+def no_rows(layout: pa.Schema) -> pa.RecordBatch:
+    """A batch of `layout` without rows."""
+    nothing = [None, pa.py_buffer(b"")]
+    return pa.RecordBatch.from_arrays([pa.Array.from_buffers(f.type, 0, nothing) for f in layout], schema=layout)
+
+
 def _not_measured(words: Array) -> Array:
     """Which values of (channels, n) are null, same shape."""
     absent = np.isnan(words.view(np.float64))

@@ -16,7 +16,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from rig.core.regular import regular
-from rig.runfile.columns import checksum
+from rig.runfile.columns import checksum, no_rows
 from rig.runfile.manifest import sync_folder
 
 FIRST, CRC = b"first", b"crc32"  # keys of a batch's own metadata
@@ -45,7 +45,7 @@ class JournalWriter:
         self._buffer = io.BytesIO()
         self._stream = pa.ipc.new_stream(self._buffer, layout)
         try:
-            self.append(pa.RecordBatch.from_pylist([], schema=layout))  # the schema, and a full disk, come to light now
+            self.append(no_rows(layout))  # the schema, and a full disk, come to light now
             self.sync()
             sync_folder(folder)
         except OSError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -30,14 +31,19 @@ def test_the_overview_of_verbs_loads_nothing_heavier_than_argparse() -> None:
 
 
 @pytest.mark.slow
-def test_rows_are_written_and_read_without_a_look_for_pandas() -> None:
+def test_rows_are_written_and_read_without_a_look_for_pandas(tmp_path: Path) -> None:
     statement = (
-        "import numpy as np, pyarrow as pa, rig.recorder.__main__\n"
+        "import numpy as np, pyarrow as pa, rig.recorder.__main__, pathlib\n"
         "from rig.core.channels import CHANNELS\n"
         "from rig.runfile.columns import as_float, batch_of_rows, schema\n"
+        "from rig.runfile.journal import JournalReader, JournalWriter\n"
         "kinds = {'float64': 'f8', 'int64': 'i8', 'uint32': 'i8'}\n"
         "rows = np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS])\n"
-        "table = pa.Table.from_batches([batch_of_rows(rows, schema('sim'))])\n"
+        f"folder = pathlib.Path({str(tmp_path)!r})\n"
+        "journal = JournalWriter(folder, schema('sim'), first=0)\n"
+        "journal.append(batch_of_rows(rows, schema('sim')))\n"
+        "journal.close()\n"
+        "table = pa.Table.from_batches(JournalReader(folder))\n"
         "[as_float(table.column(c.name)) for c in CHANNELS]"
     )
     assert "pandas" not in loaded(statement)

@@ -91,8 +91,9 @@ def hdf5(rows: Array, folder: Path) -> None:
 class Recording(Row):
     """13 channels, the rig's table, of a real slow run on the twin; the peers write the same 13.
 
-    Found: what the journal costs beside raw bytes is one Arrow batch each 0.2 s (13 columns to check for NaN, their
-    message, their checksum), the same whatever the rate; longer batches would cost less and lose more in a power cut.
+    Found: what the journal costs beside raw bytes is one Arrow batch each 0.2 s (its columns, their message, their
+    checksum), the same whatever the rate; longer batches would cost less and lose more in a power cut. Mended: NaN is
+    looked for in all columns at once, and columns are made of the bytes as they lie.
     """
 
     number: ClassVar[int] = 10
