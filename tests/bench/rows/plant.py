@@ -31,7 +31,7 @@ class Plant(Row):
 
     Found and mended in the run: operations on enums and an interrupt counter worked out anew each tick (a sixth of it),
     and a recorder that imported pandas through pyarrow before its first row (two thirds of its start). What is left is
-    the interpreter, 40 % of all samples in its inner loop and nothing else above 2 %: each of the devices, guard,
+    the interpreter, 40 % of all samples in its inner loop and nothing else above 3 %: each of the devices, guard,
     reference and ring is some hundred bytecodes. No part of it can be left out without leaving hardware's code.
     """
 
