@@ -117,10 +117,15 @@ def record(whole_run: Run, start: float) -> Recording:
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
     names = ("tau_m", "tau_l", "temperature")
     if motion is None:
-        found: dict[str, Array | None] = {name: run.column(name) for name in names}
-        return {"t": run.column("t"), "theta_m": None, "theta_l": run.column("theta_l"), **found}
-    picked = {name: motion.pick(run.column(name)) for name in names}
+        found = {name: _there(run.column(name)) for name in (*names, "theta_l")}
+        return {"t": run.column("t"), "theta_m": None, **found}
+    picked = {name: _there(motion.pick(run.column(name))) for name in names}
     return {"t": motion.t, "theta_m": motion.theta_m, "theta_l": motion.theta_l, **picked}
+
+
+def _there(x: Array | None) -> Array | None:
+    """A column of which most is numbers; one of mostly holes is no measurement."""
+    return x if x is not None and float(np.mean(np.isfinite(x))) > 0.5 else None
 
 
 def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:

@@ -87,6 +87,8 @@ def drops(bank: Bank, mine: Own, u: dict[str, Array], s: Solution) -> list[Drop]
     scale = np.where(np.diag(s.gram) > 0, 1 / np.sqrt(np.maximum(np.diag(s.gram), 1e-300)), 0.0)
     scaled = s.gram * scale * scale[:, None]
     scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    # what sensor noise adds is taken off: where little else is there, that may leave a direction less than nothing
+    scaled[np.diag_indices_from(scaled)] += max(0.0, 1e-11 - float(np.linalg.eigvalsh(scaled)[0]))
     lower = np.linalg.cholesky(scaled)
     half = {c: np.linalg.solve(lower, scale[:, None] * m) for c, m in u.items() if m.shape[1]}
     out = []

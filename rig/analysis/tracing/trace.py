@@ -68,7 +68,10 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
         )
     refuse_odd_torques(campaign.runs, campaign.name)
     if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
-        raise UsageError(f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one")
+        said = f" ({'; '.join(campaign.notes)[:300]})" if campaign.notes else ""
+        raise UsageError(
+            f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one{said}"
+        )
     eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
     s = fit(design(eq, (), parts.fitted))
     refuse_negative(s, campaign.name)
