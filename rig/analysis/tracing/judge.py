@@ -11,7 +11,7 @@ from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of
-from rig.analysis.tracing.search import possible, reduced
+from rig.analysis.tracing.search import as_fit, reduced
 from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
 from rig.model.effect import Array, Parameter, Reach
 
@@ -161,9 +161,12 @@ def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:
 
 
 def _can_be(s: Solution, name: str) -> bool:
-    """Whether every term of an effect has the signs and sizes such an effect can have, now that all are fitted."""
+    """Whether the terms of an effect have the signs and sizes such an effect can have, now that all are fitted; where
+    they make one sum, whether that has."""
     d = s.design
-    return all(possible(s, t, s.x[d.place(i)]) for i, t in enumerate(d.terms) if t.name == name)
+    fits = [(t, as_fit(s, t, s.x[d.place(i)])) for i, t in enumerate(d.terms) if t.name == name]
+    sums = [p.value for t, f in fits for p in t.effect.parameters(f) if p.name in t.effect.adds]
+    return sum(sums) > 0 if len(fits) > 1 and sums else all(t.effect.plausible(f) for t, f in fits)
 
 
 def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: Reach) -> list[str]:

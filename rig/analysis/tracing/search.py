@@ -124,10 +124,14 @@ def search(
 
 def possible(s: Solution, term: Term, coefficients: Array) -> bool:
     """Whether signs and sizes are such an effect's."""
+    return term.effect.plausible(as_fit(s, term, coefficients))
+
+
+def as_fit(s: Solution, term: Term, coefficients: Array) -> Fit:
+    """The coefficients of one term, without their covariance."""
     size = coefficients.size + len(term.shape)
     first = s.design.eq.runs[0]
-    known = first.pieces[0].gear
-    return term.effect.plausible(Fit(coefficients, term.shape, np.zeros((size, size)), known, first.ratio))
+    return Fit(coefficients, term.shape, np.zeros((size, size)), first.pieces[0].gear, first.ratio)
 
 
 def still(s: Solution, floors: Mapping[Key, float]) -> bool:

@@ -12,6 +12,7 @@ from rig.model.memory import resonated
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
+HUB = 4.0  # or an inertia between the gear and the spring of the torque sensor
 
 
 class TorsionalMode(Effect):
@@ -21,6 +22,9 @@ class TorsionalMode(Effect):
     The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ
     that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever
     is that of the other angle. Of a mode above what the equations are compared at that is all there is to see.
+
+    A hub before the torque sensor is turned by the gear and not by what the sensor reads: the gear carries
+    J_2·(ω̇_l + T̈/k) more, k being the sensor's spring.
     """
 
     name: ClassVar[str] = "torsional_mode"
@@ -39,20 +43,23 @@ class TorsionalMode(Effect):
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
         modes = tuple((side, float(f), self.ZETA) for side in (LOAD, MOTOR) for f in frequencies)
-        return (*modes, *((side, float(max(reach.band, self.LOWEST)), self.ZETA) for side in (BEFORE, AFTER)))
+        return (*modes, *((side, float(max(reach.band, self.LOWEST)), self.ZETA) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((LOAD, AFTER), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
+        return ((LOAD, HUB), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
-        return shape[0] < BEFORE and shape[1] > 1.15 * reach.band
+        return shape[0] in (LOAD, MOTOR) and shape[1] > 1.15 * reach.band
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m)."""
+        """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
+        two, for J_2 and for J_2/k."""
         side, frequency, zeta = shape
-        if side >= BEFORE:
+        if side == HUB:
+            return self._hub(signals)
+        if side in (BEFORE, AFTER):
             return self._twist(signals, side)
         alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
         # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
@@ -71,9 +78,16 @@ class TorsionalMode(Effect):
             Port.MOTOR_TORQUE: (s.torque * s.series_bend * through)[:, None],
         }
 
+    def _hub(self, s: Signals) -> Mapping[Port, Array]:
+        turned = np.stack([s.alpha_l, np.gradient(s.torque_rate, s.dt)], 1)
+        lever = 1.0 / s.ratio - s.series_slope
+        return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Inertia, frequency and damping; of a stiff coupling its compliance."""
-        if fit.shape[0] >= BEFORE:
+        """Inertia, frequency and damping; of a stiff coupling its compliance, of a hub no damping."""
+        if fit.shape[0] == HUB:
+            return self._of_hub(fit)
+        if fit.shape[0] in (BEFORE, AFTER):
             return (parameter("coupling_compliance", fit.coefficients[0], fit.half_width(np.eye(4)[0]), "rad/(N·m)"),)
         inertia, _, frequency, zeta = np.eye(4)[:, : fit.covariance.shape[0]]
         return (
@@ -82,6 +96,16 @@ class TorsionalMode(Effect):
             parameter("zeta", fit.shape[2], fit.half_width(zeta), "1"),
         )
 
+    def _of_hub(self, fit: Fit) -> tuple[Parameter, ...]:
+        inertia, square = fit.coefficients[:2]
+        by_inertia, by_square = np.eye(5)[:2]
+        frequency = 1.0 / (2.0 * np.pi * np.sqrt(max(square, 1e-12)))
+        half = fit.half_width(by_square * frequency / (2.0 * max(square, 1e-12)))
+        return (
+            parameter("J_2", inertia, fit.half_width(by_inertia), "kg·m²"),
+            parameter("frequency", frequency, half, "Hz"),
+        )
+
     def plausible(self, fit: Fit) -> bool:
         """An inertia is positive, and so is a compliance."""
-        return bool(fit.coefficients[0] > 0)
+        return bool(fit.coefficients[0] > 0 and (fit.shape[0] != HUB or fit.coefficients[1] > 0))

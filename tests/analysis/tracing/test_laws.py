@@ -10,7 +10,7 @@ import pytest
 from rig.analysis.tracing.smoothing import thin
 from rig.model.effect import Moved, Port
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
-from rig.model.effects.torsional_mode import AFTER, BEFORE, TorsionalMode
+from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
 
 RAW, FACTOR = 1e-3, 4
@@ -60,3 +60,15 @@ def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
     s = motion()
     column = LoadDependentFriction().columns(s, (0.0, 1.0))[Port.MOTOR_TORQUE][:, 0]
     np.testing.assert_allclose(column, np.abs(s.torque) / N * s.way, atol=1e-15)
+
+
+def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> None:
+    """With the load at rest and the torque at the hub's own frequency the gear is not wound up."""
+    inertia, hz = 0.05, 4.0
+    s = motion()
+    omega = 2 * np.pi * hz
+    torque = 5.0 * np.sin(omega * s.t)
+    s = dataclasses.replace(s, torque=torque, torque_rate=5.0 * omega * np.cos(omega * s.t), alpha_l=0.0 * s.t)
+    wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
+    inside = slice(5, -5)
+    np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
