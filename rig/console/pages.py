@@ -21,6 +21,7 @@ STATE_EVERY = 0.2  # s: State at least five times a second
 GRACE = 5.0  # s a page that was in control may take to come back: a reload
 UNKNOWN = 4401  # websocket close code: no token, or a wrong one
 LONGEST_WORD = 4096  # characters
+PACE = 0.01  # s between two words of a page, which has twenty a second to say: one that floods waits at its own end
 
 
 @final
@@ -83,10 +84,12 @@ class Pages:
 
     async def _hear(self, socket: WebSocket) -> None:
         """Every word a page says is a sign of life; nothing else is asked by this way."""
-        with contextlib.suppress(WebSocketDisconnect, KeyError):
+        # RuntimeError: the writer found out first that the page is gone
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError, KeyError):
             while True:
                 if len(await socket.receive_text()) <= LONGEST_WORD:
                     self._desk.link.switches.page_alive()
+                await asyncio.sleep(PACE)
 
     async def _write(self, socket: WebSocket, page: str) -> None:
         """A page that is slow waits here alone: samples it has no time for fall out of its queue."""

@@ -47,6 +47,7 @@ class Serving:
         config = uvicorn.Config(
             self.console.app, log_level="error", access_log=False, ws_ping_interval=5.0, ws_ping_timeout=10.0,
             timeout_graceful_shutdown=GOODBYE, ws_max_size=65_536, server_header=False,
+            ws_per_message_deflate=False,  # a line of this machine: packing costs time, unpacking a flood memory
         )  # fmt: skip
         self._server = Server(config)
         self._asked = 0  # times somebody asked for the end
@@ -98,7 +99,7 @@ def _listen(host: str, port: int) -> socket.socket:
         raise NotReady(f"nothing can listen at port {port}: ports go from 0, which finds a free one, to {HIGHEST}")
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
-        made = socket.socket(family, socket.SOCK_STREAM)
+        made = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)  # named, or asyncio leaves Nagle on
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind((host, port))
         made.listen(128)
