@@ -97,6 +97,7 @@ def search(
     s = fit(d)
     fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered, refused)
     u = cross(bank, d, keys, 0)
+    barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
         if still(s, floors):
             break
@@ -107,18 +108,23 @@ def search(
             (
                 r
                 for r in ranked
-                if r.evidence > max(EVIDENCE, RELATIVE * first) and r.size > SMALLEST and _new(r.term, s)
+                if r.evidence > max(EVIDENCE, RELATIVE * first)
+                and r.size > SMALLEST
+                and _new(r.term, s)
+                and r.term not in barren
             ),
             None,
         )
         if chosen is None:
             break
         s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
-        d, first = s.design, len(BASELINE)
+        d, first, entered = s.design, len(BASELINE), s.design.terms[-1]
         new = cross(bank, d, keys, first)
         u = {c: m[:first] for c, m in u.items()}
         u = {c: np.vstack([u[c], new[c]]) for c in u}
         d, s, u = _pruned(s, u)
+        if entered not in d.terms:
+            barren.add(chosen.term)
     return Found(s, ranking)
 
 

@@ -19,10 +19,11 @@ class CoggingTorque(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
     HIGHEST: Final = 60  # LCM(slots, poles) of common servo motors: 12 to 60
+    BEYOND: Final = (66, 72, 78, 84, 90, 96, 108, 120)  # harmonics of those: three phases make sixes
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Orders 1 to 60."""
-        return tuple((float(k),) for k in range(1, self.HIGHEST + 1))
+        """Orders 1 to 60, and the likely ones beyond."""
+        return tuple((float(k),) for k in (*range(1, self.HIGHEST + 1), *self.BEYOND))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine."""

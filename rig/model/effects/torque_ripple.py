@@ -22,15 +22,16 @@ class TorqueRipple(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
     HIGHEST: Final = 60  # as cogging
+    BEYOND: Final = (66, 72, 78, 84, 90, 96, 108, 120)  # harmonics of those: three phases make sixes
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Orders 1 to 60."""
-        return tuple((float(k),) for k in range(1, self.HIGHEST + 1))
+        """Orders 1 to 60, and the likely ones beyond."""
+        return tuple((float(k),) for k in (*range(1, self.HIGHEST + 1), *self.BEYOND))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """τ_m times cosine and sine."""
-        x = shape[0] * signals.theta_m
-        return {Port.MOTOR_TORQUE: np.stack([np.cos(x), np.sin(x)], 1) * signals.tau_m[:, None]}
+        x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m) * signals.tau_m
+        return {Port.MOTOR_TORQUE: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Relative amplitude and phase."""
