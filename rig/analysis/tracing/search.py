@@ -103,18 +103,9 @@ def search(
             break
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
-        first = ranking[0].evidence if ranking else 0.0
-        chosen = next(
-            (
-                r
-                for r in ranked
-                if r.evidence > max(EVIDENCE, RELATIVE * first)
-                and r.size > SMALLEST
-                and _new(r.term, s)
-                and r.term not in barren
-            ),
-            None,
-        )
+        least = max(EVIDENCE, RELATIVE * (ranking[0].evidence if ranking else 0.0))
+        worth = (r for r in ranked if r.evidence > least and r.size > SMALLEST and r.term not in barren)
+        chosen = next((r for r in worth if _new(r.term, s)), None)
         if chosen is None:
             break
         s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
