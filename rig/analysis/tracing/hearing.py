@@ -19,7 +19,6 @@ from rig.analysis.tracing.parameters import effects
 from rig.analysis.tracing.report import own_shares
 from rig.analysis.tracing.search import Found, polished, reduced, search
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
-from rig.analysis.tracing.verdict import worst
 from rig.model.effect import Parameter, Reach
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ class Heard:
     @property
     def loud(self) -> bool:
         """Whether more is left on the held-out runs than may be."""
-        total, single = worst(self.p, self.p.court.residuals(self.solution, self.held))
+        total, single = self.p.court.worst(self.p.court.residuals(self.solution, self.held))
         return total > EXPLAINED or single > MISSING
 
 

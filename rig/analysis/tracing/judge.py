@@ -43,6 +43,11 @@ class Court:
         total, n = self.excess(e, keys)
         return float(np.sqrt(total / max(n, 1)))
 
+    def worst(self, e: Mapping[Key, Array]) -> tuple[float, float]:
+        """Largest RMS over floor of a channel, and of a single run in a channel."""
+        by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
+        return max(self.ratio(e, keys) for keys in by_channel if keys), max(self.ratio(e, [k]) for k in e)
+
 
 @dataclass(frozen=True)
 class Worth:

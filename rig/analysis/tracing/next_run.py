@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from rig.analysis.tracing.bank import reach
 from rig.analysis.tracing.expected import proposals, sigmas
+from rig.analysis.tracing.judge import unseen
+from rig.analysis.tracing.refine import refine
 from rig.analysis.tracing.result import NextRun
-from rig.analysis.tracing.search import Found, Scored
-from rig.analysis.tracing.thresholds import CLOSE
+from rig.analysis.tracing.search import Found, Scored, possible
+from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
 SIGMAS: Final = 3.0  # standard deviations, at least
+HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
 
 
 def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str, ...], NextRun | None]:
@@ -24,12 +28,25 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
     best = next((r for r in found.ranking if r.term.name == names[0]), None)
     if best is None or len(names) > 1:
         return (), None
-    close = [r for r in found.ranking if r.term.name not in names and r.evidence > CLOSE * best.evidence]
+    others = [r for r in found.ranking if r.term.name not in names]
+    close = [r for r in others if r.evidence > CLOSE * best.evidence or _as_good(p, r, best)]
     rivals = tuple(r.term.name for r in close)
     if not rivals:
         return (), None
     asked = _by_information(p, best, close)
     return rivals, asked or _by_table({names[0], *rivals})
+
+
+def _as_good(p: Prepared, rival: Scored, best: Scored) -> bool:
+    """Whether a rival far behind in the bank's shape explains everything alone once its shape is fitted."""
+    if rival.evidence < HALF * best.evidence:
+        return False
+    runs = p.split.fitted
+    s = refine(p.baseline.design, rival.term, runs, reach([p.eq.runs[i] for i in runs]))[1]
+    if not possible(s, rival.term, s.x[s.design.place(0)]):
+        return False
+    total, single = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
+    return total < QUIET and single < STILL_RUN
 
 
 def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:

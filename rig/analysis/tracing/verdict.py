@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.local import IN_SHORT
 from rig.analysis.tracing.model import Solution
@@ -46,8 +45,8 @@ def decide(
     """From held-out ratios and the effects that may be named, with what is `left` over the floor where each acts."""
     order = {r.term.name: i for i, r in enumerate(found.ranking)}
     names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
-    total, single = worst(p, after)
-    first, _ = worst(p, before)
+    total, single = p.court.worst(after)
+    first, _ = p.court.worst(before)
     line = p.own.line
     loud = total > EXPLAINED or single > MISSING or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
@@ -85,15 +84,6 @@ def _in_short(name: str) -> str:
 
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
-
-
-def worst(p: Prepared, e: Mapping[Key, Array]) -> tuple[float, float]:
-    """Largest RMS over floor of a channel, and of a single run in a channel."""
-    by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
-    return (
-        max(p.court.ratio(e, keys) for keys in by_channel if keys),
-        max(p.court.ratio(e, [k]) for k in e),
-    )
 
 
 def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Ruling:
