@@ -42,10 +42,15 @@ def _value(field: Field[Any], raw: Any) -> Any:
     """`raw` as the field wants it. Raises UsageError."""
     wanted = type(field.default) if field.default is not MISSING else str
     signed = bool(field.metadata.get("signed", False))
+    one = isinstance(raw, float | int) and not isinstance(raw, bool)
+    if wanted is tuple and one:
+        return (_number(field, raw, signed),)
     if wanted is tuple and isinstance(raw, list | tuple) and raw:
         return tuple(_number(field, value, signed) for value in raw)
     if wanted is float:
         return _number(field, raw, signed)
+    if wanted is str and one:  # a list written as text, of one: 900 for "900"
+        return f"{_number(field, raw, signed=True):.12g}"
     if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
         raise _refused(field, raw, WORDS.get(wanted, wanted.__name__))
     if isinstance(raw, int) and not isinstance(raw, bool):
