@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -111,7 +111,9 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
             kept[point(row), one.name].append((row, one))
     if not kept:
         refuse_unknown(figure, _seen(found))
-    series = tuple(_series(at, members) for (at, _), members in kept.items())
+    measured = {row.path for members in kept.values() for row, _ in members}
+    numbers = _numbers([row for row in found if row.path in measured])
+    series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
     return Trend(figure, series, _left_out(found, figure) - sum(len(s.spots) for s in series))
 
 
@@ -132,16 +134,23 @@ def _names(row: Row) -> set[str]:
         return set()
 
 
-def _series(at: Point, members: Sequence[tuple[Row, Figure]]) -> Series:
+def _numbers(rows: Sequence[Row]) -> dict[tuple[str, Mounting], int]:
+    """1, 2, … for each gear in order of time: an assembly has one number in every series."""
+    of_gear: dict[str, dict[Mounting, None]] = defaultdict(dict)
+    for row in sorted(rows, key=lambda row: row.started_utc):
+        of_gear[row.gear].setdefault(mounting(row))
+    return {(gear, one): k for gear, found in of_gear.items() for k, one in enumerate(found, 1)}
+
+
+def _series(at: Point, members: Sequence[tuple[Row, Figure]], numbers: Mapping[tuple[str, Mounting], int]) -> Series:
     sets: dict[Mounting, list[float]] = defaultdict(list)
     for row, figure in members:
         sets[mounting(row)].append(figure.value)
     spread = scatter(sets.values())
-    numbers = {one: k + 1 for k, one in enumerate(sets)}
     spots, since = [], [members[0]]
     for k, (row, figure) in enumerate(members):
-        spot = _judged(row, figure, numbers[mounting(row)], [f for _, f in since], spread) if k else Spot(
-            row, figure, numbers[mounting(row)], math.nan, math.nan, False
+        spot = _judged(row, figure, numbers[at.gear, mounting(row)], [f for _, f in since], spread) if k else Spot(
+            row, figure, numbers[at.gear, mounting(row)], math.nan, math.nan, False
         )  # fmt: skip
         spots.append(spot)
         since = [(row, figure)] if spot.changed else [*since, (row, figure)] if k else since

@@ -119,6 +119,17 @@ def test_a_trend_marks_the_day_of_the_change_and_follows_on_from_there(tmp_path:
     assert "1 change larger than reproducibility: 2026-11-17 by +2.95 arcsec" in series.sentence
 
 
+def test_an_assembly_has_one_number_in_every_series_of_its_gear(tmp_path: Path) -> None:
+    run(tmp_path, DAYS[0], 0)
+    run(tmp_path, DAYS[1], 1)
+    faster = {"speed_rpm": 300.0, "assembly": 1}  # not measured on the first day
+    run(tmp_path, DAYS[1], 2, conditions=faster)
+    run(tmp_path, DAYS[1], 3, gear={"serial": "SN2"})
+    numbers = {(s.gear, s.title): [spot.assembly for spot in s.spots] for s in trend(tmp_path, "peak-to-peak").series}
+    assert sorted(numbers.values()) == [[1], [1, 2], [2]]
+    assert [found for (gear, _), found in numbers.items() if gear == "SN2"] == [[1]]
+
+
 def test_a_trend_has_a_series_for_each_gear_procedure_and_point_and_leaves_out_what_does_not_count(
     tmp_path: Path,
 ) -> None:
