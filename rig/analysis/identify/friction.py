@@ -65,7 +65,9 @@ def motor_friction(means: Sequence[Mean]) -> MotorFriction | None:
     both = _both_ways(rows)
     plain, offset, doubt = _columns(omega, both), 2 if both else None, ""
     straight, fast = random_effects(plain, y, v), np.abs(omega) >= SLOW
-    if not fast.all() and _speeds_differ([m for m, f in zip(rows, fast, strict=True) if f]):
+    faster = [m for m, f in zip(rows, fast, strict=True) if f]
+    # fast runs of one direction alone do not tell τ_c from an offset: there is no line of theirs to be off
+    if not fast.all() and _speeds_differ(faster) and _both_ways(faster) == both:
         line = random_effects(plain[fast], y[fast], v[fast])
         excess = np.sign(omega) * (y - plain @ line.coefficients)
         slow = float(np.mean(excess[~fast]))
