@@ -42,6 +42,8 @@ def _value(field: Field[Any], raw: Any) -> Any:
     """`raw` as the field wants it. Raises UsageError."""
     wanted = type(field.default) if field.default is not MISSING else str
     signed = bool(field.metadata.get("signed", False))
+    if wanted is tuple and isinstance(raw, str):
+        raw = _listed(raw)
     one = isinstance(raw, float | int) and not isinstance(raw, bool)
     if wanted is tuple and one:
         return (_number(field, raw, signed),)
@@ -49,6 +51,8 @@ def _value(field: Field[Any], raw: Any) -> Any:
         return tuple(_number(field, value, signed) for value in raw)
     if wanted is float:
         return _number(field, raw, signed)
+    if wanted is str and isinstance(raw, list | tuple):  # and a list of several
+        return ",".join(f"{_number(field, value, signed=True):.12g}" for value in raw)
     if wanted is str and one:  # a list written as text, of one: 900 for "900"
         return f"{_number(field, raw, signed=True):.12g}"
     if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
@@ -56,6 +60,15 @@ def _value(field: Field[Any], raw: Any) -> Any:
     if isinstance(raw, int) and not isinstance(raw, bool):
         _number(field, raw, signed)
     return raw
+
+
+def _listed(text: str) -> Any:
+    """ "(1.0, 0.3)", "[1.0, 0.3]" and "1.0,0.3" as numbers; anything else as it is."""
+    words = [word for word in text.strip().strip("()[]").split(",") if word.strip()]
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        return text
 
 
 def _number(field: Field[Any], raw: Any, signed: bool) -> float:

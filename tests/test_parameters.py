@@ -27,7 +27,23 @@ def test_one_number_where_a_list_is_wanted_is_a_list_of_one() -> None:
     assert make(Asked, {"rates": 0.5}, "friction").rates == (0.5,)
 
 
-@pytest.mark.parametrize("raw", [True, float("nan"), float("inf"), 1e300, None, [900]])
+@pytest.mark.parametrize("raw", [True, float("nan"), float("inf"), 1e300, None, ["fast"]])
 def test_what_is_no_number_and_no_text_is_refused_by_name(raw: object) -> None:
     with pytest.raises(UsageError, match="speeds_rpm = "):
         make(Asked, {"speeds_rpm": raw}, "friction")
+
+
+@pytest.mark.parametrize("written", ["(1.0, 0.3, 3.0)", "[1.0, 0.3, 3.0]", "1.0,0.3,3", [1, 0.3, 3]])
+def test_a_list_is_understood_as_help_prints_it_and_as_people_write_it(written: object) -> None:
+    assert make(Asked, {"rates": written}, "try").rates == (1.0, 0.3, 3.0)
+
+
+@pytest.mark.parametrize("written", ["50,60", [50, 60.0]])
+def test_a_list_kept_as_text_may_be_written_as_one(written: object) -> None:
+    assert make(Asked, {"speeds_rpm": written}, "try").speeds_rpm == "50,60"
+
+
+@pytest.mark.parametrize("written", ["1.0,fast", "", "(1.0, -0.3)"])
+def test_what_is_no_list_of_numbers_above_zero_is_refused(written: str) -> None:
+    with pytest.raises(UsageError, match="rates = "):
+        make(Asked, {"rates": written}, "try")
