@@ -31,7 +31,7 @@ NEGATIVE: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
 
 def odd_angles(run: Recording) -> str | None:
     """What is wrong with the two angles of a run that turns freely, if they do not go together as 1:N."""
-    if run.locked or not {"theta_m", "theta_l"} <= run.has:
+    if run.locked or run.procedure == "standstill" or not {"theta_m", "theta_l"} <= run.has:
         return None
     went = [(p.theta_m - p.theta_m.mean(), p.theta_l - p.theta_l.mean()) for p in run.pieces]
     slope = run.ratio * float(sum(m @ x for m, x in went)) / max(float(sum(m @ m for m, _ in went)), 1e-300)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.campaign import read_campaign
+from rig.analysis.tracing.signs import odd_angles
 from rig.analysis.tracing.trace import prepare
 from rig.core.errors import UsageError
 
@@ -54,3 +57,8 @@ def test_a_wrong_sign_shows_without_any_weight_too(name: str, tmp_path: Path, sh
 @pytest.mark.slow
 def test_sensors_that_agree_are_not(tmp_path: Path, shared: Path) -> None:
     assert prepare(read_campaign(spoilt("tau_m", 1.0, tmp_path, shared)), ()).baseline.value("J_l") > 0
+
+
+def test_a_standstill_turns_nothing_and_is_not_asked_to() -> None:
+    run: Any = SimpleNamespace(locked=False, procedure="standstill", has=frozenset({"theta_m", "theta_l"}))
+    assert odd_angles(run) is None
