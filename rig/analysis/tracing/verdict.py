@@ -93,7 +93,10 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     words = " and ".join(f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names)
     rivals, next_run = deciding(p, names, found)
-    sentence = f"The model lacks {words}: with it the worst held-out error of a channel falls from {before:.1f} to {after:.2f} times the floor."
+    sentence = (
+        f"The model lacks {words}: with it the worst held-out error of a channel falls from {before:.1f} "
+        f"to {after:.2f} times the floor."
+    )
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
