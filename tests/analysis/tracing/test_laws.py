@@ -10,6 +10,7 @@ import pytest
 from rig.analysis.tracing.smoothing import thin
 from rig.model.effect import Moved, Port
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
+from rig.model.effects.load_dependent_kinematic_error import EACH, TORQUE, LoadDependentKinematicError
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
 
@@ -72,3 +73,11 @@ def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> Non
     wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
     inside = slice(5, -5)
     np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
+
+
+def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
+    s, effect = motion(), LoadDependentKinematicError()
+    whole, apart = (effect.columns(s, (of, 3.0, 3e-3)) for of in (TORQUE, TORQUE + EACH))
+    for port in (Port.KINEMATIC_ERROR, Port.LEVER):
+        np.testing.assert_allclose(apart[port].sum(1), whole[port][:, 0], atol=1e-12)
+        assert apart[port].shape[1] == 4
