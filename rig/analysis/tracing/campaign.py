@@ -35,7 +35,9 @@ def read_campaign(folder: Path) -> Campaign:
         raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
     places = sorted(path.parent for path in folder.glob("*/manifest.json"))
     if not places:
-        raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it")
+        deeper = sorted({path.parent.parent.name for path in folder.glob("*/*/manifest.json")})
+        hint = f"; {deeper[-1]} in it does" if deeper else ""
+        raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
     opened, notes = _open(places)
     opened, unfit = one_rig(opened)
     begun = starts(opened)

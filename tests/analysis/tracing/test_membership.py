@@ -1,5 +1,6 @@
 """Which runs of a folder are traced together, and when they were taken."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -8,6 +9,7 @@ import pytest
 
 from rig.analysis.tracing import campaign
 from rig.analysis.tracing.membership import one_rig, starts
+from rig.core.errors import UsageError
 
 
 def run(name: str, number: int = 1, rig_time: float | None = None, status: str = "completed", **conditions: Any) -> Any:
@@ -52,3 +54,11 @@ def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
     assert (
         found == "jog was left out: its motor went 0.40 of a turn, a kinematic error needs a whole one."
     ) is left_out
+
+
+def test_a_folder_of_campaigns_is_told_from_a_campaign(tmp_path: Path) -> None:
+    run = tmp_path / "campaign-a" / "run-1"
+    run.mkdir(parents=True)
+    (run / "manifest.json").write_text("{}")
+    with pytest.raises(UsageError, match="holds no run.*campaign-a in it does"):
+        campaign.read_campaign(tmp_path)
