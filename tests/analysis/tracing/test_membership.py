@@ -60,5 +60,5 @@ def test_a_folder_of_campaigns_is_told_from_a_campaign(tmp_path: Path) -> None:
     run = tmp_path / "campaign-a" / "run-1"
     run.mkdir(parents=True)
     (run / "manifest.json").write_text("{}")
-    with pytest.raises(UsageError, match="holds no run.*campaign-a in it does"):
+    with pytest.raises(UsageError, match=r"holds no run.*campaign-a in it does"):
         campaign.read_campaign(tmp_path)
