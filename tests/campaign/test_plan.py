@@ -46,7 +46,7 @@ def test_what_cannot_be_meant_is_refused_with_key_and_value(text: str, words: li
         ('procedure = "standstill"\nwith = { duration = -1 }', ["step 2", "expected more than 0"]),
         ('procedure = "lock-check"\nweight = 3', ["step 2", "locked output", "+3 N·m"]),
         ('procedure = "load-sweep"\nweight = 3', ["step 2", "load-sweep sets weight and depth itself"]),
-        ('procedure = "load-sweep"\nwith = { weights = 3 }', ["step 2", "weights = 3", "a list of numbers"]),
+        ('procedure = "load-sweep"\nwith = { weights = "heavy" }', ["step 2", "weights = heavy", "a list of numbers"]),
         ('procedure = "load-sweep"\nwith = { weights = [1, true] }', ["step 2", "a finite number"]),
     ],
 )

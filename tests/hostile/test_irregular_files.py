@@ -72,8 +72,10 @@ def replaced(folder: Path, name: str, put: Callable[[Path], None]) -> None:
 
 
 @IN_PLACE
-def test_what_is_no_regular_file_is_called_by_what_it_is(tmp_path: Path, put: Callable[[Path], None]) -> None:
-    os.chdir(tmp_path)
+def test_what_is_no_regular_file_is_called_by_what_it_is(
+    tmp_path: Path, put: Callable[[Path], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     put(Path("x"))
     with pytest.raises(OSError, match=f"it is {KINDS[put]}, expected a regular file"):
         regular("x")
