@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import logging
 import math
 import select
 import struct
@@ -16,8 +15,6 @@ import can
 from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
-
-logging.getLogger("can").setLevel(logging.CRITICAL)  # what matters of it we say in sentences
 
 SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
 OPERATIONAL = 0x05
@@ -175,16 +172,14 @@ class Bus:
 
     def _recv(self, timeout: float) -> can.Message | None:
         """Asleep until something comes: who looks again and again keeps the adapter from the processor."""
-        try:
+        waiting = -1
+        with contextlib.suppress(AttributeError, NotImplementedError):  # a bus within the process
             waiting = self._can.fileno()
-        except (AttributeError, NotImplementedError):  # a bus within the process
-            return self._can.recv(timeout)  # type: ignore[no-any-return]
-        if waiting < 0:
-            return self._can.recv(timeout)  # type: ignore[no-any-return]
-        poll = select.poll()
-        poll.register(waiting, select.POLLIN)
-        poll.poll(math.ceil(1e3 * timeout))
-        return self._can.recv(0.0)  # type: ignore[no-any-return]
+        if waiting >= 0:
+            poll = select.poll()
+            poll.register(waiting, select.POLLIN)
+            poll.poll(math.ceil(1e3 * timeout))
+        return self._can.recv(0.0 if waiting >= 0 else timeout)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
         now = self.clock.now()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import logging
 import os
 import re
 import sys
@@ -98,6 +99,7 @@ class Alone:
 
 def connect_alone(interface: str, channel: str, **options: Any) -> Any:
     """`can.Bus`, refused where another process is on that channel. Raises NotReady, and what the backend raises."""
+    logging.getLogger("can").setLevel(logging.CRITICAL)  # what matters of its log we say in sentences
     if interface in PRIVATE:
         return can.Bus(interface=interface, channel=channel, **options)
     claim = Claim(_name(interface, channel, options))

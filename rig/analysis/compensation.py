@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from rig.analysis.align import Alignment, align
 from rig.analysis.angle import ARCSEC, TURN
-from rig.analysis.intervals import t95
+from rig.analysis.intervals import Ranged, t95
 from rig.analysis.result import Array
 from rig.core.errors import DataError
 from rig.model.fourier import FourierSeries
@@ -26,21 +26,12 @@ Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Figure:
-    """One number in arcsec with its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
 class Followed:
     """How a run's load followed. `error` is θ_l − θ_l,ref over the motor turn, forth and back, (2, BINS) rad, means
     taken off; `tracking` the same of the motor's own error over N, `loop` that turn by turn, (turns, BINS)."""
 
-    peak_to_peak: Figure
-    rms: Figure
+    peak_to_peak: Ranged
+    rms: Ranged
     error: Array
     tracking: Array
     loop: Array
@@ -116,11 +107,11 @@ def _whole(row: Array) -> Array:
     return np.asarray(filled - filled.mean())
 
 
-def _figure(values: Array) -> Figure:
+def _figure(values: Array) -> Ranged:
     """Mean over turns, interval from their scatter."""
     mean, n = float(values.mean()), values.size
     half = t95(n - 1) * float(values.std(ddof=1)) / np.sqrt(n) if n > 1 else float("nan")
-    return Figure(mean, mean - half, mean + half)
+    return Ranged(mean, mean - half, mean + half)
 
 
 def zero_of(before: Followed, series: FourierSeries) -> Alignment | None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.intervals import t95
+from rig.analysis.intervals import Ranged, t95
 from rig.analysis.result import Array
 
 SHAPES = 400  # trial values of T_c
@@ -22,15 +22,6 @@ class LoadRun:
     load: float
     peak_to_peak: float
     down: bool
-
-
-@dataclass(frozen=True)
-class Ranged:
-    """A value and its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
 
 
 @dataclass(frozen=True)

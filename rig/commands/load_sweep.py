@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +9,8 @@ from typing import TYPE_CHECKING
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
-    from rig.analysis.load_law import LoadRun, Ranged
+    from rig.analysis.intervals import Ranged
+    from rig.analysis.load_law import LoadRun
 
 FIGURE = "kinematic_error_peak_to_peak"
 
@@ -27,15 +27,16 @@ def load_law_of(folder: Path) -> int:
 def runs_of(folder: Path) -> list[LoadRun]:
     """Every completed slow run of the campaign in `folder` that was analysed."""
     from rig.analysis.load_law import LoadRun
+    from rig.catalogue.figures import figures
+    from rig.runfile.manifest import read
 
     found = []
     for path in sorted(folder.glob("*/result.json")):
-        manifest = json.loads((path.parent / "manifest.json").read_text(encoding="utf-8"))
-        figure = json.loads(path.read_text(encoding="utf-8"))["estimates"].get(FIGURE)
+        manifest, figure = read(path.parent), figures(path.parent).get(FIGURE)
         if figure is not None and manifest.get("status") == "completed":
             about = manifest.get("conditions") or {}
             note = str(about.get("note") or "")
-            found.append(LoadRun(float(about.get("tau_ext") or 0.0), float(figure["value"]), note.endswith("down")))
+            found.append(LoadRun(float(about.get("tau_ext") or 0.0), figure.value, note.endswith("down")))
     return found
 
 

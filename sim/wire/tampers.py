@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Sequence
 from typing import final
 
@@ -25,9 +26,9 @@ class Selective(Tamper):
         self.done = self.count <= 0
         return self.act(frame)
 
+    @abstractmethod
     def act(self, frame: Frame) -> Arrivals:
         """What arrives in place of one it acts on."""
-        raise NotImplementedError
 
 
 @final

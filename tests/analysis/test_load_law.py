@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from rig.analysis.load_law import LoadRun, Ranged, down_less_up, load_law
-from rig.commands.load_sweep import told
+from rig.analysis.intervals import Ranged
+from rig.analysis.load_law import LoadRun, down_less_up, load_law
+from rig.commands.load_sweep import runs_of, told
 
 LOADS = (0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0)  # N·m
 P_0, P_INF, T_C = 80.0, 50.0, 2.5  # arcsec, arcsec, N·m
@@ -53,3 +57,19 @@ def test_too_few_loads_give_a_table_and_no_law() -> None:
     assert load_law(few) is None
     assert "no law fitted" in told(few)[-1]
     assert told(few)[2].split() == ["0", "80.00", "–"]
+
+
+def test_runs_are_read_from_the_campaign_and_those_that_were_stopped_are_not(tmp_path: Path) -> None:
+    for name, status, note in (("a", "completed", "up"), ("b", "completed", "down"), ("c", "tripped", "up")):
+        (tmp_path / name).mkdir()
+        about = {
+            "schema": "hdrig.run/1",
+            "procedure": "kinematic-error",
+            "gear": {"ratio": 50},
+            "status": status,
+            "conditions": {"tau_ext": 2.5, "note": note},
+        }
+        (tmp_path / name / "manifest.json").write_text(json.dumps(about))
+        said = {"estimates": {"kinematic_error_peak_to_peak": {"value": 90.0, "unit": "arcsec", "ci95": [89.0, 91.0]}}}
+        (tmp_path / name / "result.json").write_text(json.dumps(said))
+    assert runs_of(tmp_path) == [LoadRun(2.5, 90.0, down=False), LoadRun(2.5, 90.0, down=True)]

@@ -94,6 +94,7 @@ def add_tangent(found: Findings, s: Stiffness) -> None:
 
 
 def add_lost_motion(found: Findings, s: Stiffness, rated: float | None) -> None:
+    """The wind-up between ±4 % of the rated torque, as makers give it, or why it cannot be told."""
     torque = LOST * (rated or RATED)
     if torque > s.tau_ref:
         found.cannot.append(f"Lost motion: ±{torque:.3g} N·m (4 % of rated) is more than was tested.")

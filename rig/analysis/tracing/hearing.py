@@ -11,10 +11,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.bank import Bank
-from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.judge import Worth, convicted, court, unresolved
 from rig.analysis.tracing.model import Design, Solution, design, fit
-from rig.analysis.tracing.noise import floor_of
 from rig.analysis.tracing.parameters import effects
 from rig.analysis.tracing.report import own_shares
 from rig.analysis.tracing.search import Found, polished, reduced, search
@@ -66,16 +64,11 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
     if not refused or case.p.own.line is not None or not case.loud:
         return case
     d = case.solution.design
-    others = search(d, bank, runs, case.solution.keys, covered, fitted_floors(case.p), found.ranking, refused)
+    others = search(d, bank, runs, case.solution.keys, covered, case.p.floors, found.ranking, refused)
     if not set(others.names) - stay:
         return case
     other = heard(case.p, others, runs, covered)
     return case if other.loud else other
-
-
-def fitted_floors(p: Prepared) -> dict[Key, float]:
-    """Floors of the fitted blocks."""
-    return {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
 
 
 def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:

@@ -18,7 +18,6 @@ from rig.analysis.tracing.free import curves_of, free, with_free
 from rig.analysis.tracing.judge import Worth, unseen
 from rig.analysis.tracing.lives import lives_in
 from rig.analysis.tracing.model import Design, Solution, design
-from rig.analysis.tracing.noise import floor_of
 from rig.analysis.tracing.pictures import pictures
 from rig.analysis.tracing.result import Floor, Found, Trace
 from rig.analysis.tracing.ripple import ripples
@@ -45,7 +44,7 @@ def report(
     """All of it as one value; `fitted` are the parameters of the effects in `s`."""
     empty = p.baseline
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
-    floors = {key: floor_of(p.measured, p.eq, key) for key in p.eq.of(p.split.fitted)}
+    floors = p.floors
     shares = {w.name: w.share for w in worths} | own_shares(p, s)
     left = {w.name: w.left for w in worths}
     ruling = decide(p, s, tuple(shares), left, before, after, floors, found)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from rig.analysis.tracing.bank import Bank, fill, reach
 from rig.analysis.tracing.campaign import Campaign, read_campaign
 from rig.analysis.tracing.channels import known_of
-from rig.analysis.tracing.equations import Equations, Noise, equations, spoiling
-from rig.analysis.tracing.hearing import fitted_floors, heard, heard_again
+from rig.analysis.tracing.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.hearing import heard, heard_again
 from rig.analysis.tracing.holdout import Split, split
 from rig.analysis.tracing.judge import Court, court
 from rig.analysis.tracing.model import Solution, design, fit
-from rig.analysis.tracing.noise import Measured, guess, measure, quieter
+from rig.analysis.tracing.noise import Measured, floor_of, guess, measure, quieter
 from rig.analysis.tracing.own import Own, find
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
@@ -39,6 +40,11 @@ class Prepared:
     court: Court
     own: Own
 
+    @cached_property
+    def floors(self) -> dict[Key, float]:
+        """Of the fitted blocks."""
+        return {key: floor_of(self.measured, self.eq, key) for key in self.eq.of(self.split.fitted)}
+
 
 def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     """Trace the campaign in `folder`. Raises UsageError when it cannot be read or has too little to fit and test."""
@@ -48,9 +54,9 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     start = fit(design(p.eq, (), runs))
     found = Found(start, ())
     bank: Bank | None = None
-    if not still(start, fitted_floors(p)):
+    if not still(start, p.floors):
         bank = fill(p.eq, list(CATALOGUE.values()), runs, covered)
-        found = search(start.design, bank, runs, start.keys, covered, fitted_floors(p))
+        found = search(start.design, bank, runs, start.keys, covered, p.floors)
         p, found = _looked_again(p, found, bank, covered)
     case = heard(p, found, runs, covered)
     if bank is not None:
@@ -108,4 +114,4 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
         measured = replace(measured, noise=measured.noise.free("A"))
     again = _built(p.campaign, p.split, eq, measured, own)
     s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
-    return again, search(s.design, bank, runs, s.keys, covered, fitted_floors(again), found.ranking)
+    return again, search(s.design, bank, runs, s.keys, covered, again.floors, found.ranking)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Final
+from typing import ClassVar
 
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.motor_orders import MOTOR_ORDERS
 
 
 class TorqueRipple(Effect):
@@ -21,12 +22,10 @@ class TorqueRipple(Effect):
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
-    HIGHEST: Final = 60  # as cogging
-    BEYOND: Final = (66, 72, 78, 84, 90, 96, 108, 120)  # harmonics of those: three phases make sixes
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Orders 1 to 60, and the likely ones beyond."""
-        return tuple((float(k),) for k in (*range(1, self.HIGHEST + 1), *self.BEYOND))
+        """Those of a servo motor."""
+        return tuple((float(k),) for k in MOTOR_ORDERS)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """τ_m times cosine and sine."""
