@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import final
 
@@ -13,7 +13,7 @@ from sim.wire.frame import Frame
 Arrivals = Sequence[tuple[float, Frame]]
 
 
-class Selective(Tamper):
+class Selective(Tamper, ABC):
     """Acts on `count` frames with `identifier` (flags included; None: every frame), then it is done."""
 
     def __init__(self, identifier: int | None, count: float = math.inf) -> None:
