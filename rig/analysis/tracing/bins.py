@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.unknown import Rest
+from rig.analysis.tracing.rest import Rest
 from rig.model.effect import Array
 
 Index = npt.NDArray[np.int64]

@@ -9,7 +9,8 @@ import numpy as np
 
 from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.equations import Key
-from rig.analysis.tracing.unknown import rest, spectrum
+from rig.analysis.tracing.rest import rest
+from rig.analysis.tracing.unknown import spectrum
 from rig.model.effect import Array
 
 if TYPE_CHECKING:

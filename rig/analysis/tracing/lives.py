@@ -9,8 +9,8 @@ import numpy as np
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.rest import rest
 from rig.analysis.tracing.shares import COORDINATES, PAIRS, shares
-from rig.analysis.tracing.unknown import rest
 from rig.model.effect import Array
 
 SOME: Final = 0.3  # share of the excess that a coordinate must predict

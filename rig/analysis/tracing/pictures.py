@@ -12,8 +12,9 @@ from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Key
 from rig.analysis.tracing.errors import UNITS
 from rig.analysis.tracing.floor import strokes
+from rig.analysis.tracing.rest import rest
 from rig.analysis.tracing.shares import shares
-from rig.analysis.tracing.unknown import rest, spectrum
+from rig.analysis.tracing.unknown import spectrum
 from rig.model.effect import Array
 
 if TYPE_CHECKING:

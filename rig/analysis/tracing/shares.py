@@ -8,8 +8,10 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.bins import BINNED
+from rig.analysis.tracing.coordinates import INDICES
 from rig.analysis.tracing.equations import Key
-from rig.analysis.tracing.unknown import INDICES, Rest, folds, homes, score
+from rig.analysis.tracing.rest import Rest
+from rig.analysis.tracing.unknown import folds, homes, score
 from rig.model.effect import Array
 
 SPAN: Final = 25  # rows either way, 0.2 s: the rate of a torque from row to row is mostly noise

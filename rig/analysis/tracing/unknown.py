@@ -8,15 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.channels import CHANNELS
+from rig.analysis.tracing.coordinates import INDICES, JOINT
 from rig.analysis.tracing.equations import Equations, Key
+from rig.analysis.tracing.rest import Rest, rest
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
-BINS = 60  # of a turn: 6°, a few teeth
-LEVELS = 24  # of a range
-PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
 
 
 @dataclass(frozen=True)
@@ -29,48 +28,6 @@ class Home:
     order: float | None = None  # cycles per turn
     frequency_hz: float | None = None
     index: Callable[[Rest], Array] | None = None  # bins it was read in; none for a line
-
-
-@dataclass(frozen=True)
-class Rest:
-    """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name."""
-
-    e: Array
-    run: Array
-    at: dict[str, Array]
-    dt: float
-
-
-def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Rest | None:
-    """Join the runs of one channel."""
-    keys = [k for k in e if k[1] == channel]
-    if not keys:
-        return None
-    made = [_coordinates(eq, k) for k in keys]
-    at = {name: np.concatenate([m[name] for m in made]) for name in made[0]}
-    run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
-    smooth = eq.runs[keys[0][0]].smoother
-    return Rest(np.concatenate([e[k] / floors[k] for k in keys]), run, at, smooth.dt * smooth.step)
-
-
-def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:
-    run, kept = eq.runs[key[0]], eq.rows[key].keep
-    rows = [run.smoother.centres(p.t.size) for p in run.pieces]
-
-    def of(name: str) -> Array:
-        return np.asarray(np.concatenate([getattr(p, name)[r] for p, r in zip(run.pieces, rows, strict=True)])[kept])
-
-    names = {
-        "motor_angle": "theta_m",
-        "load_angle": "theta_l",
-        "speed": "omega_m",
-        "load": "torque",
-        "direction": "way",
-        "time": "t",
-        "temperature": "temperature",
-        "torque_rate": "torque_rate",
-    }
-    return {name: of(column) for name, column in names.items()}
 
 
 def homes(r: Rest, channel: str) -> list[Home]:
@@ -105,54 +62,6 @@ def score(r: Rest, fold: Array, index: Array) -> float:
         gain += float(np.sum(r.e[seen] ** 2 - (r.e[seen] - guess) ** 2))
         n += int(np.sum(fold == test))
     return gain / max(n, 1)
-
-
-def _levels(x: Array, count: int = LEVELS) -> Array:
-    good = np.isfinite(x)
-    if good.sum() < 100 or np.ptp(x[good]) == 0:
-        return np.full(x.size, -1)
-    edges = np.unique(np.quantile(x[good], np.linspace(0, 1, count + 1)[1:-1]))
-    return np.where(good, np.digitize(x, edges), -1)
-
-
-def _turn(x: Array, bins: int) -> Array:
-    good = np.isfinite(x)
-    return np.where(good, (np.mod(np.where(good, x, 0.0), TURN) / TURN * bins).astype(int) % bins, -1)
-
-
-INDICES: Mapping[str, Callable[[Rest], Array]] = {
-    "motor_angle": lambda r: _turn(r.at["motor_angle"], BINS),
-    "load_angle": lambda r: _turn(r.at["load_angle"], 6 * BINS),
-    "speed": lambda r: _levels(np.abs(r.at["speed"])),
-    "load": lambda r: _levels(r.at["load"]),
-    "direction": lambda r: (r.at["direction"] + 1).astype(int),
-    "time": lambda r: _levels(r.at["time"], PERIODS),
-    "temperature": lambda r: _levels(r.at["temperature"]),
-    "memory": lambda r: _both(_levels(r.at["load"]), _both(_branch(r), (r.at["direction"] + 1).astype(int))),
-}
-JOINT: Mapping[str, Sequence[Callable[[Rest], Array]]] = {
-    "time": (
-        lambda r: _both(_turn(r.at["motor_angle"], BINS), INDICES["time"](r)),
-        lambda r: _both(_levels(r.at["load"]), INDICES["time"](r)),
-        lambda r: _both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
-    ),
-    "temperature": (lambda r: _both(_levels(r.at["load"]), INDICES["temperature"](r)),),
-    "motor_angle": (lambda r: _both(_turn(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
-    "speed": (lambda r: _both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
-    "load": (lambda r: _both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
-}
-"""Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is
-said of them."""
-
-
-def _branch(r: Rest) -> Array:
-    """1 where the torque rises, else 0."""
-    return (r.at["torque_rate"] > 0).astype(int)
-
-
-def _both(a: Array, b: Array) -> Array:
-    """One index of two; −1 where either has none."""
-    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
 
 
 def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
@@ -205,11 +114,15 @@ def _line(r: Rest, channel: str) -> Home | None:
 
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
-    """Best coordinates of the channel with the most left, simpler ones first when they do as well."""
+    """Best coordinates of the channel with the most left."""
     parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
     channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
-    found = homes(most, channel)
-    best = found[0].share
+    return plainest(homes(most, channel))
+
+
+def plainest(found: Sequence[Home]) -> list[Home]:
+    """The best first, and before it simpler ones that do nearly as well."""
+    best = max(h.share for h in found)
     return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, SIMPLE.index(h.coordinate), -h.share))
 
 

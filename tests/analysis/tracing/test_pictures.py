@@ -7,9 +7,10 @@ import pytest
 
 from rig.analysis.tracing.bins import BINNED, rms
 from rig.analysis.tracing.pictures import interval
+from rig.analysis.tracing.rest import Rest
 from rig.analysis.tracing.shares import COORDINATES, PAIRS, score_of_orders, shares
 from rig.analysis.tracing.suspects import Tried, reason
-from rig.analysis.tracing.unknown import Rest, folds
+from rig.analysis.tracing.unknown import folds
 
 SLOW, FAST = 0.6, 20.0  # output rad seen in a run
 
@@ -22,6 +23,7 @@ def made(of: str, size: float = 3.0, seed: int = 1) -> Rest:
             "load_angle": start + np.linspace(0, width, 8000),
             "motor_angle": 50 * (start + np.linspace(0, width, 8000)),
             "load": load + rng.normal(0, 0.1, 8000),
+            "motor_torque": np.full(8000, np.nan),
             "speed": np.full(8000, 50 * width / 64),
             "direction": np.ones(8000),
             "time": run * 100.0 + np.arange(8000) / 125,

@@ -1,0 +1,55 @@
+"""What a torque has been, as a coordinate of the present: how far a play, a slow spring or a sum of it is behind.
+
+A rest with memory follows none of the things that are measured at the same moment. Three kinds of memory, each of a few
+sizes, cover what gears and sensors do: they keep a part of the last excursion (play), forget with time (leak) or keep
+everything (sum).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from scipy.signal import lfilter
+
+from rig.model.effect import Array
+from rig.model.memory import play
+
+WIDTHS: Final = (0.03, 0.1, 0.3)  # of the largest torque: half widths of a play
+LEAKS: Final = (1.5, 8.0, 40.0)  # s: between a turn of the motor and a run
+LARGEST: Final = 0.99  # quantile of |torque| that counts as the largest
+
+
+def behind(torque: Array, run: Array, width: float) -> Array:
+    """How far a play of `width` times the largest torque is behind, run by run; N·m, (n,), NaN where there is none."""
+    good = np.isfinite(torque)
+    if not good.any():
+        return torque
+    half = width * float(np.quantile(np.abs(torque[good]), LARGEST))
+    return _by_run(torque, run, lambda x: x - play(x, half))
+
+
+def relaxing(torque: Array, run: Array, dt: float, leak: float) -> Array:
+    """How far a first-order follower of time constant `leak` s is behind, at rest when the run begins; N·m, (n,)."""
+    keep = float(np.exp(-dt / leak))
+    return _by_run(torque, run, lambda x: x - x[0] - lfilter([1 - keep], [1, -keep], x - x[0]))
+
+
+def summed(torque: Array, run: Array, dt: float) -> Array:
+    """Torque times time since the run began, about its mean: each run has a zero of its own; N·m·s, (n,)."""
+
+    def about_mean(x: Array) -> Array:
+        total = np.cumsum(x) * dt
+        return total - float(np.mean(total))
+
+    return _by_run(torque, run, about_mean)
+
+
+def _by_run(torque: Array, run: Array, memory: Callable[[Array], Array]) -> Array:
+    out = np.full(torque.size, np.nan)
+    for one in np.unique(run):
+        mine = (run == one) & np.isfinite(torque)
+        if mine.any():
+            out[mine] = memory(np.ascontiguousarray(torque[mine]))
+    return out

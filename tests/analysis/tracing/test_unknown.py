@@ -1,0 +1,83 @@
+"""Where a rest lives: the coordinate it was made with is found, whatever else changes beside it."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest import Rest
+from rig.analysis.tracing.unknown import homes, plainest
+from rig.model.memory import play
+
+DT = 1 / 125
+ROWS = 6000
+RUNS = 4
+At = dict[str, np.ndarray]
+
+
+def coordinates(rng: np.random.Generator) -> At:
+    """Runs of 48 s at two speeds, each way; the torque wanders as a shaft's does that two waves swing."""
+    parts = []
+    for run in range(RUNS):
+        t = np.arange(ROWS) * DT
+        way = 1.0 if run % 2 else -1.0
+        speed = 12.0 + 18.0 * (run // 2) + 6.0 * np.sin(0.4 * t)
+        load = way * 5.0 + 6.0 * np.sin(1.3 * t + run) + 4.0 * np.sin(7.1 * t) + rng.normal(0, 0.2, ROWS)
+        angle = np.cumsum(way * speed) * DT
+        parts.append(
+            {
+                "motor_angle": angle,
+                "load_angle": angle / 50,
+                "speed": way * speed,
+                "load": load,
+                "motor_torque": load / 50 + 0.2 * way,
+                "direction": np.full(ROWS, way),
+                "time": run * 60.0 + t,
+                "temperature": np.full(ROWS, np.nan),
+                "torque_rate": np.gradient(load, DT),
+            }
+        )
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def lagging(at: At) -> np.ndarray:
+    return np.concatenate([x - play(np.ascontiguousarray(x), 3.0) for x in np.split(at["load"], RUNS)])
+
+
+def slipping(at: At) -> np.ndarray:
+    over = at["load"] - np.clip(at["load"], -1.0, 1.0)
+    return np.concatenate([np.cumsum(x) * DT for x in np.split(over, RUNS)])
+
+
+MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
+    "a hump of friction at one speed": ("speed", lambda at: np.exp(-(((np.abs(at["speed"]) - 20) / 3) ** 2))),
+    "a dent at one output angle": (
+        "load_angle",
+        lambda at: np.exp(-((np.mod(at["load_angle"] - 2, 6.283) / 0.1) ** 2)),
+    ),
+    "a motor angle's seventh wave": ("motor_angle", lambda at: np.cos(7 * at["motor_angle"])),
+    "a knee in the load": ("load", lambda at: np.abs(at["load"])),
+    "a sensor that keeps a part of its last excursion": ("memory", lagging),
+    "a clamp that slips under torque": ("memory", slipping),
+    "growth over the day": ("time", lambda at: at["time"] / 240 * np.cos(2 * at["motor_angle"])),
+}
+
+
+@pytest.mark.parametrize("what", MADE)
+def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
+    rng = np.random.default_rng(5)
+    at = coordinates(rng)
+    expected, law = MADE[what]
+    made = law(at)
+    own_zero = np.concatenate([x - x.mean() for x in np.split(made, RUNS)])
+    e = 4.0 * own_zero / own_zero.std() + rng.normal(0, 1, own_zero.size)
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT), "A"))
+    assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
+    assert found[0].share > 0.5
+
+
+def test_noise_lives_nowhere() -> None:
+    rng = np.random.default_rng(6)
+    at = coordinates(rng)
+    found = homes(Rest(rng.normal(0, 1.3, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT), "A")
+    assert found[0].share < 0.1
