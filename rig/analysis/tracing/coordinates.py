@@ -24,7 +24,8 @@ def _levels(x: Array, count: int = LEVELS) -> Array:
     return np.where(good, np.digitize(x, edges), -1)
 
 
-def _turn(x: Array, bins: int) -> Array:
+def turned(x: Array, bins: int) -> Array:
+    """Bins of an angle [rad] that comes back to itself; −1 where it is unknown."""
     good = np.isfinite(x)
     return np.where(good, (np.mod(np.where(good, x, 0.0), TURN) / TURN * bins).astype(int) % bins, -1)
 
@@ -47,8 +48,8 @@ def _memories(name: str) -> tuple[Callable[[Rest], Array], ...]:
 
 
 INDICES: Mapping[str, Callable[[Rest], Array]] = {
-    "motor_angle": lambda r: _turn(r.at["motor_angle"], BINS),
-    "load_angle": lambda r: _turn(r.at["load_angle"], 6 * BINS),
+    "motor_angle": lambda r: turned(r.at["motor_angle"], BINS),
+    "load_angle": lambda r: turned(r.at["load_angle"], 6 * BINS),
     "speed": lambda r: _levels(np.abs(r.at["speed"])),
     "load": lambda r: _levels(r.at["load"]),
     "direction": lambda r: (r.at["direction"] + 1).astype(int),
@@ -58,12 +59,12 @@ INDICES: Mapping[str, Callable[[Rest], Array]] = {
 }
 JOINT: Mapping[str, Sequence[Callable[[Rest], Array]]] = {
     "time": (
-        lambda r: _both(_turn(r.at["motor_angle"], BINS), INDICES["time"](r)),
+        lambda r: _both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
         lambda r: _both(_levels(r.at["load"]), INDICES["time"](r)),
         lambda r: _both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
     ),
     "temperature": (lambda r: _both(_levels(r.at["load"]), INDICES["temperature"](r)),),
-    "motor_angle": (lambda r: _both(_turn(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "motor_angle": (lambda r: _both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (lambda r: _both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
     "load": (lambda r: _both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
     "memory": _memories("load") + _memories("motor_torque"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.channels import CHANNELS
-from rig.analysis.tracing.coordinates import INDICES, JOINT
+from rig.analysis.tracing.coordinates import INDICES, JOINT, turned
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.rest import Rest, rest
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
@@ -16,6 +16,9 @@ from rig.model.effect import Array
 
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
+FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
+SLOWEST = 1 / 30.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+PHASES = 30  # of its period
 
 
 @dataclass(frozen=True)
@@ -39,8 +42,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), index=of) for name, of in ways]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
     out += [h for h in orders if h is not None]
-    line = _line(r, channel)
-    out += [line] if line else []
+    out += [h for h in (_line(r, channel), _by_the_clock(r, fold, channel)) if h is not None]
     return sorted(out, key=lambda h: -h.share)
 
 
@@ -71,7 +73,9 @@ def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
     if not good.any():
         return None
     x, e = x[good], r.e[good]
-    rough = np.arange(0.5, 130.0, 0.02) if name == "motor_angle" else np.arange(1.0, 400.0, 1.0)
+    turns = float(np.ptp(x)) / TURN
+    step = float(np.clip(0.5 / max(turns, 1.0), *FINEST)) if name == "motor_angle" else 1.0
+    rough = np.arange(max(0.5, step), 130.0 if name == "motor_angle" else 400.0, step)
     power = spectrum(x, e, rough)
     k = float(rough[int(np.argmax(power))])
     z = np.stack([np.cos(k * x), np.sin(k * x)], 1)
@@ -111,6 +115,27 @@ def _line(r: Rest, channel: str) -> Home | None:
         return None
     share = float(np.mean([s for _, _, s in best])) * len(best) / max(1, np.unique(r.run).size)
     return Home("time_periodic", channel, share, frequency_hz=float(np.median([f for f, _, _ in best])))
+
+
+def _by_the_clock(r: Rest, fold: Array, channel: str) -> Home | None:
+    """What comes and goes with the time of day, in step from run to run, of any form: a brake that rubs, a pump."""
+    t = r.at["time"]
+    width = 0.5 / (8 * LOWEST)
+    place = ((t - t.min()) / width).astype(int)
+    e = np.bincount(place, r.e)
+    size = 4 * e.size  # the period to a quarter of a cycle in all
+    hz = np.fft.rfftfreq(size, width)
+    wanted = (hz >= SLOWEST) & (hz <= 2 * LOWEST)
+    if not wanted.any():
+        return None
+    power = np.abs(np.fft.rfft(e, size)) ** 2
+    f = float(hz[wanted][int(np.argmax(power[wanted]))])
+
+    def phase(rest: Rest) -> Array:
+        return turned(TURN * f * rest.at["time"], PHASES)
+
+    share = score(r, fold, phase(r)) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
+    return Home("time_periodic", channel, share, frequency_hz=f, index=phase)
 
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:

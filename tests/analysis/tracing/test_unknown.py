@@ -56,6 +56,8 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         lambda at: np.exp(-((np.mod(at["load_angle"] - 2, 6.283) / 0.1) ** 2)),
     ),
     "a motor angle's seventh wave": ("motor_angle", lambda at: np.cos(7 * at["motor_angle"])),
+    "a ball bearing's order, which is no whole one": ("motor_angle", lambda at: np.cos(12.437 * at["motor_angle"])),
+    "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
     "a knee in the load": ("load", lambda at: np.abs(at["load"])),
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
     "a clamp that slips under torque": ("memory", slipping),
@@ -74,6 +76,19 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT), "A"))
     assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.5
+
+
+def test_order_and_frequency_are_said_with_it() -> None:
+    rng = np.random.default_rng(7)
+    at = coordinates(rng)
+    run = np.repeat(np.arange(RUNS), ROWS)
+    for law, of in (
+        (np.cos(12.437 * at["motor_angle"]), lambda h: (h.order, 12.437, 0.002)),
+        (1.0 * (np.mod(at["time"], 9.7) < 1.4), lambda h: (h.frequency_hz, 1 / 9.7, 0.002)),
+    ):
+        found = plainest(homes(Rest(6 * law + rng.normal(0, 1, law.size), run, at, DT), "A"))
+        said, expected, near = of(found[0])
+        assert said == pytest.approx(expected, abs=near)
 
 
 def test_noise_lives_nowhere() -> None:
