@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 from rig.analysis.tracing.bank import Bank
 from rig.analysis.tracing.judge import Worth, convicted, court, unresolved
 from rig.analysis.tracing.model import Design, Solution, design, fit
+from rig.analysis.tracing.noise import measure, quieter
 from rig.analysis.tracing.parameters import effects
 from rig.analysis.tracing.report import own_shares
 from rig.analysis.tracing.search import Found, polished, reduced, search
+from rig.analysis.tracing.shadows import unmasked
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
 from rig.model.effect import Parameter, Reach
 
@@ -43,11 +45,14 @@ class Heard:
 def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
     """Effects are refused until all that are left may be named; their laws are fitted again beside each other."""
     solution, held, worths = convicted(found.solution, p.court)
+    if len(solution.design.terms) < len(found.solution.design.terms):
+        p = _floored(p, solution, runs)
+        solution, held, worths = convicted(solution, p.court)
     if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
         solution = polished(solution, runs, covered)
         solution, held, worths = convicted(solution, p.court)
     p, solution = _own_convicted(p, solution)
-    solution, held, worths = convicted(solution, p.court)
+    solution, held, worths = convicted(unmasked(solution, runs), p.court)
     words = _in_words(solution, runs)
     if vague := unresolved(solution, words, covered):
         gone = [i for i, term in enumerate(solution.design.terms) if term.name in vague]
@@ -73,6 +78,14 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
 
 def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
     return effects(s, runs) if s.design.terms else {}
+
+
+def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
+    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them."""
+    measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    return replace(p, measured=measured, court=court(p.eq, measured, p.split.held_out))
 
 
 def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import nnls
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key, Noise
@@ -219,13 +220,23 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     if key in measured.by_run:
         return measured.by_run[key]
     run, channel = key
-    said = [v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].said == eq.runs[run].said]
-    same = [
-        v for (i, c), v in measured.by_run.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure
-    ]
-    if said or same:
-        return float(np.sqrt(np.mean(np.square(said or same))))
-    return _elsewhere(measured, eq, key)
+    known = {i: v for (i, c), v in measured.by_run.items() if c == channel}
+    said = [v for i, v in known.items() if eq.runs[i].said == eq.runs[run].said]
+    same = {i: v for i, v in known.items() if eq.runs[i].procedure == eq.runs[run].procedure}
+    if said:
+        return float(np.sqrt(np.mean(np.square(said))))
+    return _between_speeds(same, eq, run) if same else _elsewhere(measured, eq, key)
+
+
+def _between_speeds(same: Mapping[int, float], eq: Equations, run: int) -> float:
+    """From runs of the same kind at other speeds: σ² = a + b·ω², b of a clock that jitters; their mean where fewer than
+    three speeds show it."""
+    speeds = np.square([eq.runs[i].turning for i in same])
+    power = np.square(list(same.values()))
+    if np.unique(np.round(np.log(np.maximum(speeds, 1e-9)), 1)).size < ENOUGH:
+        return float(np.sqrt(np.mean(power)))
+    (still, moving), _ = nnls(np.stack([np.ones(speeds.size), speeds], 1), power)
+    return float(np.sqrt(still + moving * eq.runs[run].turning ** 2))
 
 
 def _elsewhere(measured: Measured, eq: Equations, key: Key) -> float:

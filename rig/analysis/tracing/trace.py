@@ -36,6 +36,7 @@ class Prepared:
     bare: Equations
     eq: Equations
     measured: Measured
+    first: Measured  # the same beside the baseline alone
     baseline: Solution
     court: Court
     own: Own
@@ -94,7 +95,7 @@ def _built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured
     bare = replace(bare, noise=measured.noise, own={})
     eq = replace(bare, own=own.columns())
     baseline = fit(design(bare, (), parts.fitted))
-    return Prepared(campaign, parts, bare, eq, measured, baseline, court(eq, measured, parts.held_out), own)
+    return Prepared(campaign, parts, bare, eq, measured, measured, baseline, court(eq, measured, parts.held_out), own)
 
 
 def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
@@ -112,6 +113,6 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     measured = quieter(p.measured, measure(with_own, runs))
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
-    again = _built(p.campaign, p.split, eq, measured, own)
+    again = replace(_built(p.campaign, p.split, eq, measured, own), first=p.first)
     s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
     return again, search(s.design, bank, runs, s.keys, covered, again.floors, found.ranking)

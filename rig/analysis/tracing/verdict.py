@@ -12,6 +12,7 @@ from rig.analysis.tracing.model import Solution
 from rig.analysis.tracing.next_run import deciding
 from rig.analysis.tracing.result import NextRun, Status, Verdict
 from rig.analysis.tracing.search import Found
+from rig.analysis.tracing.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.analysis.tracing.unknown import Home, home
 from rig.model.effect import Array
@@ -47,7 +48,10 @@ def decide(
     names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
     total, single = p.court.worst(after)
     first, _ = p.court.worst(before)
-    line = p.own.line
+    line, shadows = p.own.line, cast(s)
+    names = tuple(name for name in names if name not in SHADOWS)
+    if shadows:
+        return _cast(shadows[0], names, left)
     loud = total > EXPLAINED or single > MISSING or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
@@ -65,6 +69,13 @@ def decide(
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
+
+
+def _cast(shadow: Shadow, names: Sequence[str], left: Mapping[str, float]) -> Ruling:
+    """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
+    stand = tuple(name for name in names if left.get(name, 0.0) <= MISSING)
+    verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
+    return Ruling(verdict, None, (shadow.coordinate,), None)
 
 
 def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
