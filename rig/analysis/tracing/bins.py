@@ -6,12 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
-from rig.analysis.tracing.rest import Rest
+from rig.analysis.tracing.rest import Index, Rest
 from rig.model.effect import Array
-
-Index = npt.NDArray[np.int64]
 
 TURN: Final = 2 * np.pi
 BINS: Final = 24  # of a turn, 15°: finer than the paper's strongest orders, with rows enough in each

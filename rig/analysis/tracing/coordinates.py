@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rig.analysis.tracing.past import LEAKS, WIDTHS, behind, relaxing, summed
-from rig.analysis.tracing.rest import Rest
+from rig.analysis.tracing.rest import Index, Rest
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -16,7 +16,7 @@ LEVELS = 24  # of a range
 PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
 
 
-def _levels(x: Array, count: int = LEVELS) -> Array:
+def _levels(x: Array, count: int = LEVELS) -> Index:
     good = np.isfinite(x)
     if good.sum() < 100 or np.ptp(x[good]) == 0:
         return np.full(x.size, -1)
@@ -24,30 +24,30 @@ def _levels(x: Array, count: int = LEVELS) -> Array:
     return np.where(good, np.digitize(x, edges), -1)
 
 
-def turned(x: Array, bins: int) -> Array:
+def turned(x: Array, bins: int) -> Index:
     """Bins of an angle [rad] that comes back to itself; −1 where it is unknown."""
     good = np.isfinite(x)
     return np.where(good, (np.mod(np.where(good, x, 0.0), TURN) / TURN * bins).astype(int) % bins, -1)
 
 
-def _branch(r: Rest) -> Array:
+def _branch(r: Rest) -> Index:
     """1 where the torque rises, else 0."""
     return (r.at["torque_rate"] > 0).astype(int)
 
 
-def _both(a: Array, b: Array) -> Array:
+def _both(a: Index, b: Index) -> Index:
     """One index of two; −1 where either has none."""
     return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
 
 
-def _memories(name: str) -> tuple[Callable[[Rest], Array], ...]:
+def _memories(name: str) -> tuple[Callable[[Rest], Index], ...]:
     """What a torque has been, in each of a few ways."""
     plays = tuple(lambda r, w=w: _levels(behind(r.at[name], r.run, w)) for w in WIDTHS)
     leaks = tuple(lambda r, leak=leak: _levels(relaxing(r.at[name], r.run, r.dt, leak)) for leak in LEAKS)
     return (*plays, *leaks, lambda r: _levels(summed(r.at[name], r.run, r.dt)))
 
 
-INDICES: Mapping[str, Callable[[Rest], Array]] = {
+INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "motor_angle": lambda r: turned(r.at["motor_angle"], BINS),
     "load_angle": lambda r: turned(r.at["load_angle"], 6 * BINS),
     "speed": lambda r: _levels(np.abs(r.at["speed"])),
@@ -57,7 +57,7 @@ INDICES: Mapping[str, Callable[[Rest], Array]] = {
     "temperature": lambda r: _levels(r.at["temperature"]),
     "memory": lambda r: _both(_levels(r.at["load"]), _both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
-JOINT: Mapping[str, Sequence[Callable[[Rest], Array]]] = {
+JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "time": (
         lambda r: _both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
         lambda r: _both(_levels(r.at["load"]), INDICES["time"](r)),

@@ -42,8 +42,10 @@ def _as_good(p: Prepared, rival: Scored, best: Scored) -> bool:
     if rival.evidence < HALF * best.evidence:
         return False
     runs = p.split.fitted
-    s = refine(p.baseline.design, rival.term, runs, reach([p.eq.runs[i] for i in runs]))[1]
-    if not possible(s, rival.term, s.x[s.design.place(0)]):
+    covered = reach([p.eq.runs[i] for i in runs])
+    s = refine(p.baseline.design, rival.term, runs, covered)[1]
+    term = s.design.terms[0]
+    if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
         return False
     total, single = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
     return total < QUIET and single < STILL_RUN

@@ -6,19 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.equations import Equations, Key
 from rig.model.effect import Array
 
+Index = npt.NDArray[np.int64]
+"""The bin each row lies in, (n,); −1 in none."""
+
 
 @dataclass(frozen=True)
 class Rest:
-    """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name."""
+    """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
+    `own_zeros`: whether every run has a zero of its own, as angles and a torque sensor do."""
 
     e: Array
     run: Array
     at: dict[str, Array]
     dt: float
+    own_zeros: bool = True
 
 
 def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Rest | None:
@@ -30,7 +36,7 @@ def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], cha
     at = {name: np.concatenate([m[name] for m in made]) for name in made[0]}
     run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
     smooth = eq.runs[keys[0][0]].smoother
-    return Rest(np.concatenate([e[k] / floors[k] for k in keys]), run, at, smooth.dt * smooth.step)
+    return Rest(np.concatenate([e[k] / floors[k] for k in keys]), run, at, smooth.dt * smooth.step, channel != "M")
 
 
 def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:

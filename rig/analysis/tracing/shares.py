@@ -7,11 +7,12 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.binned import score
 from rig.analysis.tracing.bins import BINNED
 from rig.analysis.tracing.coordinates import INDICES
 from rig.analysis.tracing.equations import Key
-from rig.analysis.tracing.rest import Rest
-from rig.analysis.tracing.unknown import folds, homes, score
+from rig.analysis.tracing.rest import Index, Rest
+from rig.analysis.tracing.unknown import folds, homes
 from rig.model.effect import Array
 
 SPAN: Final = 25  # rows either way, 0.2 s: the rate of a torque from row to row is mostly noise
@@ -62,7 +63,7 @@ def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: 
     return gain / max(r.e.size, 1)
 
 
-def crossed(r: Rest, one: str, other: str) -> Array:
+def crossed(r: Rest, one: str, other: str) -> Index:
     """Cells of two coordinates, the second one coarse so that a cell holds rows enough; −1 where either is unknown."""
     a, b = levels(r, one), levels(r, other)
     count = int(b.max(initial=0)) + 1
@@ -70,7 +71,7 @@ def crossed(r: Rest, one: str, other: str) -> Array:
     return np.where((a >= 0) & (b >= 0), a * COARSE + coarse, -1)
 
 
-def levels(r: Rest, name: str) -> Array:
+def levels(r: Rest, name: str) -> Index:
     """Bin of each row: loads and speeds evenly on the axis they are drawn on, lest long runs take them all."""
     if name == "memory":
         load = levels(r, "load")

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.tracing.binned import score
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.coordinates import INDICES, JOINT, turned
 from rig.analysis.tracing.equations import Equations, Key
-from rig.analysis.tracing.rest import Rest, rest
+from rig.analysis.tracing.readings import Reading, in_bins, in_columns, means, powers, waves
+from rig.analysis.tracing.rest import Index, Rest, rest
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
@@ -30,7 +32,9 @@ class Home:
     share: float
     order: float | None = None  # cycles per turn
     frequency_hz: float | None = None
-    index: Callable[[Rest], Array] | None = None  # bins it was read in; none for a line
+    read: Reading | None = None  # how it was read; none for a line
+    own_zeros: bool = True  # whether every run had a zero of its own beside it
+    late: bool = False  # said only where no plainer one does nearly as well
 
 
 def homes(r: Rest, channel: str) -> list[Home]:
@@ -39,31 +43,16 @@ def homes(r: Rest, channel: str) -> list[Home]:
     total = float(np.mean(r.e**2)) - 1.0
     ways = [(name, index) for name, index in INDICES.items()]
     ways += [(name, index) for name, several in JOINT.items() for index in several]
-    out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), index=of) for name, of in ways]
+    out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), read=in_bins(of)) for name, of in ways]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
     out += [h for h in orders if h is not None]
-    out += [h for h in (_line(r, channel), _by_the_clock(r, fold, channel)) if h is not None]
-    return sorted(out, key=lambda h: -h.share)
+    out += [h for h in (_line(r, channel), _by_the_clock(r, fold, channel), _wound(r, fold, channel)) if h is not None]
+    return [replace(h, own_zeros=r.own_zeros) for h in sorted(out, key=lambda h: -h.share)]
 
 
 def folds(r: Rest) -> Array:
     """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
     return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
-
-
-def score(r: Rest, fold: Array, index: Array) -> float:
-    """Mean square that bin means of one fold explain in the other; `index` −1 is left out."""
-    gain, n = 0.0, 0
-    for test in (0, 1):
-        train, seen = (fold != test) & (index >= 0), (fold == test) & (index >= 0)
-        size = int(index.max()) + 1 if index.size else 0
-        count = np.bincount(index[train], minlength=size)
-        mean = np.bincount(index[train], r.e[train], minlength=size) / np.maximum(count, 1)
-        mean[count < 8] = 0.0
-        guess = mean[index[seen]]
-        gain += float(np.sum(r.e[seen] ** 2 - (r.e[seen] - guess) ** 2))
-        n += int(np.sum(fold == test))
-    return gain / max(n, 1)
 
 
 def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
@@ -78,11 +67,18 @@ def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
     rough = np.arange(max(0.5, step), 130.0 if name == "motor_angle" else 400.0, step)
     power = spectrum(x, e, rough)
     k = float(rough[int(np.argmax(power))])
-    z = np.stack([np.cos(k * x), np.sin(k * x)], 1)
-    train, test = fold[good] == 0, fold[good] == 1
-    c = np.linalg.lstsq(z[train], e[train], rcond=None)[0]
-    gain = float(np.mean(e[test] ** 2) - np.mean((e[test] - z[test] @ c) ** 2))
-    return Home(name, channel, gain / max(float(np.mean(r.e**2)) - 1.0, 0.05), order=k)
+    read = in_columns(lambda rest: waves(rest.at[name], k))
+    return Home(name, channel, _share(r, fold, read), order=k, read=read)
+
+
+def _share(r: Rest, fold: Array, read: Reading) -> float:
+    """Of the excess, what each fold foretells of the other beyond what zeros alone do."""
+    gain = 0.0
+    for test in (0, 1):
+        seen = fold == test
+        e = r.e - (means(r, ~seen) if r.own_zeros else 0.0)
+        gain += float(np.sum(e[seen] ** 2 - (e - read(r, ~seen))[seen] ** 2))
+    return gain / max(r.e.size, 1) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
 
 
 def spectrum(x: Array, e: Array, orders: Array) -> Array:
@@ -131,24 +127,36 @@ def _by_the_clock(r: Rest, fold: Array, channel: str) -> Home | None:
     power = np.abs(np.fft.rfft(e, size)) ** 2
     f = float(hz[wanted][int(np.argmax(power[wanted]))])
 
-    def phase(rest: Rest) -> Array:
+    def phase(rest: Rest) -> Index:
         return turned(TURN * f * rest.at["time"], PHASES)
 
     share = score(r, fold, phase(r)) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
-    return Home("time_periodic", channel, share, frequency_hz=f, index=phase)
+    return Home("time_periodic", channel, share, frequency_hz=f, read=in_bins(phase))
+
+
+def _wound(r: Rest, fold: Array, channel: str) -> Home | None:
+    """The output angle gone since the run began, which does not come round: a cable winds up. Said late: in runs of
+    constant speed it is the speed and the time as well."""
+    if not np.isfinite(r.at["load_angle"]).all():
+        return None
+    read = in_columns(lambda rest: powers(rest.at["load_angle"]))
+    return Home("load_angle", channel, _share(r, fold, read), read=read, late=True)
 
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
     """Best coordinates of the channel with the most left."""
     parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
     channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
-    return plainest(homes(most, channel))
+    found = homes(most, channel)
+    if channel == "L":  # its zero may wander from run to run, or a gain does that only loads of several runs show
+        found += homes(replace(most, own_zeros=False), channel)
+    return plainest(found)
 
 
 def plainest(found: Sequence[Home]) -> list[Home]:
     """The best first, and before it simpler ones that do nearly as well."""
     best = max(h.share for h in found)
-    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, SIMPLE.index(h.coordinate), -h.share))
+    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, h.late, SIMPLE.index(h.coordinate), -h.share))
 
 
 SIMPLE: Sequence[str] = (
@@ -167,7 +175,8 @@ SIMPLE: Sequence[str] = (
 def smooth_term(
     eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float], found: Home
 ) -> dict[Key, Array]:
-    """Held-out residuals with bin means over that coordinate, taken from the fitted runs, taken away."""
+    """Held-out residuals without what that coordinate foretells, as read in the fitted runs, and without zeros that are
+    their own beside it."""
     out = dict(unseen)
     train, test = rest(eq, fitted, floors, found.channel), rest(eq, unseen, floors, found.channel)
     if train is None or test is None:
@@ -177,27 +186,15 @@ def smooth_term(
         np.concatenate([train.run, test.run]),
         {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
         train.dt,
+        found.own_zeros,
     )
-    guess = _guess(both, train.e.size, found)
+    if found.read is None:
+        return out
+    guess = found.read(both, np.arange(both.e.size) < train.e.size)[train.e.size :]
     start = 0
     for key in [k for k in unseen if k[1] == found.channel]:
         n = unseen[key].size
-        out[key] = unseen[key] - guess[start : start + n] * floors[key]
+        left = unseen[key] - eq.bare(key, guess[start : start + n]) * floors[key]
+        out[key] = left - np.mean(left) if found.own_zeros else left
         start += n
     return out
-
-
-def _guess(both: Rest, n: int, found: Home) -> Array:
-    if found.order is not None:
-        x = np.nan_to_num(both.at[found.coordinate])
-        z = np.stack([np.cos(found.order * x), np.sin(found.order * x)], 1)
-        return np.asarray(z[n:] @ np.linalg.lstsq(z[:n], both.e[:n], rcond=None)[0])
-    if found.index is None:
-        return np.zeros(both.e.size - n)
-    index = found.index(both)
-    inside = index[:n] >= 0
-    size = int(index.max()) + 1
-    count = np.bincount(index[:n][inside], minlength=size)
-    mean = np.bincount(index[:n][inside], both.e[:n][inside], minlength=size) / np.maximum(count, 1)
-    mean[count < 8] = 0.0
-    return np.where(index[n:] >= 0, mean[np.maximum(index[n:], 0)], 0.0)

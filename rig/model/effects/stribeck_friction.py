@@ -45,6 +45,10 @@ class StribeckFriction(Effect):
         """Friction at rest is the larger one."""
         return bool(fit.coefficients[0] > 0)
 
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """Where friction falls over all the speeds of a gear: no Stribeck effect but another curve of the speed."""
+        return shape[0] > self.SPEEDS[-1]
+
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of ω_s, and of δ as it is reported."""
         return (0.3 * self.SPEEDS[0], 2.0 * self.SPEEDS[-1]), (0.5, 3.0)

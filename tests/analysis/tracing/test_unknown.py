@@ -22,7 +22,8 @@ def coordinates(rng: np.random.Generator) -> At:
         t = np.arange(ROWS) * DT
         way = 1.0 if run % 2 else -1.0
         speed = 12.0 + 18.0 * (run // 2) + 6.0 * np.sin(0.4 * t)
-        load = way * 5.0 + 6.0 * np.sin(1.3 * t + run) + 4.0 * np.sin(7.1 * t) + rng.normal(0, 0.2, ROWS)
+        swing = np.convolve(rng.normal(0, 1, ROWS), np.hanning(101), "same")
+        load = way * 5.0 + 8.0 * swing / swing.std() + rng.normal(0, 0.2, ROWS)
         angle = np.cumsum(way * speed) * DT
         parts.append(
             {
@@ -55,6 +56,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         "load_angle",
         lambda at: np.exp(-((np.mod(at["load_angle"] - 2, 6.283) / 0.1) ** 2)),
     ),
+    "a cable that winds up": ("load_angle", lambda at: at["load_angle"] + 0.1 * at["load_angle"] ** 2),
     "a motor angle's seventh wave": ("motor_angle", lambda at: np.cos(7 * at["motor_angle"])),
     "a ball bearing's order, which is no whole one": ("motor_angle", lambda at: np.cos(12.437 * at["motor_angle"])),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
