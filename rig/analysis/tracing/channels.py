@@ -119,13 +119,20 @@ def valid(piece: Signals, run: Recording, channel: str) -> Array:
     smooth = run.smoother
     inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
     inside[:ENDS] = inside[-ENDS:] = False
+    sliding = smooth((piece.way != 0).astype(float)) > 1 - 1e-9
     if channel == "A":
-        return np.asarray(inside & _angle_known(piece, run))
-    sliding = piece.way != 0
-    if channel == "L":
-        usual = float(np.median(np.abs(piece.omega_m[sliding]))) / run.ratio if sliding.any() else 0.0
-        sliding &= (smooth.same(piece.theta_l, 1) * piece.way) > SLIDING * usual
-    return np.asarray(inside & (smooth(sliding.astype(float)) > 1 - 1e-9))
+        known = inside & _angle_known(piece, run)
+        torque_known = run.locked or "tau_l" in run.knows
+        return np.asarray(known if torque_known else known & sliding & _load_slides(piece, run))
+    return np.asarray(inside & sliding & _load_slides(piece, run) if channel == "L" else inside & sliding)
+
+
+def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
+    """Rows in which the load's friction has a sure sign, and with it the torque that was not measured."""
+    smooth, moving = run.smoother, piece.way != 0
+    usual = float(np.median(np.abs(piece.omega_m[moving]))) / run.ratio if moving.any() else 0.0
+    rate = smooth.same(piece.theta_l, 1) * piece.way
+    return np.asarray(smooth((moving & (rate > SLIDING * usual)).astype(float)) > 1 - 1e-9)
 
 
 def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
