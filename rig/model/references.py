@@ -26,6 +26,7 @@ REFERENCES: dict[str, str] = {
     "harmonic drive robotic transmissions, IEEE Int. Conf. Robotics and Automation (1995) 3027-3032",
     "kuhnen2003": "K. Kuhnen, Modeling, identification and compensation of complex hysteretic nonlinearities: a "
     "modified Prandtl-Ishlinskii approach, European J. Control 9 (2003) 407-418",
+    "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",
     "findley1976": "W. N. Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
     "North-Holland (1976)",
     "jia2021": "H. Jia et al., Modeling and analysis of pure kinematic error in harmonic drive, "

@@ -29,6 +29,7 @@ class Scatter:
     rows: int
     offset: float  # difference of the two means over sqrt 2
     rho: Array
+    freedom: float  # independent parts the RMS is made of: a gain that is never twice the same is one
 
 
 def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, int]]:
@@ -111,7 +112,7 @@ def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channe
         return None
     offset = float(d.mean())
     d = d - offset
-    return Scatter(pair, float(np.sqrt(np.mean(d**2))), d.size, offset, autocorrelation(d))
+    return Scatter(pair, float(np.sqrt(np.mean(d**2))), d.size, offset, autocorrelation(d), freedom(d))
 
 
 def output_turns(theta_a: Array, theta_b: Array, ratio: float) -> float:
@@ -132,6 +133,12 @@ def autocorrelation(d: Array) -> Array:
     m = 2 ** int(np.ceil(np.log2(2 * d.size)))
     spectrum = np.abs(np.fft.rfft(d, m)) ** 2
     return np.asarray(np.fft.irfft(spectrum)[:61] / max(spectrum.sum() / m * 2, 1e-300))
+
+
+def freedom(d: Array) -> float:
+    """Degrees of freedom of the mean square of `d` (n,), from its spectrum: (ΣP)²/ΣP²      [bartlett1950]"""
+    power = np.abs(np.fft.rfft(d)) ** 2
+    return float(max(1.0, power.sum() ** 2 / max(float(power @ power), 1e-300)))
 
 
 def effective(rho: Array) -> float:

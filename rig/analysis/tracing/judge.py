@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
-from rig.analysis.tracing.noise import Measured, floor_of
+from rig.analysis.tracing.noise import Measured, floor_of, leniency
 from rig.analysis.tracing.search import as_fit, reduced
 from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
 from rig.model.effect import Array, Parameter, Reach
@@ -26,6 +26,7 @@ class Court:
     runs: tuple[int, ...]
     floors: dict[Key, float]
     seen: dict[Key, float]  # floors of the fitted blocks
+    lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`."""
@@ -44,9 +45,11 @@ class Court:
         return float(np.sqrt(total / max(n, 1)))
 
     def worst(self, e: Mapping[Key, Array]) -> tuple[float, float]:
-        """Largest RMS over floor of a channel, and of a single run in a channel."""
+        """Largest RMS over floor of a channel, and of a single run in a channel beside what chance does to it."""
         by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
-        return max(self.ratio(e, keys) for keys in by_channel if keys), max(self.ratio(e, [k]) for k in e)
+        return max(self.ratio(e, keys) for keys in by_channel if keys), max(
+            self.ratio(e, [k]) / self.lenient[k] for k in e
+        )
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,8 @@ def court(eq: Equations, measured: Measured, held_out: Sequence[int]) -> Court:
     floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
     held = set(eq.of(held_out))
     seen = {key: floor for key, floor in floors.items() if key not in held}
-    return Court(tuple(held_out), {key: floors[key] for key in eq.of(held_out)}, seen)
+    lenient = {key: leniency(measured, eq, key) for key in held}
+    return Court(tuple(held_out), {key: floors[key] for key in eq.of(held_out)}, seen, lenient)
 
 
 def unseen(s: Solution, at: Court) -> Design:

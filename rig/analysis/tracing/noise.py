@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
+from scipy.stats import f as fdist
 
 from rig.analysis.tracing.channels import CHANNELS
 from rig.analysis.tracing.equations import Equations, Key, Noise
@@ -17,12 +18,13 @@ from rig.analysis.tracing.floor import (
     beside_a_row,
     compare,
     effective,
+    freedom,
     repeats,
     scatter,
     strokes,
 )
 from rig.analysis.tracing.model import Solution
-from rig.analysis.tracing.thresholds import FLOOR_LEAST, GAIN, ZERO
+from rig.analysis.tracing.thresholds import CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -41,6 +43,7 @@ class Measured:
     by_run: dict[Key, float]
     white: dict[Key, float]
     how: dict[str, str]
+    freedom: dict[Key, float]  # degrees of freedom of the RMS of a pair of repeats
 
 
 def guess(eq: Equations) -> Noise:
@@ -59,6 +62,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     pairs = repeats(eq.runs, among)
     sigma, kappa, local = dict(eq.noise.sigma), dict(eq.noise.kappa), dict(eq.noise.local)
     by_run: dict[Key, float] = {}
+    free: dict[Key, float] = {}
     how: dict[str, str] = {}
     for channel in CHANNELS:
         found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
@@ -75,12 +79,13 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in found], weights=n)))
         kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
         by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
+        free |= {(i, channel): s.freedom for s in found for i in s.pair}
         by_run |= _never_compared(eq, e, channel, among, found)
         local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
-    return Measured(Noise(sigma, kappa, local), by_run, white, how)
+    return Measured(Noise(sigma, kappa, local), by_run, white, how, free)
 
 
 def quieter(one: Measured, other: Measured) -> Measured:
@@ -94,7 +99,9 @@ def quieter(one: Measured, other: Measured) -> Measured:
     )
     by_run = {key: rms for c, m in best.items() for key, rms in m.by_run.items() if key[1] == c}
     white = {key: rms for c, m in best.items() for key, rms in m.white.items() if key[1] == c}
-    return Measured(noise, by_run, white, {c: m.how[c] for c, m in best.items() if c in m.how})
+    how = {c: m.how[c] for c, m in best.items() if c in m.how}
+    free = {key: nu for c, m in best.items() for key, nu in m.freedom.items() if key[1] == c}
+    return Measured(noise, by_run, white, how, free)
 
 
 def _alone(
@@ -164,7 +171,7 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
     d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
     if d.size < FLOOR_LEAST / 4:
         return None
-    return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d))
+    return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d), freedom(d))
 
 
 def against_both(theta: Array, e: Array) -> Array:
@@ -191,6 +198,20 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
     """
     alone = float(np.hypot(_compared(measured, eq, key), _gain(measured, eq, key)))
     return max(alone, float(np.hypot(measured.noise.sigma[key[1]], _rounding(eq, key))))
+
+
+def leniency(measured: Measured, eq: Equations, key: Key) -> float:
+    """By how much more a single run may exceed its floor than where the floor is that of many independent rows: its
+    square over the floor's is F-distributed.
+    """
+    run, channel = key
+    known = {i: nu for (i, c), nu in measured.freedom.items() if c == channel}
+    like = [nu for i, nu in known.items() if eq.runs[i].procedure == eq.runs[run].procedure]
+    if not like:
+        return 1.0
+    nu = float(1 / np.mean(1 / np.array(like)))
+    limit = float(np.sqrt(fdist.ppf(CHANCE, nu, nu * max(1, len(like) // 2))))
+    return float(np.clip(limit / MISSING, 1.0, LENIENT))
 
 
 def _gain(measured: Measured, eq: Equations, key: Key) -> float:

@@ -41,6 +41,8 @@ PLAIN_ENOUGH: Final = (
 )
 # memories have many bins, and predict a part of whatever differs from run to run
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
+CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
+LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand
 AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there it is not what it is called
 CLOSE: Final = 0.985  # of an effect's evidence another one must reach to be called a rival
