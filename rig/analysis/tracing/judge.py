@@ -16,6 +16,8 @@ from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QU
 from rig.model.effect import Array, Parameter, Reach
 
 FAIR = 0.04  # of an effect's work: a fifth of its size
+ALL, FAIRLY = 0.95, 0.2  # share of the excess, and how near 1 what it takes of its own sum of squares must be
+LOOSE = 2.0  # times the unsteadiness: of what explains everything
 FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
 
 
@@ -72,9 +74,16 @@ class Worth:
     @property
     def named(self) -> bool:
         """Whether it may be named."""
-        real = self.size > SMALLEST and REAL < self.true < UNREAL
-        real = real and self.unsteady < UNSTEADY and self.apart < APART and self.harm < HARMFUL
+        real = self.size > SMALLEST and REAL < self.true < UNREAL and self.harm < HARMFUL
+        loose = LOOSE if self._explains_all else 1.0
+        real = real and self.unsteady < loose * UNSTEADY and self.apart < loose * APART
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
+
+    @property
+    def _explains_all(self) -> bool:
+        """Where nothing is left of it on unseen runs, sizes that differ between runs differ by less than the noise of
+        a run's mean."""
+        return self.share > ALL and self.left < QUIET and abs(self.true - 1.0) < FAIRLY
 
 
 def court(eq: Equations, measured: Measured, held_out: Sequence[int]) -> Court:

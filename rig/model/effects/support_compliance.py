@@ -10,9 +10,12 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import resonated
 
+ON_HOUSING, ON_GROUND = 0.0, 1.0  # of the first shape parameter: where the encoders are held
+
 
 class SupportCompliance(Effect):
-    """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much
+    """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much when the encoders
+    ride on it; held on the ground they read right, and the gear seems so much softer.
 
     Far below ω it is just more or less compliance, which the baseline's K already has.
     """
@@ -21,8 +24,8 @@ class SupportCompliance(Effect):
     in_short: ClassVar[str] = "the housing moves"
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("frequency", "zeta")
-    loose: ClassVar[tuple[bool, ...]] = (True, True)
+    shape_names: ClassVar[tuple[str, ...]] = ("held", "frequency", "zeta")
+    loose: ClassVar[tuple[bool, ...]] = (False, True, True)
     LOWEST: Final = 15.0  # Hz
     STEP: Final = 1.1  # neighbouring frequencies within a half width of a 5 % damped peak
     ZETA: Final = 0.05
@@ -30,29 +33,33 @@ class SupportCompliance(Effect):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
-        return tuple((float(f), self.ZETA) for f in self.LOWEST * self.STEP ** np.arange(count))
+        frequencies = self.LOWEST * self.STEP ** np.arange(count)
+        return tuple((held, float(f), self.ZETA) for held in (ON_HOUSING, ON_GROUND) for f in frequencies)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((0.7 * self.LOWEST, 1.2 * reach.band), (0.005, 0.5))
+        return ((ON_HOUSING, ON_GROUND), (0.7 * self.LOWEST, 1.2 * reach.band), (0.005, 0.5))
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band."""
-        return shape[0] > 1.15 * reach.band
+        return shape[1] > 1.15 * reach.band
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column in both readings."""
+        """One column, in both readings or in the wind-up."""
+        held, frequency, zeta = shape
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
-        moved = resonated(torque, signals.dt, 2.0 * np.pi * shape[0], shape[1])[:, None]
+        moved = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]
+        if held == ON_GROUND:
+            return {Port.WIND_UP: moved}
         return {Port.READS_THETA_L: moved, Port.READS_THETA_M: moved}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Compliance of the support, its frequency and damping."""
-        compliance, frequency, zeta = np.eye(3)[:, : fit.covariance.shape[0]]
+        compliance, frequency, zeta = np.eye(4)[[0, 2, 3], : fit.covariance.shape[0]]
         return (
             parameter("compliance", fit.coefficients[0], fit.half_width(compliance), "rad/(N·m)"),
-            parameter("frequency", fit.shape[0], fit.half_width(frequency), "Hz"),
-            parameter("zeta", fit.shape[1], fit.half_width(zeta), "1"),
+            parameter("frequency", fit.shape[1], fit.half_width(frequency), "Hz"),
+            parameter("zeta", fit.shape[2], fit.half_width(zeta), "1"),
         )
 
     def plausible(self, fit: Fit) -> bool:
