@@ -29,6 +29,8 @@ REFERENCES: dict[str, str] = {
     "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",
     "findley1976": "W. N. Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
     "North-Holland (1976)",
+    "krause2013": "P. C. Krause, O. Wasynczuk, S. D. Sudhoff, S. Pekarek, Analysis of Electric Machinery and Drive "
+    "Systems, 3rd ed., Wiley (2013)",
     "jia2021": "H. Jia et al., Modeling and analysis of pure kinematic error in harmonic drive, "
     "Mechanism and Machine Theory 155 (2021) 104122",
     "taghirad1999": "H. D. Taghirad, P. R. Bélanger, Intelligent built-in torque sensor for harmonic drive systems, "

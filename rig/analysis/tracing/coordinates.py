@@ -35,7 +35,7 @@ def _branch(r: Rest) -> Index:
     return (r.at["torque_rate"] > 0).astype(int)
 
 
-def _both(a: Index, b: Index) -> Index:
+def both(a: Index, b: Index) -> Index:
     """One index of two; −1 where either has none."""
     return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
 
@@ -55,18 +55,18 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "direction": lambda r: (r.at["direction"] + 1).astype(int),
     "time": lambda r: _levels(r.at["time"], PERIODS),
     "temperature": lambda r: _levels(r.at["temperature"]),
-    "memory": lambda r: _both(_levels(r.at["load"]), _both(_branch(r), (r.at["direction"] + 1).astype(int))),
+    "memory": lambda r: both(_levels(r.at["load"]), both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
 JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "time": (
-        lambda r: _both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
-        lambda r: _both(_levels(r.at["load"]), INDICES["time"](r)),
-        lambda r: _both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
+        lambda r: both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
+        lambda r: both(_levels(r.at["load"]), INDICES["time"](r)),
+        lambda r: both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
     ),
-    "temperature": (lambda r: _both(_levels(r.at["load"]), INDICES["temperature"](r)),),
-    "motor_angle": (lambda r: _both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
-    "speed": (lambda r: _both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
-    "load": (lambda r: _both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
+    "temperature": (lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),),
+    "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "speed": (lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
+    "load": (lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
     "memory": _memories("load") + _memories("motor_torque"),
 }
 """Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is

@@ -1,5 +1,5 @@
 """Laws that are no effect of the library and look like one of it: none is ever named, but where one explains more, the
-effect it was taken for is not named either.
+effect it was taken for is not named either. They are searched for beside the library's.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 
 from rig.analysis.tracing.equations import Term
 from rig.analysis.tracing.model import Solution, extended, fit
-from rig.analysis.tracing.search import reduced
+from rig.analysis.tracing.search import Scored, reduced
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
 
 
@@ -45,6 +45,30 @@ class Creep(Effect):
         return ()
 
 
+class Droop(Effect):
+    """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
+
+    Under a steady load it is what friction would be that grows with the square of it, but it gives as it takes.
+    """
+
+    name: ClassVar[str] = "droop"
+    in_short: ClassVar[str] = "the torque constant falls with the current"
+    source: ClassVar[str] = "krause2013"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        torque = np.nan_to_num(signals.tau_m)
+        return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
 @dataclass(frozen=True)
 class Shadow:
     """A law, what it is taken for, and the coordinate it lives in."""
@@ -62,7 +86,14 @@ SHADOWS: Final = {
         "memory",
         "A part of the wind-up follows the torque seconds late, as creep does; a loop that does not depend on the rate "
         "explains less, and no effect of the library explains it.",
-    )
+    ),
+    "droop": Shadow(
+        Droop(),
+        frozenset({"load_dependent_friction"}),
+        "load",
+        "The motor's torque falls short of what is told, with the square of it, forth and back alike: its torque "
+        "constant may droop. No effect of the library explains it.",
+    ),
 }
 
 
@@ -74,6 +105,11 @@ def unmasked(s: Solution, runs: Sequence[int]) -> Solution:
             other = fit(extended(reduced(s.design, mine), Term(shadow.effect, ()), runs))
             s = other if other.gain > s.gain else s
     return s
+
+
+def of_the_library(ranking: Sequence[Scored]) -> tuple[Scored, ...]:
+    """A ranking without shadows."""
+    return tuple(r for r in ranking if r.term.name not in SHADOWS)
 
 
 def cast(s: Solution) -> list[Shadow]:

@@ -20,6 +20,7 @@ from rig.analysis.tracing.own import Own, find
 from rig.analysis.tracing.report import report
 from rig.analysis.tracing.result import Trace
 from rig.analysis.tracing.search import Found, relawed, search, still
+from rig.analysis.tracing.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.signs import refuse_negative, refuse_odd_torques
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
@@ -56,12 +57,14 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     found = Found(start, ())
     bank: Bank | None = None
     if not still(start, p.floors):
-        bank = fill(p.eq, list(CATALOGUE.values()), runs, covered)
+        suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
+        bank = fill(p.eq, suspects, runs, covered)
         found = search(start.design, bank, runs, start.keys, covered, p.floors)
         p, found = _looked_again(p, found, bank, covered)
     case = heard(p, found, runs, covered)
     if bank is not None:
         case = heard_again(case, found, bank, runs, covered)
+    found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rig.analysis.tracing.binned import score
 from rig.analysis.tracing.channels import CHANNELS
-from rig.analysis.tracing.coordinates import INDICES, JOINT, turned
+from rig.analysis.tracing.coordinates import INDICES, JOINT, both, turned
 from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.readings import Reading, in_bins, in_columns, means, powers, waves
 from rig.analysis.tracing.rest import Index, Rest, rest
@@ -19,7 +19,7 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
-SLOWEST = 1 / 30.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
 PHASES = 30  # of its period
 
 
@@ -46,7 +46,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), read=in_bins(of)) for name, of in ways]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
     out += [h for h in orders if h is not None]
-    out += [h for h in (_line(r, channel), _by_the_clock(r, fold, channel), _wound(r, fold, channel)) if h is not None]
+    out += [h for h in (_line(r, channel), _wound(r, fold, channel)) if h is not None]
+    out += [_by_the_clock(r, fold, channel, sense) for sense in SENSES]
     return [replace(h, own_zeros=r.own_zeros) for h in sorted(out, key=lambda h: -h.share)]
 
 
@@ -113,25 +114,44 @@ def _line(r: Rest, channel: str) -> Home | None:
     return Home("time_periodic", channel, share, frequency_hz=float(np.median([f for f, _, _ in best])))
 
 
-def _by_the_clock(r: Rest, fold: Array, channel: str) -> Home | None:
-    """What comes and goes with the time of day, in step from run to run, of any form: a brake that rubs, a pump."""
-    t = r.at["time"]
-    width = 0.5 / (8 * LOWEST)
-    place = ((t - t.min()) / width).astype(int)
-    e = np.bincount(place, r.e)
-    size = 4 * e.size  # the period to a quarter of a cycle in all
-    hz = np.fft.rfftfreq(size, width)
-    wanted = (hz >= SLOWEST) & (hz <= 2 * LOWEST)
-    if not wanted.any():
-        return None
-    power = np.abs(np.fft.rfft(e, size)) ** 2
-    f = float(hz[wanted][int(np.argmax(power[wanted]))])
+def _by_the_clock(r: Rest, fold: Array, channel: str, sense: Callable[[Rest], Array]) -> Home:
+    """What comes and goes with the time, of any form that all runs share: a pump, or a brake that rubs against the
+    `sense` of the motion. Every run has a phase of its own, as clocks that are read to the second leave it.
+    """
+    t, e = r.at["time"], r.e * sense(r)
+    hz = np.arange(SLOWEST, 2 * LOWEST, 0.25 / _longest(r))
+    power = sum((np.abs(_beat(t[r.run == run], e[r.run == run], hz)) ** 2 for run in np.unique(r.run)), np.zeros(1))
+    f = float(hz[int(np.argmax(power))])
 
     def phase(rest: Rest) -> Index:
-        return turned(TURN * f * rest.at["time"], PHASES)
+        own, signed = np.zeros(rest.e.size), rest.e * sense(rest)
+        for run in np.unique(rest.run):
+            mine = rest.run == run
+            own[mine] = np.angle(_beat(rest.at["time"][mine], signed[mine], np.array([f]))[0])
+        return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
 
     share = score(r, fold, phase(r)) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
     return Home("time_periodic", channel, share, frequency_hz=f, read=in_bins(phase))
+
+
+SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
+
+
+def _longest(r: Rest) -> float:
+    """Of the runs, s."""
+    return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt
+
+
+def _beat(t: Array, e: Array, hz: Array) -> Array:
+    """Amplitude of one run at each frequency, complex, its rows counted into steps of a sixteenth of the shortest
+    period; (frequencies,)."""
+    step = 1 / (32 * LOWEST)
+    place = ((t - t[0]) / step).astype(int)
+    count = np.maximum(np.bincount(place), 1)
+    mean = np.bincount(place, e) / count
+    mean = mean - mean.mean()
+    at = t[0] + step * (np.arange(mean.size) + 0.5)
+    return np.asarray(np.exp(-1j * TURN * np.multiply.outer(hz, at)) @ mean)
 
 
 def _wound(r: Rest, fold: Array, channel: str) -> Home | None:

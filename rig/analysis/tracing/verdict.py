@@ -63,9 +63,11 @@ def decide(
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
-    # a line in a sensor is in the columns made from it too: beside one nothing is named, and where much is left of
-    # what an effect should explain its name would be a guess
-    names = tuple(name for name in names if left.get(name, 0.0) <= MISSING and line is None)
+    # a line in a sensor is in the columns made from it too: beside one nothing is named; where much is left of what an
+    # effect should explain its name would be a guess; and steps and phases that runs have to themselves take on
+    # whatever there is
+    shared = [name for name in names if name not in p.own.made]
+    names = tuple(name for name in shared if left.get(name, 0.0) <= MISSING and line is None)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)

@@ -23,6 +23,7 @@ class LoadDependentFriction(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
     AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
+    UNSURE: Final = 0.25  # of the larger μ_L, how negative noise may make the other
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -50,5 +51,6 @@ class LoadDependentFriction(Effect):
         return (*shares, parameter("exponent", fit.shape[1], fit.half_width(unit[-1]), "1"))
 
     def plausible(self, fit: Fit) -> bool:
-        """Losses grow."""
-        return bool(np.sum(fit.coefficients) > 0)
+        """Losses grow with the load and give no energy back, whichever way the power flows."""
+        most, least = float(np.max(fit.coefficients)), float(np.min(fit.coefficients))
+        return most > 0 and least > -self.UNSURE * most

@@ -9,14 +9,15 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-EXPONENTIAL, KNEE = 0.0, 1.0  # of the first shape parameter
+EXPONENTIAL, KNEE, CUBIC = 0.0, 1.0, 2.0  # of the first shape parameter
 
 
 class NonlinearStiffness(Effect):
     """φ gains c·T_0·sgn T·(1 − exp(−|T|/T_0)), or c·sgn T·min(|T|, T_0): extra compliance c below about T_0
 
-    The first is a soft wind-up zone that ends gradually (a cubic spring within the torque of a test), the second the
-    makers' line of pieces with a knee at T_0      [harmonicdrive]
+    The first is a soft wind-up zone that ends gradually, the second the makers' line of pieces with a knee at T_0
+    [harmonicdrive]. The third is a spring T = K·φ + k_3·φ³: φ loses c·(T − T_0·u), u + u³ = T/T_0, where
+    k_3 = c·K⁴/T_0² as long as the cubic part is small, and c = 1/K throughout      [tuttle1992]
     """
 
     name: ClassVar[str] = "nonlinear_stiffness"
@@ -24,23 +25,29 @@ class NonlinearStiffness(Effect):
     source: ClassVar[str] = "harmonicdrive"
     shape_names: ClassVar[tuple[str, ...]] = ("kind", "T_0")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
-    TORQUES: Final = (1.5, 3.0, 6.0, 12.0, 25.0, 50.0)  # N·m; a cubic spring looks like twice the largest torque
+    TORQUES: Final = (1.5, 3.0, 6.0, 12.0, 25.0, 50.0)  # N·m
+    CUBIC_AT: Final = (0.3, 1.0, 3.0)  # of the largest torque: where the cubic part is as large as the other; T³ beyond
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Knees within the torque reached; the gradual law also beyond."""
         gradual = [(EXPONENTIAL, t) for t in self.TORQUES if t < 2.0 * reach.torque]
         knees = [(KNEE, t) for t in self.TORQUES if t < 0.8 * reach.torque]
-        return (*gradual, *knees)
+        cubic = [(CUBIC, share * reach.torque) for share in self.CUBIC_AT]
+        return (*gradual, *knees, *cubic)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         kind, T_0 = shape
+        if kind == CUBIC:
+            return {Port.WIND_UP: -(signals.torque - T_0 * _cubic(signals.torque / T_0))[:, None]}
         size = np.abs(signals.torque)
         more = np.minimum(size, T_0) if kind == KNEE else T_0 * -np.expm1(-size / T_0)
         return {Port.WIND_UP: (np.sign(signals.torque) * more)[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Stiffness near zero and at high torque, and where it changes."""
+        """Stiffness near zero and at high torque, and where it changes; k_3 of a cubic spring."""
+        if fit.shape[0] == CUBIC:
+            return (self._k_3(fit),)
         c, high = fit.coefficients[0], fit.known.K
         near = 1.0 / (1.0 / high + c)
         by_c, by_t = np.zeros(fit.covariance.shape[0]), np.zeros(fit.covariance.shape[0])
@@ -52,4 +59,18 @@ class NonlinearStiffness(Effect):
 
     def plausible(self, fit: Fit) -> bool:
         """A spring stays a spring: stiffness near zero is positive."""
+        if fit.shape[0] == CUBIC:
+            return True
         return bool(1.0 / fit.known.K + fit.coefficients[0] > 0)
+
+    def _k_3(self, fit: Fit) -> Parameter:
+        """[N·m/rad³]; c and T_0 alone have no meaning where the cubic part is small."""
+        c, T_0, fourth = fit.coefficients[0], fit.shape[1], fit.known.K**4
+        gradient = np.zeros(fit.covariance.shape[0])
+        gradient[0], gradient[-1] = fourth / T_0**2, -2.0 * c * fourth / T_0**3
+        return parameter("k_3", c * fourth / T_0**2, fit.half_width(gradient), "N·m/rad³")
+
+
+def _cubic(x: Array) -> Array:
+    """u of u + u³ = x, (n,)."""
+    return np.asarray(2 / np.sqrt(3) * np.sinh(np.arcsinh(1.5 * np.sqrt(3) * x) / 3))
