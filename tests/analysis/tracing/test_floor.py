@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor import autocorrelation, compare, effective, output_turns, strokes
+from rig.analysis.tracing.floor import autocorrelation, compare, effective, freedom, output_turns, strokes
 
 RNG = np.random.default_rng(5)
 
@@ -39,3 +39,9 @@ def test_repeats_that_began_elsewhere_are_compared_after_whole_turns_of_the_outp
     shift = output_turns(theta, theta + 2 * np.pi * 130, 50.0)
     assert shift == pytest.approx(-2 * np.pi * 150)  # 3 turns of the output are nearer than 2
     assert output_turns(theta, theta + 2 * np.pi * 130, 50.25) == 0.0
+
+
+def test_a_gain_that_is_never_twice_the_same_has_few_degrees_of_freedom() -> None:
+    square = np.sign(np.sin(np.linspace(0, 12 * np.pi, 6000)))
+    assert freedom(square + _noise(6000, 0.1)) < 4
+    assert freedom(_noise(6000, 1.0)) > 1000

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.smoothing import thin
-from rig.model.effect import Moved, Port
+from rig.model.effect import Fit, Moved, Port
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, TORQUE, LoadDependentKinematicError
+from rig.model.effects.nonlinear_stiffness import CUBIC, NonlinearStiffness
+from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
 
@@ -81,3 +83,35 @@ def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
     for port in (Port.KINEMATIC_ERROR, Port.LEVER):
         np.testing.assert_allclose(apart[port].sum(1), whole[port][:, 0], atol=1e-12)
         assert apart[port].shape[1] == 4
+
+
+def test_a_cubic_spring_is_solved_exactly_and_is_its_cube_where_that_is_small() -> None:
+    s, stiffness, k_3 = motion(), KNOWN.K, 2.3e9
+    scale = np.sqrt(stiffness**3 / k_3)  # where the cubic part is as large as the other
+    column = NonlinearStiffness().columns(s, (CUBIC, scale))[Port.WIND_UP][:, 0]
+    phi = (s.torque + column) / stiffness
+    np.testing.assert_allclose(stiffness * phi + k_3 * phi**3, s.torque, atol=1e-9)
+    far = NonlinearStiffness().columns(s, (CUBIC, 3000.0))[Port.WIND_UP][:, 0]
+    np.testing.assert_allclose(far, -(s.torque**3) / 3000.0**2, atol=1e-3 * np.abs(far).max())
+
+
+def test_the_cubic_coefficient_is_told_whatever_the_scale_it_was_fitted_with() -> None:
+    fit = Fit(np.array([2e-6]), (CUBIC, 200.0), np.zeros((3, 3)), KNOWN, N)
+    (found,) = NonlinearStiffness().parameters(fit)
+    assert (found.name, found.unit) == ("k_3", "N·m/rad³")
+    assert found.value == pytest.approx(2e-6 * KNOWN.K**4 / 200.0**2)
+
+
+def test_a_housing_shows_in_both_angles_or_in_the_wind_up_as_its_encoders_are_held() -> None:
+    s = motion()
+    ridden, grounded = (SupportCompliance().columns(s, (held, 40.0, 0.05)) for held in (ON_HOUSING, ON_GROUND))
+    assert set(ridden) == {Port.READS_THETA_L, Port.READS_THETA_M}
+    assert set(grounded) == {Port.WIND_UP}
+    np.testing.assert_allclose(grounded[Port.WIND_UP], ridden[Port.READS_THETA_L])
+    np.testing.assert_allclose(grounded[Port.WIND_UP][:, 0], s.torque, atol=0.05 * np.abs(s.torque).max())
+
+
+@pytest.mark.parametrize(("driven", "can_be"), [(0.03, True), (-0.002, True), (-0.02, False)])
+def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be: bool) -> None:
+    fit = Fit(np.array([0.03, driven]), (1.0, 1.0), np.zeros((4, 4)), KNOWN, N)
+    assert LoadDependentFriction().plausible(fit) is can_be

@@ -1,0 +1,60 @@
+"""Laws beside the library: searched for, told in a sentence, never named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.result import Status
+from rig.analysis.tracing.shadows import SHADOWS, Creep, Droop
+from rig.analysis.tracing.trace import trace
+from rig.model.effect import Port
+from rig.model.effects import LIBRARY
+from rig.model.references import REFERENCES
+from tests.blind.cases import Request
+from tests.blind.generate import write_case
+from tests.contract.test_effects import motion
+
+
+def test_a_shadow_bears_no_name_of_the_library_and_casts_on_one_that_does() -> None:
+    for name, shadow in SHADOWS.items():
+        assert name == shadow.effect.name
+        assert name not in LIBRARY
+        assert shadow.of <= set(LIBRARY)
+        assert shadow.effect.source in REFERENCES
+
+
+def test_creep_follows_a_step_of_torque_as_slowly_as_its_lags() -> None:
+    still = motion(n=4000)
+    step = np.where(np.arange(4000) < 10, 0.0, 20.0)
+    (columns,) = Creep().columns(replace(still, torque=step), ()).values()
+    gone = (4000 - 10) * still.dt
+    expected = 20.0 * (1 - np.exp(-gone / np.array(Creep.LAGS)))
+    np.testing.assert_allclose(columns[-1], expected, rtol=2e-2)
+    assert (columns[9] == 0).all()
+
+
+def test_creep_closes_its_loop_when_it_is_gone_round_slowly() -> None:
+    def gap(seconds: float) -> float:
+        n = 20000
+        s = replace(motion(n=n), dt=seconds / n, torque=20.0 * np.sin(np.linspace(0, 2 * np.pi, n)))
+        column = Creep().columns(s, ())[Port.WIND_UP][:, 0]
+        return float(abs(column[n // 2]))  # back at zero torque
+
+    assert gap(400.0) < 0.05 * gap(4.0)
+
+
+def test_droop_gives_as_it_takes_where_friction_would_take_both_ways() -> None:
+    forth, back = (Droop().columns(motion(sign), ())[Port.READS_TAU_M][:, 0] for sign in (1.0, -1.0))
+    np.testing.assert_allclose(forth, -back, atol=1e-12)
+    assert (np.sign(forth) == np.sign(motion().tau_m)).all()
+
+
+@pytest.mark.slow
+def test_creep_is_not_called_hysteresis(tmp_path: Path) -> None:
+    write_case(Request("outside", 11, "complete", "gear_creep", over_floor=4.0), tmp_path, "case")
+    verdict = trace(tmp_path / "case").verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "memory")
