@@ -9,7 +9,7 @@ BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of 
 SLOWEST_TURNING: Final = (
     0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
 )
-SETTLING: Final = 0.15  # s left out of the torque equations on both sides of a reversal: presliding is over
+SETTLING: Final = 0.05  # s left out of the torque equations on both sides of a reversal: what stuck has come loose
 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
 SECOND: Final = 1e-6  # s², (B_sp/K)²: a damping ratio of 5 % at 16 Hz, the second order of the spring's damping
