@@ -22,6 +22,7 @@ from rig.analysis.tracing.pictures import pictures
 from rig.analysis.tracing.result import Floor, Found, Trace
 from rig.analysis.tracing.ripple import ripples
 from rig.analysis.tracing.search import Found as Searched
+from rig.analysis.tracing.shadows import cast
 from rig.analysis.tracing.suspects import candidates
 from rig.analysis.tracing.unknown import smooth_term
 from rig.analysis.tracing.verdict import decide
@@ -52,6 +53,7 @@ def report(
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+    shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
     words = p.own.parameters | dict(fitted)
     return Trace(
@@ -72,7 +74,7 @@ def report(
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
         lives_in=ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ()),
-        candidates=candidates(p, found.ranking, before, ruling.verdict.effects),
+        candidates=candidates(p, found.ranking, before, ruling.verdict.effects, shadowed),
         verdict=ruling.verdict,
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 SENSORS: Final = {"A": "theta_l", "M": "tau_m", "L": "tau_l"}
+TAKEN: Final = "; what stands in its place explains more"
 IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "L": "shaft torque"}
 
 
@@ -34,14 +35,16 @@ class Tried:
 
 
 def candidates(
-    p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array], named: Sequence[str]
+    p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array], named: Sequence[str], shadowed: Collection[str]
 ) -> tuple[Candidate, ...]:
-    """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`."""
+    """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`. In the place of
+    effects that are `shadowed` a law beside the library explains more."""
     out = []
     for r in ranking:
         found = tried(p, r, before)
         rms = {SENSORS[c]: value for c, value in found.rms.items()}
-        out.append(Candidate(r.term.name, r.evidence, reason(found, r.term.name, named), rms))
+        why = reason(found, r.term.name, named) + (TAKEN if r.term.name in shadowed else "")
+        out.append(Candidate(r.term.name, r.evidence, why, rms))
     return tuple(out)
 
 

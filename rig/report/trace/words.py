@@ -60,7 +60,7 @@ PLACES = {
     "time": "the time since the campaign began",
     "time_periodic": "time, at a fixed frequency whatever the speed",
     "temperature": "the temperature",
-    "memory": "the torque and whether it rises or falls: memory",
+    "memory": "what the torque has been: memory",
 }
 
 
