@@ -125,3 +125,25 @@ def test_a_page_with_a_wrong_token_only_looks(open_page: Open, station: Puppet) 
     page.wait_for_timeout(200)
     assert station.acts == []
     assert enabled(page) == set()
+
+
+def test_a_campaign_that_was_stopped_is_gone_on_with_by_clicking(page: Page, station: Puppet) -> None:
+    left = {"folder": "runs/2026-11-20-1129-campaign-quick-TWIN-1a2b", "plan": "quick", "bench": "twin", "done": 3,
+            "total": 12, "started_utc": "2026-11-20T11:29:00Z", "why": "stopped by the operator"}  # fmt: skip
+    station.tell(
+        state="ready", bench=BENCH, job="campaign quick", campaign={**left, "current": "friction", "left_s": 9}
+    )
+    page.wait_for_selector("#campaign:visible")
+    page.click("[data-kind=plan]")
+    assert page.locator("#chosen option").count() == 1
+    station.campaigns = [left]
+    station.tell(job="", campaign=None)  # it ends: asked for again
+    page.wait_for_selector("#chosen optgroup[label='Go on with'] option", state="attached")
+    page.select_option("#chosen", left["folder"])
+    assert "3 of 12 runs are done; stopped by the operator" in text(page, "#summary")
+    page.wait_for_selector("#start[aria-disabled=false]:has-text('Go on with campaign quick')")
+    assert station.checked[-1]["resume"] == left["folder"]
+    page.click("#start")
+    until(lambda: len(station.acts) == 1, "campaign")
+    sent = station.acts[0]
+    assert (sent["act"], sent["resume"], "plan" in sent) == ("campaign", left["folder"], False)
