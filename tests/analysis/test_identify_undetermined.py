@@ -88,7 +88,7 @@ def test_without_a_torque_sensor_load_side_friction_is_unknown_and_not_zero(alon
 
 def test_runs_that_determine_nothing_are_refused() -> None:
     t = np.arange(0.0, 4.0, 1e-3)
-    still = recording(Made("still", {"t": t, **{name: 0.0 * t for name in ("theta_m", "theta_l", "tau_l", "tau_m")}}))
+    still = recording(Made("still", {"t": t, **dict.fromkeys(("theta_m", "theta_l", "tau_l", "tau_m"), 0.0 * t)}))
     assert still is not None
     found = identified(fit([still], 15), {"declared": DECLARED})
     with pytest.raises(DataError, match=r"nothing of the gear can be determined from what is here \(constant-torque\)"):
