@@ -1,40 +1,15 @@
-"""Each button in each state; what a press sends, how often, and what halt does in spite of everything."""
+"""What a press sends, how often, and what halt does in spite of everything. Each button in each state: next door."""
 
 from __future__ import annotations
 
 import pytest
 from playwright.sync_api import Page
 
-from rig.station.rules import allowed
 from tests.console.browser.conftest import Open
 from tests.console.browser.look import enabled, in_state, text, until
-from tests.console.browser.puppet import BENCH, RUN, Puppet
+from tests.console.browser.puppet import BENCH, Puppet
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
-URGENT = {"hold", "stop"}
-IDLE = URGENT | {"check", "prove", "tare", "note", "disconnect"}
-SITUATIONS = {  # what the station is said to be → the buttons that may be pressed
-    "disconnected": ({"state": "disconnected", "bench": None}, URGENT | {"connect", "check"}),
-    "connected": ({"state": "connected", "bench": BENCH}, IDLE),
-    "ready": ({"state": "ready", "bench": BENCH, "proof": "ratio 49.994"}, IDLE),
-    "running": ({"state": "running", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "holding": ({"state": "holding", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "stopping": ({"state": "stopping", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "fault": (
-        {"state": "fault", "bench": BENCH, "fault": "following error 12.4 deg", "run": None},
-        URGENT | {"check", "reset", "note", "disconnect"},
-    ),
-}
-
-
-def test_a_button_may_be_pressed_exactly_where_the_station_allows_it(page: Page, station: Puppet) -> None:
-    for name, (told, expected) in SITUATIONS.items():
-        station.tell(**{"job": "", "run": None, "proof": None, "fault": "", **told})
-        in_state(page, name)
-        assert enabled(page) - {"take_control"} == expected, name
-        assert all(allowed(station.picture)[act] is True for act in expected), name
-        may_start = allowed(station.picture)["start"] is True
-        page.wait_for_selector(f"#start[aria-disabled={str(not may_start).lower()}]")
 
 
 def test_a_button_that_may_not_be_pressed_says_why_and_sends_nothing(page: Page, station: Puppet) -> None:
