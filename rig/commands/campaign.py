@@ -148,15 +148,23 @@ def to_gear_file(folder: Path) -> int:
 
 
 def to_load_law(folder: Path) -> int:
-    """Peak to peak against load, on stdout and in the summary."""
-    from rig.commands.load_sweep import load_law_of
+    """Peak to peak against load, on stdout, in the summary and as a report."""
+    from rig.commands.sweep_report import load_sweep_of
 
-    return load_law_of(folder)
+    return load_sweep_of(folder)
+
+
+def to_depths(folder: Path) -> int:
+    """Peak to peak by depth with the reproducibility band, on stdout, in the summary and as a report."""
+    from rig.commands.sweep_report import assembly_sweep_of
+
+    return assembly_sweep_of(folder)
 
 
 LAST = {
     "identify": to_gear_file,
     "load-sweep": to_load_law,
+    "assembly-sweep": to_depths,
 }  # what follows the last run of a campaign, by the name of its plan
 
 
