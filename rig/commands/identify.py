@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.commands.folders import expand, runs_argument
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
@@ -78,6 +79,8 @@ def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
 
     if out is not None and out.exists():
         raise UsageError(f"{out} exists already; give the name of a new file")
+    if out is not None:
+        refuse_unwritable(out.parent, "-o")
     runs, recordings = open_runs(paths)
     found = identified(fit(recordings, terms, say), runs[0].manifest)
     simulated = any(r.simulated for r in runs)

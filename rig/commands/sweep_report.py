@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rig.commands.load_sweep import told as law_lines
-from rig.core.errors import Exit, UsageError
+from rig.core.errors import DataError, Exit
+from rig.runfile.manifest import told
 
 if TYPE_CHECKING:
     from rig.analysis.assembly_band import AssemblyRun, Cell
@@ -57,7 +58,7 @@ def runs_of(folder: Path) -> list[tuple[AssemblyRun, str]]:
 
 
 def finish(folder: Path, result: Result | None, lines: Sequence[str]) -> int:
-    """`lines` at the end of the summary, result and report beside it, both on stdout. Raises UsageError."""
+    """`lines` at the end of the summary, result and report beside it, both on stdout. Raises DataError."""
     from rig.commands.analyse import exit_of, print_result
     from rig.report.page import write
     from rig.report.record import write_result
@@ -66,13 +67,11 @@ def finish(folder: Path, result: Result | None, lines: Sequence[str]) -> int:
         print("no run of the sweep was analysed: there is nothing to compare")
         return int(Exit.INCOMPLETE)
     about = manifest_of(folder, result)
-    try:
+    with told(DataError, f"the runs are complete, their summary cannot be written into {folder}"):
         with (folder / "summary.txt").open("a", encoding="utf-8") as summary:
             summary.write("\n" + "\n".join(lines) + "\n")
         write_result(folder, result)
         write(folder, about, {}, [], result)
-    except OSError as error:
-        raise UsageError(f"cannot write into {folder}: {error.strerror}; the runs are complete there") from None
     print("\n".join(lines))
     print_result(result, folder, folder, about.get("backend") == "sim")
     return int(exit_of(result))

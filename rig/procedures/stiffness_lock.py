@@ -56,7 +56,7 @@ class StiffnessLock(Procedure):
 
     tau_max: float = 15.0  # N·m at the torque sensor
     rate: float = 0.75  # N·m/s at the torque sensor: 20 s a quarter
-    cycles: int = 3
+    cycles: int = 3  # at the first of `rates`
     hold: float = 2.0  # s at the ends, for creep
     rates: tuple[float, ...] = (1.0, 0.3, 3.0)  # of `rate`; spans a factor of ten
     unwind_rate: float = 5.0  # N·m/s, when it was stopped
