@@ -22,6 +22,7 @@ CANOPEN = "CANopen"
 MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
 NEVER = -1e9  # s, before any SYNC
 LATE_ANSWER = 0.002  # s before the newest SYNC: who answered then answered an older one, and was held up on the way
+SETTLE, OTHERS = 0.01, 0.12  # s listened before anything is sent: a host that only reads beats every 50 ms
 OLDEST = 0.1  # s: a time stamp farther back is on another clock than ours
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
 GONE = (can.CanError, OSError)
@@ -80,7 +81,9 @@ class Bus:
         return self._can is not None
 
     def open(self) -> None:
-        """Open it; nothing when it is. Raises NotReady, one sentence, whatever the backend raises."""
+        """Open it; nothing when it is. Raises NotReady, one sentence, whatever the backend raises, and where another
+        program is heard there that commands it, through whatever adapter.
+        """
         if self._can is not None:
             return
         interface, channel, options = self._where
@@ -91,6 +94,24 @@ class Bus:
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
         self.frames.clear()
         self.dead, self.synced, self._beat = "", NEVER, NEVER
+        if self.host_node and self.protocol == CANOPEN:
+            self._refuse_other_host()
+
+    def _refuse_other_host(self) -> None:
+        """A lock on a channel holds nobody off who came by another one: two adapters, one bus."""
+        beat = HEARTBEAT + self.host_node
+        self.wait(SETTLE, lambda: False)  # what an adapter kept from before
+        self.drain()
+        self.frames.clear()
+        self.wait(OTHERS, lambda: beat in self.frames)
+        if beat in self.frames:
+            self.close()
+            raise NotReady(
+                f"CAN bus '{self.name}' has a host already: somebody sends the heartbeat of node {self.host_node}, which is "
+                "ours; one program at a time commands a bench: end that one first, or give host_node another number where "
+                "it is a device"
+            )
+        self.frames.clear()
 
     def close(self) -> None:
         """Leave the bus. Idempotent; never raises."""

@@ -10,6 +10,9 @@ import pytest
 
 from drivers.bus import Bus
 from drivers.wiring import Place, Wiring
+from rig.core.errors import NotReady
+from sim.wire.frame import Frame
+from tests.drivers.virtual import Wired, wired
 from tests.fakes import FakeClock
 
 EPOCH = 1.7e9  # s, what the adapter's time stamps begin at
@@ -90,3 +93,40 @@ def test_a_serial_adapter_is_never_waited_for_unless_the_bench_says_so(
     wiring = Wiring(FakeClock(), sections, lambda **options: asked.update(options))
     wiring.bus(Place("drive", {"bus": "rig"})).open()
     assert {key: value for key, value in asked.items() if key not in ("interface", "channel")} == passed
+
+
+def test_a_bus_that_another_host_commands_through_another_adapter_is_refused():
+    w = wired()
+    other = w.twin.bus.attach("another host", lambda frame, t: None)
+
+    def beat() -> None:  # as an idle console does
+        other.send(Frame(0x77F, b"\x05"))
+        w.twin.agenda.after(0.05, beat)
+
+    beat()
+    heard = frames_of(w)
+    with pytest.raises(NotReady, match=r"has a host already: .* heartbeat of node 127"):
+        w.instruments.connect()
+    assert {frame.identifier for frame in heard if frame.identifier < 0x80} == set()  # no node was told anything
+    assert not [frame for frame in heard if 0x600 < frame.identifier < 0x680]  # nor asked
+
+
+def test_heartbeats_an_adapter_kept_from_before_keep_nobody_off():
+    w = wired()
+    gone = w.twin.bus.attach("gone", lambda frame, t: None)
+
+    def connect(**options: Any) -> Any:
+        made = w.wire.connect(**options)
+        gone.send(Frame(0x77F, b"\x05"))  # waits before anybody looks
+        return made
+
+    again = w.bench.wired(w.wire, connect=connect, stamps=w.wire.now)
+    assert again.connect()
+    again.close()
+
+
+def frames_of(w: Wired) -> list[Frame]:
+    """Every frame that passes from now on."""
+    heard: list[Frame] = []
+    w.twin.bus.attach("ear", lambda frame, t: heard.append(frame))
+    return heard
