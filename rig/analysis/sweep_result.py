@@ -72,7 +72,7 @@ def _reproducibility(found: Findings, again: Repeat | None, base: Cell, under: s
     told = (
         f"Half of the band about the reference depth in which 95 of 100 single fittings lie, {under}; Student's factor."
     )
-    found.exact("reproducibility_band", "Re-assembly at one depth, 95 % band ±", half, "arcsec", told)
+    found.exact("reproducibility_band", "Re-assembly at one depth, half of the 95 % band", half, "arcsec", told)
     if again.dof < 4:
         found.cannot.append(
             f"Reproducibility: {again.dof} degrees of freedom only, its 1 σ may be {low / again.sigma:.2f} to "

@@ -85,9 +85,19 @@ def manifest_of(folder: Path, result: Result) -> dict[str, Any]:
     rows = [row for rows in result.tables.values() for row in rows]
     loads = sorted({float(row["load_nm"]) for row in rows}, key=abs)
     depths = sorted({float(row["depth_mm"]) for row in rows})
-    conditions = {"loads_nm": ", ".join(f"{x:g}" for x in loads), "depths_mm": ", ".join(f"{x:+g}" for x in depths)}
+    conditions = {
+        "loads": ", ".join(f"{x:g}" for x in loads) + " N·m",
+        "depths": ", ".join(f"{x:+g}" if x else "0" for x in depths) + " mm from the reference",
+    }
     kept = {key: first[key] for key in KEPT if key in first}
-    return {**kept, "procedure": result.procedure, "status": "completed", "conditions": conditions}
+    uid = first.get("campaign", {}).get("uid")
+    return {
+        **kept,
+        **({"uid": uid} if uid else {}),
+        "procedure": result.procedure,
+        "status": "completed",
+        "conditions": conditions,
+    }
 
 
 def depth_lines(found: Sequence[Cell]) -> list[str]:
