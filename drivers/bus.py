@@ -108,8 +108,8 @@ class Bus:
             self.close()
             raise NotReady(
                 f"CAN bus '{self.name}' has a host already: somebody sends the heartbeat of node {self.host_node}, "
-                "ours; one program at a time commands a bench: end that one first, or give host_node another number where "
-                "it is a device"
+                "ours; one program at a time commands a bench: end that one first, or give host_node another number "
+                "where it is a device"
             )
         self.frames.clear()
 
