@@ -71,6 +71,7 @@ class Bus:
         self.syncs = 0  # sent so far
         self._where = (interface, channel, dict(options))
         self._can: Any = None
+        self._poll: select.poll | None = None  # of its bytes, where it is more than a part of this process
         self._beat = NEVER
         self._messages: dict[int, can.Message] = {}
         self._asks: dict[int, can.Message] = {}
@@ -92,6 +93,7 @@ class Bus:
         except (Exception, SystemExit) as why:  # noqa: BLE001  each backend of python-can raises what it likes
             reason = str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
+        self._poll = _poll_of(self._can)
         self.frames.clear()
         self.dead, self.synced, self._beat = "", NEVER, NEVER
         if self.host_node and self.protocol == CANOPEN:
@@ -115,7 +117,7 @@ class Bus:
 
     def close(self) -> None:
         """Leave the bus. Idempotent; never raises."""
-        bus, self._can = self._can, None
+        bus, self._can, self._poll = self._can, None, None
         if bus is not None:
             with contextlib.suppress(*GONE, *GARBLED):
                 bus.shutdown()
@@ -158,8 +160,14 @@ class Bus:
     def drain(self) -> None:
         """Take what has arrived, without waiting. Never raises."""
         for _ in range(MOST):
-            if not self.take(0.0):
+            if not self.take(0.0) and not self._more():
                 return
+
+    def _more(self) -> bool:
+        """Bytes wait all the same: slcan hands over nothing, once, for every word by which the adapter confirms a frame
+        of ours, with the answers of the devices behind it.
+        """
+        return not self.dead and self._poll is not None and bool(self._poll.poll(0))
 
     def wait(self, seconds: float, done: Callable[[], bool]) -> bool:
         """Take frames for up to `seconds` until `done` says so; what it says at the end. Not for use in a tick."""
@@ -193,14 +201,9 @@ class Bus:
 
     def _recv(self, timeout: float) -> can.Message | None:
         """Asleep until something comes: who looks again and again keeps the adapter from the processor."""
-        waiting = -1
-        with contextlib.suppress(AttributeError, NotImplementedError):  # a bus within the process
-            waiting = self._can.fileno()
-        if waiting >= 0:
-            poll = select.poll()
-            poll.register(waiting, select.POLLIN)
-            poll.poll(math.ceil(1e3 * timeout))
-        return self._can.recv(0.0 if waiting >= 0 else timeout)  # type: ignore[no-any-return]
+        if self._poll is not None:
+            self._poll.poll(math.ceil(1e3 * timeout))
+        return self._can.recv(timeout if self._poll is None else 0.0)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
         now = self.clock.now()
@@ -242,6 +245,17 @@ class Bus:
     def raw(self) -> Any:
         """python-can's bus, for canopen's SDO client."""
         return self._can
+
+
+def _poll_of(bus: can.BusABC) -> select.poll | None:
+    waiting = -1
+    with contextlib.suppress(AttributeError, NotImplementedError):  # a bus within the process
+        waiting = bus.fileno()
+    if waiting < 0:
+        return None
+    found = select.poll()
+    found.register(waiting, select.POLLIN)
+    return found
 
 
 def _reason(why: BaseException) -> str:

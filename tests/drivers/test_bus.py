@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from typing import Any
 
 import can
 import pytest
 
-from drivers.bus import Bus
+from drivers.bus import MOST, Bus
 from drivers.wiring import Place, Wiring
 from rig.core.errors import NotReady
 from sim.wire.frame import Frame
@@ -130,3 +131,45 @@ def frames_of(w: Wired) -> list[Frame]:
     heard: list[Frame] = []
     w.twin.bus.attach("ear", lambda frame, t: heard.append(frame))
     return heard
+
+
+class Confirming(Adapter):
+    """As python-can's slcan: nothing is handed over, once, for the word that confirms a frame of ours."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.sight, self.bytes = os.pipe()
+
+    def arrive(self, *words: can.Message | None) -> None:
+        for word in words:
+            self.waiting.append(word)  # type: ignore[arg-type]
+            os.write(self.bytes, b"\r")
+
+    def recv(self, timeout: float) -> can.Message | None:
+        if self.waiting:
+            os.read(self.sight, 1)
+        return super().recv(timeout)
+
+    def fileno(self) -> int:
+        return self.sight
+
+
+def test_answers_behind_the_words_of_a_serial_adapter_are_taken_at_once():
+    adapter = Confirming()
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus.open()
+    answers = [can.Message(arbitration_id=number, data=b"\0", is_extended_id=False) for number in (0x181, 0x281)]
+    adapter.arrive(None, answers[0], None, None, answers[1])
+    bus.drain()
+    assert set(bus.frames) == {0x181, 0x281}
+
+
+def test_a_serial_adapter_that_is_gone_does_not_keep_the_loop():
+    adapter = Confirming()
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus.open()
+    os.close(adapter.bytes)  # there is always something to be read: its end
+    looks: list[float] = []
+    adapter.recv = lambda timeout: looks.append(timeout)  # type: ignore[assignment]
+    bus.drain()
+    assert len(looks) <= MOST
