@@ -135,7 +135,42 @@ def _cell(value: Cell | None) -> str:
     return plain(value, 5) if isinstance(value, int | float) else ABSENT if value is None else value
 
 
+HEADS = {  # of keys whose name says too little
+    "motor_torque": "Motor torque, N·m",
+    "motor_side": "Motor side, N·m",
+    "load_side": "Load side, N·m",
+    "seconds": "Duration, s",
+    "local_stiffness_N·m/rad": "Local stiffness, N·m/rad",
+    "interval_±": "±, N·m/rad",
+    "windup_rate_arcmin/s": "Rate of wind-up, arcmin/s",
+    "direction": "Direction, ±1",
+    "u": "1 σ",
+    "odd_torque_Nm": "Odd torque, N·m",
+    "at_speed": "At speed, arcsec",
+    "pure": "Pure, arcsec",
+    "flexible": "Flexible, arcsec",
+    "flexible_lo": "from, arcsec",
+    "flexible_hi": "to, arcsec",
+    "predicted": "Predicted, arcsec",
+    "u_predicted": "1 σ of it, arcsec",
+    "gain_predicted": "Gain predicted",
+    "change_percent": "Change, %",
+    "noise_percent": "Noise, %",
+    "order_2_change_percent": "Change of order 2, %",
+    "from_standstill_percent": "From standstill, %",
+    "from_standstill_u_percent": "1 σ of it, %",
+    "law_percent": "By the law, %",
+    "u_arcsec": "1 σ, arcsec",
+    "u_phase": "1 σ of the phase, °",
+    "arcsec": "Amplitude, arcsec",
+    "lo": "from, arcsec",
+    "hi": "to, arcsec",
+}
+
+
 def _head(key: str) -> str:
+    if key in HEADS:
+        return HEADS[key]
     stem, _, suffix = key.rpartition("_")
     return f"{humanise(stem)}, {SUFFIXES[suffix]}" if stem and suffix in SUFFIXES else humanise(key)
 
