@@ -22,6 +22,7 @@ CANOPEN = "CANopen"
 MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
 NEVER = -1e9  # s, before any SYNC
 LATE_ANSWER = 0.002  # s before the newest SYNC: who answered then answered an older one, and was held up on the way
+SETTLE, OTHERS = 0.01, 0.12  # s listened before anything is sent: a host that only reads beats every 50 ms
 OLDEST = 0.1  # s: a time stamp farther back is on another clock than ours
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
 GONE = (can.CanError, OSError)
@@ -70,6 +71,7 @@ class Bus:
         self.syncs = 0  # sent so far
         self._where = (interface, channel, dict(options))
         self._can: Any = None
+        self._poll: select.poll | None = None  # of its bytes, where it is more than a part of this process
         self._beat = NEVER
         self._messages: dict[int, can.Message] = {}
         self._asks: dict[int, can.Message] = {}
@@ -80,7 +82,9 @@ class Bus:
         return self._can is not None
 
     def open(self) -> None:
-        """Open it; nothing when it is. Raises NotReady, one sentence, whatever the backend raises."""
+        """Open it; nothing when it is. Raises NotReady, one sentence, whatever the backend raises, and where another
+        program is heard there that commands it, through whatever adapter.
+        """
         if self._can is not None:
             return
         interface, channel, options = self._where
@@ -89,12 +93,31 @@ class Bus:
         except (Exception, SystemExit) as why:  # noqa: BLE001  each backend of python-can raises what it likes
             reason = str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
+        self._poll = _poll_of(self._can)
         self.frames.clear()
         self.dead, self.synced, self._beat = "", NEVER, NEVER
+        if self.host_node and self.protocol == CANOPEN:
+            self._refuse_other_host()
+
+    def _refuse_other_host(self) -> None:
+        """A lock on a channel holds nobody off who came by another one: two adapters, one bus."""
+        beat = HEARTBEAT + self.host_node
+        self.wait(SETTLE, lambda: False)  # what an adapter kept from before
+        self.drain()
+        self.frames.clear()
+        self.wait(OTHERS, lambda: beat in self.frames)
+        if beat in self.frames:
+            self.close()
+            raise NotReady(
+                f"CAN bus '{self.name}' has a host already: somebody sends the heartbeat of node {self.host_node}, "
+                "ours; one program at a time commands a bench: end that one first, or give host_node another number "
+                "where it is a device"
+            )
+        self.frames.clear()
 
     def close(self) -> None:
         """Leave the bus. Idempotent; never raises."""
-        bus, self._can = self._can, None
+        bus, self._can, self._poll = self._can, None, None
         if bus is not None:
             with contextlib.suppress(*GONE, *GARBLED):
                 bus.shutdown()
@@ -137,8 +160,14 @@ class Bus:
     def drain(self) -> None:
         """Take what has arrived, without waiting. Never raises."""
         for _ in range(MOST):
-            if not self.take(0.0):
+            if not self.take(0.0) and not self._more():
                 return
+
+    def _more(self) -> bool:
+        """Bytes wait all the same: slcan hands over nothing, once, for every word by which the adapter confirms a frame
+        of ours, with the answers of the devices behind it.
+        """
+        return not self.dead and self._poll is not None and bool(self._poll.poll(0))
 
     def wait(self, seconds: float, done: Callable[[], bool]) -> bool:
         """Take frames for up to `seconds` until `done` says so; what it says at the end. Not for use in a tick."""
@@ -172,14 +201,9 @@ class Bus:
 
     def _recv(self, timeout: float) -> can.Message | None:
         """Asleep until something comes: who looks again and again keeps the adapter from the processor."""
-        waiting = -1
-        with contextlib.suppress(AttributeError, NotImplementedError):  # a bus within the process
-            waiting = self._can.fileno()
-        if waiting >= 0:
-            poll = select.poll()
-            poll.register(waiting, select.POLLIN)
-            poll.poll(math.ceil(1e3 * timeout))
-        return self._can.recv(0.0 if waiting >= 0 else timeout)  # type: ignore[no-any-return]
+        if self._poll is not None:
+            self._poll.poll(math.ceil(1e3 * timeout))
+        return self._can.recv(timeout if self._poll is None else 0.0)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
         now = self.clock.now()
@@ -221,6 +245,17 @@ class Bus:
     def raw(self) -> Any:
         """python-can's bus, for canopen's SDO client."""
         return self._can
+
+
+def _poll_of(bus: can.BusABC) -> select.poll | None:
+    waiting = -1
+    with contextlib.suppress(AttributeError, NotImplementedError):  # a bus within the process
+        waiting = bus.fileno()
+    if waiting < 0:
+        return None
+    found = select.poll()
+    found.register(waiting, select.POLLIN)
+    return found
 
 
 def _reason(why: BaseException) -> str:

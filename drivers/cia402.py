@@ -259,14 +259,19 @@ class Cia402(Drive):
 
     # ---- off ----
 
+    def cut(self) -> None:
+        """Disable voltage at once. Never raises."""
+        self._enabled = False
+        if self._connected:
+            self.bus.discard()
+            for _ in range(2):  # one may meet a full queue
+                self._hold(DISABLE)
+
     def halt(self) -> bool:
         """Disable voltage at once; True when a statusword confirms that nothing is energised. Never raises."""
-        self._enabled = False
+        self.cut()
         if not self._connected:
             return False
-        self.bus.discard()
-        for _ in range(2):  # one may meet a full queue
-            self._hold(DISABLE)
         off = self._confirmed_off()
         with contextlib.suppress(
             NotReady

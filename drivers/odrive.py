@@ -224,15 +224,20 @@ class ODrive(Drive):
         carried: float = struct.unpack("<f", data)[0]
         return float(self._direction * carried)
 
+    def cut(self) -> None:
+        """Idle and zero torque at once. Never raises."""
+        self._enabled = False
+        if self._connected:
+            self.bus.discard()
+            for _ in range(2):  # one may meet a full queue
+                self.axis.request(cs.IDLE)
+                self.axis.send(cs.SET_TORQUE, cs.encode_torque(0.0))
+
     def halt(self) -> bool:
         """Idle and zero torque at once; True when a heartbeat says that it left closed loop. Never raises."""
-        self._enabled = False
+        self.cut()
         if not self._connected:
             return False
-        self.bus.discard()
-        for _ in range(2):  # one may meet a full queue
-            self.axis.request(cs.IDLE)
-            self.axis.send(cs.SET_TORQUE, cs.encode_torque(0.0))
         off = self._confirmed_off()
         self.axis.forgives = self.axis.expired if self._watchdog is not None else 0
         return off

@@ -123,7 +123,9 @@ def judge_lock(found: LockProof, angle: float) -> str:
             f"the lock pin could not be checked: {found.sentence}, {math.degrees(angle):.1f}° were asked for"
         )
     if found.follows > FREE:
-        raise NotReady(f"the output is not locked: {found.sentence}")
+        raise NotReady(
+            f"the output is not locked: {found.sentence}, expected less than {100 * LOCKED:.0f} %: fit the lock pin"
+        )
     if not abs(found.follows) < LOCKED:
         raise NotReady(f"the lock pin has play or gives way: {found.sentence}, expected less than {100 * LOCKED:.0f} %")
     return f"the output is locked: {found.sentence}"

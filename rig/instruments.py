@@ -140,6 +140,10 @@ class Instruments:
         """Command the drive; returns what it could be given [N·m]."""
         return self.drive.write(setpoint)
 
+    def cut(self) -> None:
+        """Torque off is commanded; nothing is waited for. `safe` has it confirmed."""
+        self.drive.cut()
+
     def safe(self) -> bool:
         """Torque off, in any state, any number of times, never raises. True when the drive confirmed it."""
         return self.drive.halt()

@@ -56,7 +56,11 @@ class Loop:
         timing: LoopTiming,
         watch: Callable[[Sample], None] = lambda sample: None,
         setpoints: Setpoints | None = None,
+        tripped: Callable[[str], None] = lambda why: None,
     ) -> None:
+        """`tripped` is told why between the command that takes the torque off and its confirmation, which a drive that
+        is gone never gives: it is quick, and writes no file.
+        """
         self.instruments = instruments
         self.supervisor = supervisor
         self.guard = guard
@@ -65,6 +69,7 @@ class Loop:
         self.timing = timing
         self.watch = watch
         self.setpoints = setpoints or AsTorque()
+        self.tripped = tripped
         self.running = False
         self.rows = 0  # handed to the sink so far
 
@@ -126,6 +131,8 @@ class Loop:
                 sample = sample._replace(flags=sample.flags | Flag.MISSED)
             trip = check(sample, asked)
             if trip is not None:
+                self.instruments.cut()
+                self.tripped(trip.sentence)
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
                 return Ending("tripped", trip.sentence, Exit.TRIPPED)

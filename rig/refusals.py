@@ -10,6 +10,13 @@ from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
 
+TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torque", "shaft": "shaft torque"}
+LIMITS = {
+    "travel": "limits.travel_turns",
+    "speed": "limits.speed_rpm",
+    "torque": "limits.torque",
+    "shaft": "limits.shaft_torque, what the torque sensor may carry",
+}
 LONGEST = 31 * 86400.0  # s
 LARGEST = 1e100  # in any unit: its square is still a number
 
@@ -46,10 +53,16 @@ def refuse_mode(bench: Bench, procedure: Procedure) -> None:
 
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
     """Raises NotReady when the procedure asks for more than the bench allows."""
+    envelope = procedure.envelope(bench.setting(lambda text: None))
+    reserved = "speed" if math.isinf(envelope.shaft_torque) else "shaft"
     for what, asked, limit, unit, scale in margins(bench, procedure):
         if asked > limit:
             wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-            raise NotReady(f"{procedure.title()} asks for {what} {wanted}, the bench allows {allowed}")
+            why = f" ({envelope.reserve})" if envelope.reserve and what == reserved else ""
+            raise NotReady(
+                f"{procedure.title()} asks for up to {wanted} of {TOLD[what]}{why}, the bench allows {allowed}: "
+                f"{LIMITS[what]}"
+            )
 
 
 def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:

@@ -99,7 +99,8 @@ def test_a_dry_run_prints_the_margins_and_writes_nothing(
 
 
 @pytest.mark.parametrize(
-    ("assignment", "word"), [("amplitude_deg=200000", "travel 200000 deg"), ("frequency=1.0", "speed 960 rpm")]
+    ("assignment", "word"),
+    [("amplitude_deg=200000", "200000 deg of motor travel"), ("frequency=1.0", "960 rpm of motor")],
 )
 def test_what_the_bench_does_not_allow_is_refused_before_anything_moves(
     assignment: str, word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -48,10 +48,15 @@ class Bench:
         self.supervisor.act(Act.CHECK)
         self.instruments = instruments(self.world)
 
-    def run(self, at: Callable[[], None] = lambda: None, tau: float = 0.31) -> Ending:
+    def run(
+        self,
+        at: Callable[[], None] = lambda: None,
+        tau: float = 0.31,
+        tripped: Callable[[str], None] = lambda why: None,
+    ) -> Ending:
         procedure = Constant(at, tau)
         guard = Guard(LIMITS, procedure.envelope(SETTING), 50.0)
-        loop = Loop(self.instruments, self.supervisor, guard, self.sink, self.interrupts, self.timing)
+        loop = Loop(self.instruments, self.supervisor, guard, self.sink, self.interrupts, self.timing, tripped=tripped)
         return loop.run(procedure, SETTING)
 
     def torque_free(self) -> bool:
@@ -87,6 +92,18 @@ def test_a_trip_takes_the_torque_off_latches_and_marks_the_row(harm: Callable[[F
     assert bench.supervisor.state is State.FAULT
     assert bench.sink.rows[-1][0].flags & Flag.TRIPPED
     assert not any(row[0].flags & Flag.TRIPPED for row in bench.sink.rows[:-1])
+
+
+def test_a_trip_is_told_once_the_torque_is_off_and_before_the_drive_confirmed_it() -> None:
+    bench, told = Bench(), []
+    bench.world.confirms = False  # and takes its time to be found out
+    ending = bench.run(
+        lambda: setattr(bench.world, "fault", "over-current"),
+        tripped=lambda why: told.append((why, bench.torque_free(), bench.world.history.count("halt"))),
+    )
+    assert told == [("the drive reports a fault: over-current", True, 1)]
+    assert bench.world.history.count("halt") > 1
+    assert "did not confirm" in ending.reason
 
 
 def test_one_interrupt_brings_the_motor_to_rest_before_the_torque_goes() -> None:

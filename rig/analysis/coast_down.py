@@ -9,7 +9,7 @@ import numpy as np
 from rig.analysis.angle import RPM
 from rig.analysis.coast import FEWEST, SKIP, SLOWEST, Coast, Piece, fit_coasts
 from rig.analysis.decomposition import declared_gear
-from rig.analysis.findings import Findings
+from rig.analysis.findings import Findings, pm
 from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array, Check
 from rig.analysis.source import Motion, Source
@@ -122,9 +122,8 @@ def _figures(found: Findings, result: Inertia, coasts: list[Coast], b: float, u_
     how = f"Mean torque over {HELD:g} s before it was taken off, {n} times, in the direction of motion."
     found.figure("holding_torque", "Torque that held the speed", float(held.mean()), "N·m", half, how)
     found.sentence = (
-        f"Inertia at the motor {1e3 * result.J[0]:.3f} ± {1e3 * result.J[1]:.3f} g·m², friction "
-        f"{result.tau_c[0]:.3f} ± {result.tau_c[1]:.3f} N·m and {1e3 * result.B[0]:.2f} ± {1e3 * result.B[1]:.2f} "
-        f"mN·m·s/rad, from {basis}."
+        f"Inertia at the motor {pm(*result.J, 'kg·m²')}, Coulomb friction {pm(*result.tau_c, 'N·m')}, drag "
+        f"{pm(1e3 * result.B[0], 1e3 * result.B[1], 'mN·m·s/rad')}, from {basis}."
     )
     way = np.array([c.direction for c in coasts])
     if (way > 0).sum() > 1 and (way < 0).sum() > 1:
@@ -147,8 +146,8 @@ def _check(found: Findings, result: Inertia, declared: float) -> None:
     agrees = abs(value - declared) <= half
     word = "agrees with" if agrees else "disagrees with"
     text = (
-        f"The inertia at the motor, {1e3 * value:.3f} ± {1e3 * half:.3f} g·m², {word} the declared J_m + J_l/N² of "
-        f"{1e3 * declared:.3f} g·m²."
+        f"The inertia at the motor, {pm(value, half, 'kg·m²')}, {word} the declared J_m + J_l/N² of "
+        f"{declared:.4g} kg·m²."
     )
     found.checks.append(Check("inertia_as_declared", agrees, text))
 

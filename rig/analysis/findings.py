@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -13,6 +14,14 @@ from rig.analysis.intervals import against_limit
 from rig.analysis.result import Array, Check, Estimate, Result, Verdict
 
 WHY_REJECTED = ("stuck_share", "speed_scatter", "hunting_frequency")  # they describe the run and do count
+
+
+def pm(value: float, half: float, unit: str) -> str:
+    """ "0.3197 ± 0.0004 N·m": the half width in two significant digits at most, the value to as many decimals."""
+    if not (math.isfinite(value) and math.isfinite(half) and half > 0.0):
+        return f"{value:.4g} {unit}"
+    places = max(1 - math.floor(math.log10(half)), 0)
+    return f"{value:.{places}f} ± {half:.{places}f} {unit}"
 
 
 def true_minus(text: str) -> str:

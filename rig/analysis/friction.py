@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rig.analysis.angle import RPM
-from rig.analysis.findings import Findings
+from rig.analysis.findings import Findings, pm
 from rig.analysis.identify.friction import MotorFriction, load_friction, motor_friction, total_friction
 from rig.analysis.identify.means import Mean, Sides, mean_of, variances
 from rig.analysis.identify.recording import Recording, plateaus, recording
@@ -178,6 +178,6 @@ def _headline(total: MotorFriction | None) -> str:
         return "Friction: the plateaus have no motor torque, or a single speed: no line could be drawn."
     s = total.solved
     return (
-        f"Friction seen at the motor {s.coefficients[1]:.3f} ± {s.half(1):.3f} N·m and "
-        f"{1000 * s.coefficients[0]:.3f} ± {1000 * s.half(0):.3f} mN·m·s/rad, {len(total.rows)} plateaus."
+        f"Coulomb friction seen at the motor {pm(float(s.coefficients[1]), s.half(1), 'N·m')}, drag "
+        f"{pm(1000 * float(s.coefficients[0]), 1000 * s.half(0), 'mN·m·s/rad')}, {len(total.rows)} plateaus."
     )

@@ -105,8 +105,9 @@ def _lines(found: Findings, theta: Array, error: Array, ratio: float, output: st
     for row in rows:
         order = float(row["order"])
         how = (
-            f"Least squares over {turns} whole output turns with all whole orders to {TERMS}; a line is "
-            f"{1.0 / (turns * ratio):.3g} orders wide; interval from the noise around it. {row['source']}."
+            f"Least squares over {turns} whole output {'turn' if turns == 1 else 'turns'} with all whole orders to "
+            f"{TERMS}; a line is {1.0 / (turns * ratio):.3g} orders wide; interval from the noise around it. It may "
+            f"come from: {row['source']}."
         )
         state = "" if float(row["lo"]) > 0 else "Not told from zero, only the upper end is a result. "
         ci95 = (float(row["lo"]), float(row["hi"]))

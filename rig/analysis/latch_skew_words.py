@@ -127,8 +127,13 @@ def add_skew_error(found: Findings, run: Source, speed_rpm: float) -> None:
         return
     found.sentence += (
         f" Latch skew was not measured (hdrig run skew): one period of {1000 * period:.3g} ms would move θ̃ by "
-        f"{period * per_second:.2g} arcsec, opposite ways in the two directions."
+        f"{_two_digits(period * per_second)} arcsec, opposite ways in the two directions."
     )
+
+
+def _two_digits(value: float) -> str:
+    """4.1, 140: two significant digits without a power of ten."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def _known(manifest: Mapping[str, Any]) -> Late | None:

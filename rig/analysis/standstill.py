@@ -147,7 +147,7 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
             continue
         x, count = known[name][first:] * scale, _count(run, name, known[name]) * scale
         rms, seen = _add_channel(found, (name, label, unit), x, t, count, since)
-        said.append(f"{label.lower()} {rms:.3g} {unit}")
+        said.append(f"{label.lower()} {f'{rms:.3g} {unit}' if rms > 0.0 else _below(count, unit)}")
         lines += seen
     if t is None:
         found.cannot.append("No usable time column: drift and fixed frequencies cannot be had.")
@@ -161,6 +161,11 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
             f" Something shakes at {float(row['frequency_hz']):.3f} Hz: {row['channel']} with an amplitude of "
             f"{float(row['amplitude']):.3g} {row['unit']}."
         )
+
+
+def _below(count: float, unit: str) -> str:
+    """A channel that never left one count."""
+    return f"below one count of {count:.3g} {unit}" if count > 0.0 else "never changed"
 
 
 def _count(run: Source, name: str, x: Array) -> float:

@@ -26,6 +26,12 @@ SLOWEST = 0.3  # orders; a cage of rolling elements makes 0.4, below stand outpu
 LINES_FROM = 20  # turns a stroke needs before a line between the whole orders means anything
 OUTPUT_ORDERS = (1, 2, 3, 4)  # per output turn, looked at when the stroke has one
 JITTER = 0.01  # of the speed window: more makes a ripple of its own
+STEADY_TORQUE = frozenset(
+    (
+        *("kinematic_error", "speed_convergence", "full_turn", "load_sweep", "assembly_sweep"),
+        *("constant_torque", "constant_speed", "sentinel", "friction"),
+    )
+)  # experiments that keep the load as it is: nobody looks for a stiffness in them
 NO_LOAD = "No load angle was recorded: kinematic error, torsion and orders of θ̃ cannot be had."
 
 
@@ -69,9 +75,9 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     if smoothness is not None:
         found.estimates += smooth.estimates(smoothness)
     tau_l = motion.pick(run.column("tau_l"))
-    if not add_torsion(found, motion, tau_l):
+    if not add_torsion(found, motion, tau_l) and run.procedure not in STEADY_TORQUE:
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
-        found.cannot.append(f"Stiffness: {why}.")
+        found.cannot.append(f"Stiffness: {why}; a lock test shows it (hdrig run stiffness-lock).")
 
 
 def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> list[Stroke]:

@@ -14,7 +14,7 @@ def refuse_resonance(bench: Bench, procedure: Procedure) -> None:
     """Raises NotReady. Whoever means to go there says so, on the command line."""
     if procedure.output_locked:
         return
-    if words := into_resonance(bench, _speed(bench, procedure), ORDER_2):
+    if words := into_resonance(bench, procedure.envelope(bench.setting(lambda text: None)), ORDER_2):
         raise NotReady(f"{procedure.title()}: {words}, or `hdrig run … --allow-resonance`")
 
 

@@ -82,9 +82,16 @@ class Journal:
         self.book["runs"][index] |= {"status": "skipped", "by": by, "sentence": f"skipped by {by}"}
         self._save()
 
-    def ask(self, change: Change) -> None:
-        """A change is about to be asked for."""
+    def ask(self, change: Change) -> dict[str, Any] | None:
+        """A change is about to be asked for. Returns the record of what was asked for before and not shown."""
+        former: dict[str, Any] | None = self.book["pending"]
         self.book["pending"] = record_of(change)
+        self._save()
+        return former
+
+    def take_back(self, former: dict[str, Any] | None) -> None:
+        """It was refused before anybody touched the rig: what is pending is what was before."""
+        self.book["pending"] = former
         self._save()
 
     def show(self, change: Change, rigging: Rigging, sentence: str) -> None:

@@ -92,5 +92,5 @@ def _refuse_resonance(campaign: Campaign, item: Item) -> None:
     if item.rigging.output_locked or item.allow_resonance:
         return
     amplitude = campaign.plan.file.order_2_arcmin * ARCMIN
-    if words := into_resonance(campaign.bench, campaign.envelope(item).speed, amplitude):
+    if words := into_resonance(campaign.bench, campaign.envelope(item), amplitude):
         raise NotReady(f"{item.words()}: {words}, or allow_resonance = true in the step")

@@ -156,8 +156,13 @@ def _clear(session: Session, journal: Journal, desk: Desk) -> None:
 def _by_hand(session: Session, journal: Journal, desk: Desk, change: Change) -> None:
     """Raises NotReady when it is not made or not shown: no plan goes on from there."""
     desk.say(f"by hand: {change.words()}")
-    journal.ask(change)
-    shown = _shown(session, desk, change)
+    former = journal.ask(change)
+    try:
+        shown = _shown(session, desk, change)
+    except HdrigError:
+        if not session.unsure:  # refused before anybody was asked: the rig is as it was
+            journal.take_back(former)
+        raise
     journal.show(change, session.rigging, shown)
     desk.say(shown)
 

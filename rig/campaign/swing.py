@@ -6,6 +6,7 @@ import math
 from functools import lru_cache
 
 from rig.bench import Bench
+from rig.core.procedure import Envelope
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.linear import natural_frequency
@@ -38,16 +39,17 @@ def swing(gear: Gear, amplitude: float, omega_m: float) -> float:
     return worst_swing(gear, FourierSeries((0.0, amplitude), (0.0, 0.0)), omega_m)[0] if omega_m else 0.0
 
 
-def into_resonance(bench: Bench, speed: float, amplitude: float) -> str:
-    """What happens on the way to `speed` rad/s of a free output, in words; "" where it stays clear of the resonance."""
+def into_resonance(bench: Bench, envelope: Envelope, amplitude: float) -> str:
+    """What happens on the way to its speed on a free output, in words; "" where it stays clear of the resonance."""
     gear = declared_gear(bench)
-    at = resonance_speed(gear)
+    at, speed = resonance_speed(gear), envelope.speed
     if speed <= CLEAR * at:
         return ""
+    reserve = f" ({envelope.reserve})" if envelope.reserve else ""
     return (
-        f"order 2 meets the torsional resonance at {at / RPM:.0f} rpm, this run goes up to {speed / RPM:.0f} rpm, "
-        f"where the shaft torque is expected to swing by ±{swing(gear, amplitude, speed):.1f} N·m; expected at most "
-        f"{CLEAR * at / RPM:.0f} rpm"
+        f"order 2 meets the torsional resonance at {at / RPM:.0f} rpm of the motor, this run may reach "
+        f"{speed / RPM:.0f} rpm{reserve}, and on the way the shaft torque is expected to swing by "
+        f"±{swing(gear, amplitude, speed):.1f} N·m; expected a run that stays below {CLEAR * at / RPM:.0f} rpm"
     )
 
 

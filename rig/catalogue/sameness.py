@@ -15,6 +15,8 @@ SAID = {
     "tau_max": "up to {:g} N·m",
 }
 
+UNITS = {"s": "s", "hz": "Hz", "mm": "mm", "deg": "deg", "rpm": "rpm", "turns": "turns"}  # by the end of a name
+
 
 class Point(NamedTuple):
     """Gear, procedure and operating point: runs of the same are comparable."""
@@ -55,8 +57,16 @@ def words(at: Point) -> str:
             case int() | float() if key in SAID:
                 parts += [SAID[key].format(value)] if value or key == "speed_rpm" else []
             case int() | float():
-                parts.append(f"{key} {value:g}")
+                parts.append(_named(key, value))
     return ", ".join(parts)
+
+
+def _named(key: str, value: float) -> str:
+    """ "settle 3 s" of settle_s."""
+    name, _, end = key.rpartition("_")
+    if end in UNITS and name:
+        return f"{name.replace('_', ' ')} {value:g} {UNITS[end]}"
+    return f"{key.replace('_', ' ')} {value:g}"
 
 
 def _rounded(value: Any) -> Any:

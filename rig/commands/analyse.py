@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
 from rig.commands.reference import reference_beside, reference_named, reference_of_one_zero
-from rig.core.errors import DataError, Exit, UsageError
+from rig.commands.targets import writing
+from rig.core.errors import DataError, Exit
 
 if TYPE_CHECKING:
     from rig.analysis.result import Result
@@ -72,14 +73,12 @@ def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> 
     if reference is None:
         reference = BESIDE.get(run.procedure, without)(run)
     result = analyse(run, reference)
-    try:
+    with writing(target):
         target.mkdir(parents=True, exist_ok=True)
         made = [
             write_result(target, result),
             write(target, run.manifest, dict(run.timing), read_events(folder), result, run=folder),
         ]
-    except OSError as error:
-        raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
     if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
         add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
     return result, run.simulated

@@ -26,9 +26,11 @@ from rig.commands.person import Person
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
+from rig.commands.targets import refuse_unwritable
 from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.operator import Rigging
+from rig.runfile.manifest import told
 from rig.session.done import Watch, nobody
 from rig.software import operator
 
@@ -83,6 +85,7 @@ def begin(plan: Plan, args: argparse.Namespace) -> int:
         print("\n".join(dry_run.lines(campaign)))
         return 0
     refuse_nobody(campaign, range(len(campaign.items)))
+    refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     with showing(args.json) as show:
         return make(campaign, new_journal(args.out, campaign, clock, overrides), clock, args, show)
@@ -101,8 +104,8 @@ def _resume(args: argparse.Namespace) -> int:
         print("\n".join(dry_run.lines(campaign, journal.open_runs())))
         return 0
     refuse_nobody(campaign, journal.open_runs())
-    for told in take_up(journal):
-        print(told, file=sys.stderr)
+    for line in take_up(journal):
+        print(line, file=sys.stderr)
     for number in args.skip:
         if not 0 < number <= len(campaign.items):
             raise UsageError(f"--skip {number}: the campaign has runs 1 to {len(campaign.items)}")
@@ -125,7 +128,8 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
         args.before(session, show)
         exit = conduct(session, campaign, journal, Terminal(campaign.bench, person, show))
     text = "\n".join(summary.lines(journal)) + "\n"
-    (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    with told(DataError, f"the runs are kept in {journal.folder}, its summary cannot be written"):
+        (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     show.tell("campaign", folder=str(journal.folder), status=journal.book["status"], runs=journal.count())
     show.leave(exit)
     print(f"{text}campaign folder {journal.folder}")
@@ -148,15 +152,23 @@ def to_gear_file(folder: Path) -> int:
 
 
 def to_load_law(folder: Path) -> int:
-    """Peak to peak against load, on stdout and in the summary."""
-    from rig.commands.load_sweep import load_law_of
+    """Peak to peak against load, on stdout, in the summary and as a report."""
+    from rig.commands.sweep_report import load_sweep_of
 
-    return load_law_of(folder)
+    return load_sweep_of(folder)
+
+
+def to_depths(folder: Path) -> int:
+    """Peak to peak by depth with the reproducibility band, on stdout, in the summary and as a report."""
+    from rig.commands.sweep_report import assembly_sweep_of
+
+    return assembly_sweep_of(folder)
 
 
 LAST = {
     "identify": to_gear_file,
     "load-sweep": to_load_law,
+    "assembly-sweep": to_depths,
 }  # what follows the last run of a campaign, by the name of its plan
 
 

@@ -21,6 +21,7 @@ from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ def _begin(args: argparse.Namespace) -> int:
     seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
     campaign = planned(read_plan(args.plan), bench, seed)
     refuse_nobody(campaign, range(len(campaign.items)))
+    refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out, campaign, clock, overrides)
     story = Story(journal.folder.name, bench.simulated, args.budget_minutes)

@@ -11,8 +11,7 @@ from rig.catalogue.figures import Figure
 from rig.catalogue.row import Row
 from rig.catalogue.sameness import point, words
 from rig.commands.list_ import say
-from rig.core.errors import NotReady
-from rig.runfile.manifest import told
+from rig.commands.targets import writing
 
 SHOWN = {
     Mark.CHANGED: "CHANGED, more than reproducibility ({limit})",
@@ -45,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     if args.html is not None:
         from rig.report.comparison.page import write
 
-        with told(NotReady, f"{args.html} cannot be written"):
+        with writing(args.html, "--html"):
             write(args.html, found)
         if not args.json:
             print(f"page {args.html}")

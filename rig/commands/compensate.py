@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.person import Person
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.interrupts import Interrupts
 from rig.runfile.manifest import told, utc_now, write_atomic
@@ -42,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.report.closing.compensation import write
 
     bench, clock = open_bench(args)
+    refuse_unwritable(args.out)
     gear = _gear(args)
     folder = args.out / f"{utc_now()[:10]}-{utc_now()[11:13]}{utc_now()[14:16]}{utc_now()[17:19]}-compensation"
     if bench.simulated:

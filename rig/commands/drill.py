@@ -37,7 +37,8 @@ def run(args: argparse.Namespace) -> int:
         )
     print(f"SIMULATED: the drivers of real devices against the twin's {kind.words}, virtual time, 1 kHz, 1 Mbit/s")
     print(
-        "ms from the cause to the last torque commanded; – none commanded, ok went on as it has to, ✗ not as expected"
+        "ms from the cause to the last torque commanded; – none commanded, ok went on as it has to, ✗ not as expected\n"
+        "(ms) not seen by design: in this phase no reading shows it, or the phase is over before; no time is promised"
     )
     print(f"{'':{WIDTH}s}{'allowed':>9s}" + "".join(f"{p.name:>18s}" for p in phases), flush=True)
     outcomes: list[Outcome] = []
@@ -61,7 +62,8 @@ def _cell(outcome: Outcome) -> str:
         return f"✗ {outcome.ended}"
     if outcome.ended in ("completed", "stopped"):
         return "ok"
-    return f"{outcome.reaction * 1e3:.1f}" if outcome.reaction else "–"
+    shown = f"{outcome.reaction * 1e3:.1f}" if outcome.reaction else "–"
+    return f"({shown})" if outcome.phase in outcome.cause.unseen else shown
 
 
 def _summary(outcomes: list[Outcome]) -> Iterator[str]:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from rig.commands.folders import expand, for_each, runs_argument
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit
 
 FORMATS = ("csv", "mdf4", "mcap", "hdf5")  # as in rig.runfile.export, which is too heavy for --help
@@ -22,6 +23,9 @@ def run(args: argparse.Namespace) -> int:
     """Prints every file made."""
     from rig.runfile.export import export
     from rig.runfile.run import Run
+
+    if args.to is not None:
+        refuse_unwritable(args.to if args.to.is_dir() or not args.to.suffix else args.to.parent, "--to")
 
     def export_one(folder: Path) -> Exit:
         print(export(Run.open(folder), args.kind, args.to))

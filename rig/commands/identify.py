@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.commands.folders import expand, runs_argument
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
 
 if TYPE_CHECKING:
@@ -73,27 +74,52 @@ def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
     from rig.analysis.identify.fit import fit
     from rig.analysis.identify.identified import identified
     from rig.analysis.identify.predictions import predictions
+    from rig.analysis.identify.undetermined import said_open
     from rig.model import gearfile
 
     if out is not None and out.exists():
         raise UsageError(f"{out} exists already; give the name of a new file")
+    if out is not None:
+        refuse_unwritable(out.parent, "-o")
     runs, recordings = open_runs(paths)
     found = identified(fit(recordings, terms, say), runs[0].manifest)
     simulated = any(r.simulated for r in runs)
-    print("\n".join(report(found, simulated, len(recordings), len(runs))))
+    characteristics = beside(runs)
+    if not characteristics:
+        refuse_nothing(found, recordings)
+    tell(report(found, simulated, len(recordings), len(runs)))
     gear = runs[0].manifest.get("gear") or {}
+    if found.undetermined:
+        print(f"  {said_open(found.undetermined, found.parameters)}")
     file = found.gear_file(
         str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
     )
-    print("\n".join(comparison(predictions(recordings, file.gear(), terms))))
-    print("\n".join(coasting(runs, found)))
-    file = replace(file, characteristics=beside(runs))
-    print("\n".join(characteristic_lines(file.characteristics)))
-    print("\n".join(f"  cannot tell: {sentence}" for sentence in found.cannot))
+    tell(comparison(predictions(recordings, file.gear(), terms)))
+    tell(coasting(runs, found))
+    file = replace(file, characteristics=characteristics)
+    tell(characteristic_lines(characteristics))
+    tell([f"  cannot tell: {sentence}" for sentence in found.cannot])
     if out is not None:
         gearfile.write(out, file)
         print(f"gear file {out}")
-    return int(Exit.PASS)
+    return int(Exit.INCOMPLETE if found.undetermined else Exit.PASS)
+
+
+def tell(lines: list[str]) -> None:
+    """On stdout."""
+    for line in lines:
+        print(line)
+
+
+def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
+    """Raises DataError where not one number is measured: a gear file of what was declared says nothing new."""
+    if any(p.origin == "measured" for p in found.parameters.values()) or found.series.origin == "measured":
+        return
+    kinds = ", ".join(sorted({r.source.procedure.replace("_", "-") for r in recordings}))
+    raise DataError(
+        f"nothing of the gear can be determined from what is here ({kinds}): it takes runs in which the motor turns "
+        "at constant speed, or a lock test beside a slow run"
+    )
 
 
 def say(text: str) -> None:
@@ -139,12 +165,18 @@ def report(found: Identified, simulated: bool, used: int, of: int) -> list[str]:
 
 def parameter_line(name: str, p: Parameter, unit: str) -> str:
     """One parameter for people."""
+    from rig.analysis.identify.undetermined import NOTHING
     from rig.report.numbers import estimate
 
-    value = estimate(p.value, p.interval, unit)
-    origin = p.origin if p.origin != "measured" else f"measured, {len(p.runs)} runs" if p.runs else "measured"
+    value = "unknown" if p.note == NOTHING else estimate(p.value, p.interval, unit)
+    origin = p.origin if p.origin != "measured" else f"measured, {counted(p.runs)}" if p.runs else "measured"
     note = f"; {p.note}" if p.note else ""
     return f"  {name:8s} {value:36s} {WORDS[name]} ({origin}{note})"
+
+
+def counted(runs: tuple[str, ...]) -> str:
+    """How many they are."""
+    return f"{len(runs)} {'run' if len(runs) == 1 else 'runs'}"
 
 
 def series_lines(series: MeasuredSeries) -> list[str]:
@@ -152,6 +184,8 @@ def series_lines(series: MeasuredSeries) -> list[str]:
     from rig.analysis.identify.identified import order_amplitudes
     from rig.report.numbers import quantity
 
+    if series.origin != "measured":
+        return ["  θ̃_p      not determined: none of these runs shows the kinematic error"]
     lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]
     for n, size, u in order_amplitudes(series):
         small = "" if size > 2.45 * u else "  (not told from zero)"
@@ -222,7 +256,7 @@ def characteristic_lines(found: Mapping[str, Parameter]) -> list[str]:
     for name, p in found.items():
         scale, unit = SHOWN.get(CHARACTERISTICS[name], (1.0, CHARACTERISTICS[name]))
         value = estimate(scale * p.value, (scale * p.interval[0], scale * p.interval[1]), unit)
-        lines.append(f"  {name:17s} {value:36s} {p.note} ({len(p.runs)} {'run' if len(p.runs) == 1 else 'runs'})")
+        lines.append(f"  {name:17s} {value:36s} {p.note} ({counted(p.runs)})")
     return lines
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from rig.commands.targets import refuse_unwritable
+
 MAPPINGS = Path(__file__).parents[1] / "runfile" / "importing" / "mappings"
 EXAMPLE = """
 a mapping file says which column is what, for example:
@@ -45,5 +47,6 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.importing import import_file
     from rig.software import software
 
+    refuse_unwritable(args.out)
     print(import_file(args.file, args.map, args.out, software()))
     return 0

@@ -1,43 +1,13 @@
-"""What stands below the summary of a load sweep: peak to peak by load, up and down, and the law through them."""
+"""A load sweep in lines for people: peak to peak by load, up and down, and the law through them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
-
-from rig.core.errors import Exit
 
 if TYPE_CHECKING:
     from rig.analysis.intervals import Ranged
     from rig.analysis.load_law import LoadRun
-
-FIGURE = "kinematic_error_peak_to_peak"
-
-
-def load_law_of(folder: Path) -> int:
-    """The table and the law on stdout, and at the end of the campaign's summary."""
-    text = "\n".join(told(runs_of(folder))) + "\n"
-    with (folder / "summary.txt").open("a", encoding="utf-8") as summary:
-        summary.write(f"\n{text}")
-    print(text, end="")
-    return int(Exit.PASS)
-
-
-def runs_of(folder: Path) -> list[LoadRun]:
-    """Every completed slow run of the campaign in `folder` that was analysed."""
-    from rig.analysis.load_law import LoadRun
-    from rig.catalogue.figures import figures
-    from rig.runfile.manifest import read
-
-    found = []
-    for path in sorted(folder.glob("*/result.json")):
-        manifest, figure = read(path.parent), figures(path.parent).get(FIGURE)
-        if figure is not None and manifest.get("status") == "completed":
-            about = manifest.get("conditions") or {}
-            note = str(about.get("note") or "")
-            found.append(LoadRun(float(about.get("tau_ext") or 0.0), figure.value, note.endswith("down")))
-    return found
 
 
 def told(runs: Sequence[LoadRun]) -> list[str]:

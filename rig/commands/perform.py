@@ -12,7 +12,8 @@ from rig.commands.analyse import analyse_folder, exit_of, print_result
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show
-from rig.core.errors import Exit
+from rig.commands.targets import refuse_unwritable
+from rig.core.errors import DataError, Exit, UsageError
 from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
 from rig.procedures.jog import Jog
@@ -55,7 +56,8 @@ class Job:
 
 
 def perform(job: Job, show: Show, looking_on: Observer) -> int:
-    """One procedure to the end, its figures on stdout; the exit code."""
+    """One procedure to the end, its figures on stdout; the exit code. Raises UsageError where nothing can be kept."""
+    refuse_unwritable(job.root)
     done = _recorded(job, show, looking_on)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
     show.say(f"run {done.ending.status}: {done.ending.reason}")
@@ -69,6 +71,8 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
     except KeyboardInterrupt:
         show.say(f"the run is complete in {done.folder}; hdrig analyse makes its report")
         raise
+    except UsageError as error:  # a disk that filled up, as it is: nothing of the run is lost
+        raise DataError(f"the run is complete in {done.folder}, its report is not: {error}") from None
     show.result(done.folder, as_json(result), simulated)
     code = show.leave(done.ending.exit or exit_of(result) or Exit.PASS)
     print_result(result, done.folder, done.folder, simulated)

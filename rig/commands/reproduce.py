@@ -22,7 +22,9 @@ from rig.commands.campaign import Terminal, refuse_nobody
 from rig.commands.options import bench_arguments
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
-from rig.core.errors import Exit, HdrigError, UsageError
+from rig.commands.targets import refuse_unwritable, writing
+from rig.core.errors import DataError, Exit, HdrigError, UsageError
+from rig.runfile.manifest import told
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -64,6 +66,7 @@ def make(args: argparse.Namespace, ahead: Ahead) -> tuple[Path, Exit]:
     bench = read_bench(args.bench, overrides)
     campaign = planned(read_plan(args.plan), bench, args.seed or 0)
     refuse_nobody(campaign, range(len(campaign.items)))
+    refuse_unwritable(args.out or Path("runs"))
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out or Path("runs"), campaign, clock, overrides)
     desk = ReadAhead if clock == "virtual" else Recording
@@ -78,7 +81,8 @@ def make(args: argparse.Namespace, ahead: Ahead) -> tuple[Path, Exit]:
             exit = conduct(session, campaign, journal, desk(bench, person, show, ahead))
         show.leave(exit)
     text = "\n".join(summary.lines(journal)) + "\n"
-    (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    with told(DataError, f"the runs are kept in {journal.folder}, its summary cannot be written"):
+        (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     return journal.folder, exit
 
 
@@ -105,22 +109,22 @@ def draw(campaign: Path, out: Path, begun: Mapping[Path, Future[Reading]] = Mapp
     """The page from the runs in `campaign` into `out`; `begun` are being read. Raises UsageError and DataError."""
     from rig.analysis.reproduction.catalogue import exhibits
     from rig.analysis.reproduction.gather import entries, gather
-    from rig.report.reproduction import About, told, write
+    from rig.report.reproduction import About, write
+    from rig.report.reproduction import told as told_of
 
     if not campaign.is_dir():
         raise UsageError(f"{campaign} is no folder; expected that of a campaign")
+    refuse_unwritable(out)
     found = entries(campaign)
     read = gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr), begun=begun)
     made = exhibits(read)
     backends = {str(e.manifest.get("backend")) for e in found}
     backend = "sim" if "sim" in backends else next(iter(backends)) if len(backends) == 1 else None
-    try:
+    with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         page = write(out, made, About(facts(campaign, found), read.left_out, backend))
-    except OSError as error:
-        raise UsageError(f"cannot write into {out}: {error.strerror}; name another folder with --out") from None
     print("SIMULATED" if backend == "sim" else f"campaign {campaign.name}")
-    print("\n".join([*told(made), *(f"left out: {why}" for why in read.left_out)]))
+    print("\n".join([*told_of(made), *(f"left out: {why}" for why in read.left_out)]))
     print(f"page {page}")
     return int(Exit.INCOMPLETE if any(e.missing for e in made) else Exit.PASS)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import fields
 
 from rig.bench import Bench
 from rig.campaign.clear_of_resonance import refuse_resonance, swing_lines
@@ -26,6 +25,7 @@ from rig.commands.viewing import view, view_argument
 from rig.config import nearest
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
+from rig.parameters_told import told
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import refuse_beyond_limits, refuse_endless
 
@@ -59,12 +59,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def parameters_text() -> str:
     """Every procedure with its parameters and their defaults, for --help."""
-    lines = ["procedures and their parameters (--with NAME=VALUE, defaults shown):"]
+    lines = ["procedures and their parameters (--with NAME=VALUE, without the unit; defaults shown):"]
     kinds = {name: procedure_class(name) for name in CATALOGUE} | {name: sweep_class(name) for name in SWEEPS}
     for name, kind in kinds.items():
-        shown = ", ".join(f"{f.name}={f.default}" for f in fields(kind))  # type: ignore[arg-type]
         summary = (kind.__doc__ or "").strip().partition("\n")[0].split("      [")[0]
-        lines.append(f"  {name}\n      {summary}\n      {shown}")
+        lines += [f"  {name}", f"      {summary}", *(f"      {t.line}" for t in told(kind))]
     return "\n".join(lines)
 
 

@@ -120,7 +120,7 @@ def draw(path: Path, wave: Waveform, source: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with --out") from None
 
 
 def curves(wave: Waveform) -> dict[str, Array]:

@@ -6,7 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import Exit, UsageError
+from rig.commands.targets import refuse_unwritable, writing
+from rig.core.errors import Exit
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.result import NextRun, Trace
@@ -35,17 +36,18 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.manifest import utc_now
     from rig.software import software
 
-    found = trace(args.campaign, args.hold_out)
     target = args.out or args.campaign
-    try:
+    if args.out:  # an hour of thought is not lost to a wrong name
+        refuse_unwritable(args.out)
+    found = trace(args.campaign, args.hold_out)
+    tell(found)
+    with writing(target):
         target.mkdir(parents=True, exist_ok=True)
         written = [write_trace(target / "trace.json", found)]
-        if args.json:
-            write_trace(args.json, found)
         written.append(write(target, found, provenance(args.campaign, software(), utc_now())))
-    except OSError as error:
-        raise UsageError(f"cannot write into {target}: {error.strerror}; name another folder with --out") from None
-    tell(found)
+    if args.json:
+        with writing(args.json, "--json"):
+            write_trace(args.json, found)
     print(f"written {written[0]}\nreport {written[1]}")
     return int(exit_of(found))
 

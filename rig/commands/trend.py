@@ -9,8 +9,7 @@ from pathlib import Path
 from rig.catalogue.figures import WORDS
 from rig.catalogue.trend import Series, Spot, Trend, trend
 from rig.commands.list_ import say
-from rig.core.errors import NotReady
-from rig.runfile.manifest import told
+from rig.commands.targets import writing
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
     if args.html is not None:
         from rig.report.comparison.trend_page import write
 
-        with told(NotReady, f"{args.html} cannot be written"):
+        with writing(args.html, "--html"):
             write(args.html, found)
         if not args.json:
             print(f"page {args.html}")

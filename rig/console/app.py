@@ -16,6 +16,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.responses import Response
 
 from rig.console.access import PAGE_HEADER, Access
+from rig.console.campaigns import add_campaigns
 from rig.console.described import catalogue
 from rig.console.desk import ActDesk
 from rig.console.feed import Feed
@@ -112,6 +113,7 @@ class Console:
             await self.pages.serve(socket)
 
         add_runs(app, self.link.root)
+        add_campaigns(app, self.link.root)
         app.mount("/static", StaticFiles(directory=STATIC), name="static")
 
 

@@ -3,42 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from rig.bench import Bench, read
 from rig.campaign import dry_run
 from rig.campaign.clear_of_resonance import refuse_resonance, swing_lines
+from rig.campaign.journal import read_journal, refuse_other_campaign
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import planned
-from rig.core.errors import HdrigError, UsageError
+from rig.core.errors import HdrigError, NotReady, UsageError
 from rig.core.procedure import Procedure
 from rig.parameters import make
 from rig.preview import plan_lines
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import margins, refuse_beyond_limits, refuse_endless
+from rig.runfile.process import is_being_made
 
 WHOLE = "*"  # the problem is of no single parameter
 SEED = 0  # of the order of a plan that is only looked at
 
 
 def check(asked: Mapping[str, Any], source: str, overrides: list[str]) -> dict[str, Any]:
-    """For a procedure or a plan on the bench called `source`. Never raises for what a person could have typed."""
+    """For a procedure, a plan, or a campaign to go on with (`resume`, its folder), on the bench called `source`. Never
+    raises for what a person could have typed.
+    """
     try:
         bench = read(source, overrides)
+        if asked.get("resume"):
+            return _resumed(bench, Path(str(asked["resume"])))
         if asked.get("plan"):
             return _plan(bench, str(asked["plan"]))
         return _procedure(bench, str(asked.get("procedure", "")), asked.get("parameters") or {})
     except HdrigError as error:
-        return _wrong({WHOLE: str(error)})
+        return wrong({WHOLE: str(error)})
 
 
-def _wrong(problems: dict[str, str]) -> dict[str, Any]:
+def wrong(problems: dict[str, str]) -> dict[str, Any]:
+    """By parameter; "*" for the whole."""
     return {"ok": False, "problems": problems, "plan": [], "margins": []}
 
 
 def _plan(bench: Bench, name: str) -> dict[str, Any]:
     campaign = planned(read_plan(name), bench, SEED)
     return {"ok": True, "problems": {}, "plan": list(dry_run.lines(campaign)), "margins": []}
+
+
+def _resumed(bench: Bench, folder: Path) -> dict[str, Any]:
+    """What is left of it, on the bench that is connected: that has to be the one it began with."""
+    journal = read_journal(folder)
+    if is_being_made(journal.book):
+        raise NotReady(f"{folder} is being made by process {journal.book['process']['pid']}; stop that first")
+    campaign = planned(read_plan(str(folder / "plan.toml")), bench, journal.book["seed"])
+    refuse_other_campaign(journal, campaign)
+    left = journal.open_runs()
+    if not left:
+        raise UsageError(f"nothing is left to be made of {folder}")
+    return {"ok": True, "problems": {}, "plan": list(dry_run.lines(campaign, left)), "margins": []}
 
 
 def _procedure(bench: Bench, title: str, parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -55,7 +76,7 @@ def _procedure(bench: Bench, title: str, parameters: Mapping[str, Any]) -> dict[
         except HdrigError as error:
             problems[str(parameter)] = str(error)
     if problems:
-        return _wrong(problems)
+        return wrong(problems)
     procedure: Procedure = make(kind, parameters, name)  # what no single one shows is said of the whole
     return _looked_at(bench, procedure)
 

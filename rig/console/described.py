@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import re
-from dataclasses import MISSING, Field, fields
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from rig.bench import BENCHES
 from rig.campaign.plan import PLANS, read_plan
+from rig.parameters_told import Told, told
 from rig.procedures import CATALOGUE, procedure_class
 
-UNITS = ("N·m/s", "N·m", "rad/s", "deg", "rad", "rpm", "Hz", "turns", "mm", "s", "1")  # longest first
-SUFFIXES = {"_deg": "deg", "_rpm": "rpm", "_hz": "Hz", "_mm": "mm", "_s": "s"}
-COMMENT = re.compile(r"^    (\w+): [^#\n]*#\s*(.+)$", re.M)  # a field of a dataclass and what stands beside it
 GROUPS = {
     "sign-and-scale": "checks", "weigh": "checks", "lock-check": "checks", "unwind": "checks", "step-test": "checks",
     "standstill": "checks", "held-standstill": "checks", "sentinel": "checks", "jog": "checks",
@@ -31,7 +27,6 @@ def procedures() -> list[dict[str, Any]]:
 
 def _procedure(name: str) -> dict[str, Any]:
     kind = procedure_class(name)
-    told = dict(COMMENT.findall(inspect.getsource(kind)))
     first = (kind.__doc__ or "").strip().partition("\n")[0]
     return {
         "name": name,
@@ -39,23 +34,18 @@ def _procedure(name: str) -> dict[str, Any]:
         "summary": re.split(r" {3,}\[", first)[0],
         "group": GROUPS.get(name, "measurements"),
         "needs_lock": kind.output_locked,
-        "parameters": [_parameter(f, told.get(f.name, "")) for f in fields(kind)],  # type: ignore[arg-type]
+        "parameters": [_parameter(t) for t in told(kind)],
     }
 
 
-def _parameter(field: Field[Any], told: str) -> dict[str, Any]:
-    default = None if field.default is MISSING else field.default
-    unit = next((unit for end, unit in SUFFIXES.items() if field.name.endswith(end)), "")
-    if not unit:
-        unit = next((u for u in UNITS if re.match(rf"{re.escape(u)}(?![\w·/])", told)), "")
-    meaning = re.sub(rf"^{re.escape(unit)}(?![\w·/])[\s,:]*", "", told) if unit else told
+def _parameter(told: Told) -> dict[str, Any]:
     return {
-        "name": field.name,
-        "type": type(default).__name__,
-        "unit": unit,
-        "default": _plain(default),
-        "meaning": meaning,
-        "signed": bool(field.metadata.get("signed", False)),
+        "name": told.name,
+        "type": type(told.default).__name__,
+        "unit": told.unit,
+        "default": _plain(told.default),
+        "meaning": told.meaning,
+        "signed": told.signed,
     }
 
 

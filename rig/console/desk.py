@@ -6,10 +6,12 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, final
 
-from rig.console.check import check
+from rig.console.campaigns import ours
+from rig.console.check import WHOLE, check, wrong
 from rig.console.gate import CONTROL, Answer, Gate
 from rig.console.link import Link
 from rig.console.state import rights
+from rig.core.errors import UsageError
 from rig.runfile.manifest import utc_now
 from rig.station.rules import ALWAYS
 
@@ -94,7 +96,7 @@ class ActDesk:
         if act == "jog":
             given = {key: asked[key] for key in ("turns", "speed_rpm") if asked.get(key) is not None}
             return await self._problem({"procedure": "jog", "parameters": given})
-        if act == "start" or (act == "campaign" and not asked.get("resume")):
+        if act in ("start", "campaign"):
             return await self._problem(asked)
         return ""
 
@@ -104,6 +106,11 @@ class ActDesk:
 
     def check(self, asked: Mapping[str, Any]) -> dict[str, Any]:
         """As `check.check`, on the bench that is connected, or the one named, or the one the server was started for."""
+        if asked.get("resume"):
+            try:
+                asked = {**asked, "resume": str(ours(self.link.root, asked["resume"]))}
+            except UsageError as error:
+                return wrong({WHOLE: str(error)})
         bench = self.link.picture["bench"]
         named = asked.get("bench")
         if named is None and bench is not None:

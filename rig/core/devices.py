@@ -115,6 +115,10 @@ class Drive(Device):
         a torque or speed is 0, an angle NaN.
         """
 
+    def cut(self) -> None:
+        """Torque off is commanded, as by `halt`, where that can be without waiting for the drive to confirm it."""
+        self.halt()
+
     @abstractmethod
     def halt(self) -> bool:
         """Torque off now (stop category 0). Any state, any number of times, never raises; True when confirmed."""

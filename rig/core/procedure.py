@@ -24,6 +24,7 @@ class Envelope:
     torque: float  # N·m, motor side
     coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
     shaft_torque: float = math.inf  # N·m at the torque sensor, either way; inf: nothing below the bench's own limit
+    reserve: str = ""  # in words, what of the shaft torque, or of the speed where that is inf, nobody asked for
 
 
 @dataclass(frozen=True)

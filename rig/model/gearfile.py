@@ -126,7 +126,7 @@ def write(path: Path, gear: GearFile) -> None:
     try:
         path.write_text(dumps(gear), encoding="utf-8")
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}") from None
+        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with -o") from None
 
 
 def dumps(gear: GearFile) -> str:

@@ -36,7 +36,8 @@ class CoastDown(Procedure):
         coast = omega * PATIENCE / 2
         duration = 2 * self.repeats * (hold_duration(omega, HOLD) + PATIENCE + REST_TIME + PAUSE) + PATIENCE
         travel = hold_travel(omega, HOLD) + coast
-        return Envelope(duration, travel, omega * 1.1, setting.control.torque_limit)
+        reserve = f"speed_rpm = {self.speed_rpm:g}, and 10 % that the loop may overshoot"
+        return Envelope(duration, travel, omega * 1.1, setting.control.torque_limit, reserve=reserve)
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

@@ -70,7 +70,7 @@ class Compensated(Procedure):
     speed_rpm: float = 9.6  # of the motor, mean
     revolutions: int = 8  # of the motor each way, at speed
     a: tuple[float, ...] = field(default=(), metadata={"signed": True})  # rad at the output, orders 1, 2, …
-    b: tuple[float, ...] = field(default=(), metadata={"signed": True})
+    b: tuple[float, ...] = field(default=(), metadata={"signed": True})  # rad at the output, of the sines
     inertia: float = field(default=0.0, metadata={"signed": True})  # kg·m², motor side
     speed_filter: float = field(default=0.0, metadata={"signed": True})  # s, of the host's estimate of speed
 

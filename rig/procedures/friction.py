@@ -94,7 +94,8 @@ class Friction(Procedure):
         nudge = 2 * self.breakaways * (SHARE * setting.control.torque_limit / RATE + PAUSE)
         duration = nudge + sum(ramp.duration + seconds for ramp, seconds in stairs) + END
         fastest = max(self.speeds) * RPM
-        return Envelope(duration, far + TURN, fastest * 1.1, setting.control.torque_limit)
+        reserve = f"the fastest of speeds_rpm = {self.speeds_rpm}, and 10 % that the loop may overshoot"
+        return Envelope(duration, far + TURN, fastest * 1.1, setting.control.torque_limit, reserve=reserve)
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

@@ -19,7 +19,7 @@ class HeldStandstill(Procedure):
     label: ClassVar[str] = "held-standstill"
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 
-    duration: float = 30.0  # s
+    duration: float = 30.0  # s, at rest
 
     def envelope(self, setting: Setting) -> Envelope:
         """No travel to speak of; the torque is what the loop may give."""

@@ -27,8 +27,8 @@ class KinematicError(Procedure):
     has_reference: ClassVar[bool] = True
 
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
-    frequency: float = 0.01  # Hz
-    cycles: float = 2.0
+    frequency: float = 0.01  # Hz, of the triangle; speed = 4·amplitude·frequency
+    cycles: float = 2.0  # of the triangle
     settle: float = 0.5  # s at rest before and after: the loop takes hold of the measured position
 
     def __post_init__(self) -> None:

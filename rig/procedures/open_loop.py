@@ -87,7 +87,15 @@ class OpenLoop:
         omega, fast = abs(self.omega), MARGIN * abs(self.omega)
         travel = hold_travel(omega, self.average) + fast * self.settle + (self.revolutions + 1) * TURN
         duration = hold_duration(omega, self.average) + self.settle + self.longest + slow_down_duration(fast)
-        return Envelope(duration, travel + slow_down_travel(fast), fast, setting.control.torque_limit)
+        return Envelope(
+            duration, travel + slow_down_travel(fast), fast, setting.control.torque_limit, reserve=self.reserve
+        )
+
+    @property
+    def reserve(self) -> str:
+        """What of its speed was not asked for, in words."""
+        share = f"{100 * (MARGIN - 1):.0f} %"
+        return f"speed_rpm = {self.speed_rpm:g}, and {share} that a torque nothing corrects may miss it by"
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

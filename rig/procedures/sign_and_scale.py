@@ -56,7 +56,7 @@ class SignAndScale(Procedure):
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
 
     nudge_share: float = 0.4  # of the drive's torque limit, most the open-loop nudge may reach
-    nudge_rate: float = 1.0  # N·m/s
+    nudge_rate: float = 1.0  # N·m/s, of the nudge, until the motor moves
     nudge_deg: float = 5.0  # deg of the motor that count as moved
     speed_rpm: float = 15.0  # of the motor, for the turn
 

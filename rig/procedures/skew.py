@@ -37,7 +37,7 @@ class Skew(Procedure):
     speeds_rpm: str = "40,120,300"  # of the motor: the lever is the difference between the slowest and the fastest
     turns: int = 3  # of the motor at each speed, at least, once the loop has settled
     seconds: float = 1.0  # s at each speed, at least, once the loop has settled
-    repeats: int = 2
+    repeats: int = 2  # of every speed
 
     def __post_init__(self) -> None:
         if len(set(self.speeds)) < FEWEST:

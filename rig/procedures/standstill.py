@@ -23,7 +23,7 @@ class Standstill(Procedure):
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
     closes_loop: ClassVar[bool] = False
 
-    duration: float = 30.0  # s
+    duration: float = 30.0  # s, at rest
 
     def envelope(self, setting: Setting) -> Envelope:
         """No travel to speak of, no torque."""

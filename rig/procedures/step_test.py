@@ -23,9 +23,9 @@ class StepTest(Procedure):
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 
     torque: float = 1.25  # N·m, well above breakaway
-    on: float = 0.06  # s
-    off: float = 0.6  # s
-    repeats: int = 3
+    on: float = 0.06  # s with torque
+    off: float = 0.6  # s without, at most: the motor comes to rest
+    repeats: int = 3  # each way
 
     def envelope(self, setting: Setting) -> Envelope:
         """Bounds with friction and load inertia left out."""

@@ -15,7 +15,8 @@ from rig.core.sample import Sample, Setpoint, Torque
 DEG = math.pi / 180
 SOFTEST = 3.0  # times the declared compliance: a gear that winds up farther is not the one of the bench file
 GIVES_WAY = 0.15  # of the wind-up at tau_max: a load that moved this far is not locked
-OVERSHOOT = 1.3  # of tau_max, and 3 N·m: a slip may end beyond it by what stick-slip is long
+OVERSHOOT = 1.3  # of tau_max: a slip may end beyond it by what stick-slip is long
+OVERSHOOT_BY = 3.0  # N·m, and so much more
 PATIENCE = 3.0  # times what unwinding should take: a gear that still shows torque then is let go, and it is said
 AT_REST = 0.5  # s with the reference at rest, before the first ramp and after unwinding
 
@@ -55,7 +56,7 @@ class StiffnessLock(Procedure):
 
     tau_max: float = 15.0  # N·m at the torque sensor
     rate: float = 0.75  # N·m/s at the torque sensor: 20 s a quarter
-    cycles: int = 3
+    cycles: int = 3  # at the first of `rates`
     hold: float = 2.0  # s at the ends, for creep
     rates: tuple[float, ...] = (1.0, 0.3, 3.0)  # of `rate`; spans a factor of ten
     unwind_rate: float = 5.0  # N·m/s, when it was stopped
@@ -91,7 +92,11 @@ class StiffnessLock(Procedure):
             travel=SOFTEST * self.wind_up(setting),
             speed=self.wind_up(setting) * fastest / self.tau_max,
             torque=setting.control.torque_limit,
-            shaft_torque=OVERSHOOT * self.tau_max + 3.0,
+            shaft_torque=OVERSHOOT * self.tau_max + OVERSHOOT_BY,
+            reserve=(
+                f"tau_max = {self.tau_max:g} N·m, and {100 * (OVERSHOOT - 1):.0f} % and {OVERSHOOT_BY:g} N·m more "
+                "that a slip of the motor may wind it up by"
+            ),
         )
 
     def conditions(self) -> dict[str, Any]:

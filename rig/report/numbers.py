@@ -50,12 +50,14 @@ def plain(value: float, digits: int = 4) -> str:
         return ABSENT
     if value == 0:
         return "0"
-    exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])
+    mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
+    exponent = int(power)
     if -5 < exponent < max(digits, 6):
         text = fixed(value, digits - 1 - exponent)
         return text.rstrip("0").rstrip(".") if "." in text else text
     scale = 3 * (exponent // 3)
-    return f"{plain(value / 10**scale, digits)}·10{str(scale).translate(SUPERSCRIPT)}"
+    shown = float(mantissa) * 10 ** (exponent - scale)  # the smallest numbers have no power of ten to divide by
+    return f"{plain(shown, digits)}·10{str(scale).translate(SUPERSCRIPT)}"
 
 
 def quantity(value: float, half: float, unit: str = "") -> str:

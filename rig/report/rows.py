@@ -197,7 +197,8 @@ def timing(found: object) -> tuple[list[Row], list[str]]:
     for key, name, say in TIMING:
         if key in found and not (virtual and key.startswith("lateness")):
             rows.append(Row(name, say(found[key])))
-    known = {"period", "clock", "how"} | {k for k, _, _ in TIMING}
+    rows += _latched(found.get("latch_offsets"))
+    known = {"period", "clock", "how", "latch_offsets", "latch_offsets_are"} | {k for k, _, _ in TIMING}
     rows += [Row(humanise(name), value) for name, value in flat({k: v for k, v in found.items() if k not in known})]
     said = (
         ["The run had a virtual clock: time passed only when the loop waited for it, so lateness has no meaning here."]
@@ -206,4 +207,23 @@ def timing(found: object) -> tuple[list[Row], list[str]]:
         if found.get("how")
         else []
     )
+    if found.get("latch_offsets_are"):
+        said.append(f"When a channel was latched: {show(found['latch_offsets_are'])}.")
     return rows, said
+
+
+CHANNELS = {"theta_l": "θ_l", "tau_l": "τ_l", "tau_m": "τ_m"}
+
+
+def _latched(found: object) -> list[Row]:
+    """Mean and scatter of when each channel was latched, after the motor angle; entries that are no table left out."""
+    if not isinstance(found, Mapping):
+        return []
+    made = []
+    for name, entry in found.items():
+        if isinstance(entry, Mapping) and math.isfinite(number_of(entry.get("mean"))):
+            late = join(plain(number_of(entry["mean"]) * 1e6, 3), "µs")
+            scatter = number_of(entry.get("deviation")) * 1e6
+            more = f", 1 σ {join(plain(scatter, 2), 'µs')}" if scatter >= 0.001 else ""
+            made.append(Row(f"{CHANNELS.get(str(name), show(name))} latched after θ_m", late + more))
+    return made

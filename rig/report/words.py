@@ -58,7 +58,7 @@ def heading(procedure: str, manifest: Mapping[str, Any]) -> str:
     """Title of the page; a run of no known procedure by its own label."""
     label = manifest.get("label")
     if procedure == "other" and isinstance(label, str) and label.strip():
-        return label.strip()
+        return humanise(label.strip().replace("-", " "))
     return PROCEDURES.get(procedure, humanise(procedure))
 
 
@@ -107,6 +107,8 @@ ENTRIES = {  # conditions and declared values by key: name for people, unit
     "depth_mm": ("Assembly depth", "mm"),
     "speed_rpm": ("Motor speed", "rpm"),
     "speeds_rpm": ("Motor speeds, rpm", ""),
+    "tau_max": ("Shaft torque, greatest", "N·m"),
+    "torque_rates": ("Torque rates, N·m/s", ""),
     "settle_s": ("Time to settle, left out", "s"),
     "tolerance": ("Tolerance, share of the waveform’s rms", ""),
     "output_turns": ("Output turns", ""),
@@ -169,9 +171,12 @@ DEFINITIONS = (  # by the beginning of the estimate's name, first match
 
 
 HEADLINES = (
+    "transmission_accuracy",
     "kinematic_error_peak_to_peak",
     "torsional_stiffness",
     "torsional_stiffness_apparent",
+    "coulomb",
+    "noise_tau_l",
 )  # the first there is
 
 

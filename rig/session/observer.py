@@ -32,5 +32,8 @@ class Observer:
         """A run is about to start; what is returned is shown a sample every 100 ticks, beside the run's own watch."""
         return nobody
 
+    def tripped(self, why: str) -> None:
+        """Torque off is commanded, and not yet confirmed: whoever has to know at once is told."""
+
     def ended(self, folder: Path, ending: Ending) -> None:
         """Torque is off, the folder is about to be closed."""

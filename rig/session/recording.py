@@ -51,8 +51,9 @@ class Recording:
         begun = Begun(folder, procedure, envelope.duration, recorder.ring, self.timing)
         watches = self._both(watch, self.observer.begun(begun))
         loop = Loop(
-            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watches, setpoints
-        )
+            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watches, setpoints,
+            self.observer.tripped,
+        )  # fmt: skip
         ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
         try:
             ending = loop.run(procedure, setting)

@@ -35,6 +35,8 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
     session = station.need()
     resumed = message.get("resume")
     journal, campaign = _resumed(session, Path(str(resumed))) if resumed else _new(station, session, message)
+    if message.get("note"):
+        journal.tell(f"note: {message['note']}")
     station.busy(f"campaign {campaign.plan.file.name}")
     desk = PageDesk(station, campaign, journal)
     session.root, session.create, session.checks = journal.folder, create_in, "checks"
@@ -52,7 +54,8 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
 
 def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tuple[Journal, Campaign]:
     campaign = planned(read_plan(str(message.get("plan", ""))), session.bench, secrets.randbelow(SEEDS))
-    journal = new_journal(station.root, campaign, session.clock, [])
+    overrides = (station.status.bench or {}).get("overrides", [])
+    journal = new_journal(station.root, campaign, session.clock, overrides)
     journal.book["rigging"] = session.rigging.conditions()  # as it stands: weight and pin come off first
     if station.pending is not None:
         journal.book["pending"] = record_of(station.pending)

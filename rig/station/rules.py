@@ -50,6 +50,8 @@ def advice(picture: Mapping[str, Any]) -> str:
         return f"By hand: {picture['prompt']['text']}; then say that it is done."
     if picture["state"] == "holding":
         return "Held, torque on. The run does not go on from here: stop takes the torque off gently, halt at once."
+    if picture["job"] and picture["state"] == "fault":
+        return "Torque off is commanded and is being confirmed: stay clear of the rig."
     if picture["job"]:
         return f"{picture['job'][0].upper()}{picture['job'][1:]}: hold, stop and halt work at any moment."
     if picture["bench"] is None:

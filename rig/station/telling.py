@@ -23,7 +23,7 @@ from rig.session import Watch
 from rig.session.observer import Begun, Observer
 from rig.station.channel import Channel
 from rig.station.status import Status
-from rig.supervisor import Supervisor
+from rig.supervisor import State, Supervisor
 
 OFTEN = 0.09  # s of wall time between two looks at the line: ten a second
 RARELY = 1.0  # s between two looks at the lateness, which costs 10 to 50 µs
@@ -54,6 +54,12 @@ class Teller(Observer):
         self.say(kind, text, t)
         if kind in ("state", "trip", "operator"):
             self.tell()
+
+    def tripped(self, why: str) -> None:
+        """A drive that is gone confirms nothing, and finding that out takes its time: the page is told before."""
+        self.status.state = str(State.FAULT)
+        self.status.fault = f"{why}; torque off is commanded, the drive has not yet confirmed it"
+        self.channel.post({"kind": "status", "status": self.status.picture()})
 
     def begun(self, run: Begun) -> Watch:
         """The page is told where the rows are."""

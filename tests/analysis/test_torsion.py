@@ -88,3 +88,20 @@ def test_a_torque_sensor_with_the_wrong_sign_is_named() -> None:
     result = analyse(sweep(sign=-1.0))
     assert figures(result)["torsional_stiffness_apparent"].value < 0
     assert any("wrong way round" in s for s in result.cannot)
+
+
+@pytest.mark.parametrize("torque", [None, 1.4])
+def test_only_a_run_that_could_be_about_stiffness_says_that_it_shows_none(torque: float | None) -> None:
+    t = np.arange(0.0, 6.0, 1e-3)
+    theta = 2.0 * np.pi * 5.0 * t
+    columns = {"t": t, "theta_m": theta, "theta_l": theta / 50.0}
+    if torque is not None:
+        columns["tau_l"] = np.full(t.size, torque)
+    gear = {"gear": {"ratio": 50}, "conditions": {"speed_rpm": 300.0}}
+    said = {
+        procedure: [s for s in analyse(MadeRun(columns, {"procedure": procedure, **gear})).cannot if "tiffness:" in s]
+        for procedure in ("constant_torque", "kinematic_error", "other")
+    }
+    assert said["constant_torque"] == said["kinematic_error"] == []
+    assert len(said["other"]) == 1
+    assert "a lock test shows it (hdrig run stiffness-lock)" in said["other"][0]

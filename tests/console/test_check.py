@@ -32,7 +32,7 @@ def test_each_wrong_parameter_is_told_by_its_name() -> None:
 
 def test_what_no_single_parameter_shows_is_told_of_the_whole_with_its_margins() -> None:
     found = looked_at({"frequency": 9.0})
-    assert "asks for speed" in found["problems"]["*"]
+    assert "asks for up to 8640 rpm of motor speed" in found["problems"]["*"]
     assert any(m["fraction"] > 1 for m in found["margins"])
 
 

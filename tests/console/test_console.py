@@ -324,7 +324,14 @@ def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path
     hand.do("stop")
     hand.until(lambda s: not s["job"])
     assert "campaign stopped" in hand.told("said")[-1]
-    hand.do("campaign", resume=campaign["folder"])
+    (left,) = hand.client.get("/api/campaigns").json()["campaigns"]
+    assert (left["folder"], left["plan"], left["done"], left["total"]) == (campaign["folder"], "short", 1, 2)
+    checked = hand.client.post("/api/check-parameters", json={"resume": left["folder"]}).json()
+    assert checked["ok"] is True
+    assert any("lock-check" in line for line in checked["plan"]), checked
+    other = hand.client.post("/api/check-parameters", json={"resume": left["folder"], "bench": "twin-can"}).json()
+    assert "the bench is not the one this campaign began with" in other["problems"]["*"]
+    hand.do("campaign", resume=left["folder"], note="after lunch")
     for text in ("remove the lock pin", "fit the lock pin", "remove the lock pin"):
         prompt = hand.until(lambda s: s["prompt"])["prompt"]
         assert text in prompt["text"]
@@ -333,6 +340,25 @@ def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path
     assert "campaign completed: 2 done" in hand.told("said")[-1]
     book = json.loads((Path(campaign["folder"]) / "campaign.json").read_text(encoding="utf-8"))
     assert [run["status"] for run in book["runs"]] == ["done", "done"]
+    assert "note: after lunch" in [note["text"] for note in book["notes"]]
+    assert hand.client.get("/api/campaigns").json()["campaigns"] == []
+
+
+@pytest.mark.parametrize(
+    ("folder", "why"),
+    [
+        ("/etc", "is not in"),
+        ("../..", "is not in"),
+        ("{root}", "no campaign.json"),
+        ("{root}/\0", "is not in"),
+        (7, "is not in"),
+    ],
+)
+def test_a_campaign_that_is_none_of_ours_is_not_gone_on_with(ready: Hand, folder: Any, why: str) -> None:
+    named = folder.replace("{root}", str(ready.serving.console.link.root)) if isinstance(folder, str) else folder
+    status, said = ready.ask("campaign", resume=named)
+    assert status == 409
+    assert why in said["why"]
 
 
 def test_a_tare_says_the_zero_of_the_torque_sensor(ready: Hand) -> None:

@@ -21,6 +21,7 @@ STATES: dict[str, tuple[Status, set[str]]] = {
     "connected": (replace(ON, state="connected"), IDLE_ACTS),
     "ready": (ON, IDLE_ACTS),
     "running": (replace(ON, state="running", job="run kinematic-error"), {"note"}),
+    "just tripped": (replace(ON, state="fault", job="run kinematic-error", fault="shaft torque"), {"note"}),
     "asking": (replace(ON, job="campaign quick", prompt=PROMPT), {"note", "answer"}),
     "fault": (replace(ON, state="fault", fault="shaft torque"), {"disconnect", "check", "reset", "note"}),
     "locked": (replace(ON, rigging={**FREE, "output_locked": True}), IDLE_ACTS - {"prove", "tare", "jog"}),
@@ -51,6 +52,12 @@ def test_there_is_always_something_to_do_next(name: str) -> None:
 
 def test_a_prompt_goes_before_everything_else_one_could_advise() -> None:
     assert "fit the lock pin" in advice(STATES["asking"][0].picture())
+
+
+def test_a_trip_that_is_still_being_confirmed_promises_no_gentle_end() -> None:
+    assert advice(STATES["just tripped"][0].picture()) == (
+        "Torque off is commanded and is being confirmed: stay clear of the rig."
+    )
 
 
 def test_who_holds_a_run_is_told_that_it_does_not_go_on_from_there() -> None:

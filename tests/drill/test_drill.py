@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -84,3 +85,12 @@ def test_the_verb_prints_one_line_a_fault_and_says_the_worst(capsys: pytest.Capt
     told = capsys.readouterr().out
     assert told.startswith("SIMULATED")
     assert "2 drills, 0 not as expected" in told
+
+
+def test_a_time_nobody_promised_is_in_brackets(capsys: pytest.CaptureFixture[str]) -> None:
+    from argparse import Namespace
+
+    assert verb.run(Namespace(only="limit lowered", phase="locked", drive="cia402")) == 0
+    head, row = capsys.readouterr().out.splitlines()[2:5:2]
+    assert head.startswith("(ms) not seen by design")
+    assert re.search(r" \(\d+\.\d\)$", row), row

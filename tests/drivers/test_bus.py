@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from typing import Any
 
 import can
 import pytest
 
-from drivers.bus import Bus
+from drivers.bus import MOST, Bus
 from drivers.wiring import Place, Wiring
+from rig.core.errors import NotReady
+from sim.wire.frame import Frame
+from tests.drivers.virtual import Wired, wired
 from tests.fakes import FakeClock
 
 EPOCH = 1.7e9  # s, what the adapter's time stamps begin at
@@ -90,3 +94,82 @@ def test_a_serial_adapter_is_never_waited_for_unless_the_bench_says_so(
     wiring = Wiring(FakeClock(), sections, lambda **options: asked.update(options))
     wiring.bus(Place("drive", {"bus": "rig"})).open()
     assert {key: value for key, value in asked.items() if key not in ("interface", "channel")} == passed
+
+
+def test_a_bus_that_another_host_commands_through_another_adapter_is_refused():
+    w = wired()
+    other = w.twin.bus.attach("another host", lambda frame, t: None)
+
+    def beat() -> None:  # as an idle console does
+        other.send(Frame(0x77F, b"\x05"))
+        w.twin.agenda.after(0.05, beat)
+
+    beat()
+    heard = frames_of(w)
+    with pytest.raises(NotReady, match=r"has a host already: .* heartbeat of node 127"):
+        w.instruments.connect()
+    assert {frame.identifier for frame in heard if frame.identifier < 0x80} == set()  # no node was told anything
+    assert not [frame for frame in heard if 0x600 < frame.identifier < 0x680]  # nor asked
+
+
+def test_heartbeats_an_adapter_kept_from_before_keep_nobody_off():
+    w = wired()
+    gone = w.twin.bus.attach("gone", lambda frame, t: None)
+
+    def connect(**options: Any) -> Any:
+        made = w.wire.connect(**options)
+        gone.send(Frame(0x77F, b"\x05"))  # waits before anybody looks
+        return made
+
+    again = w.bench.wired(w.wire, connect=connect, stamps=w.wire.now)
+    assert again.connect()
+    again.close()
+
+
+def frames_of(w: Wired) -> list[Frame]:
+    """Every frame that passes from now on."""
+    heard: list[Frame] = []
+    w.twin.bus.attach("ear", lambda frame, t: heard.append(frame))
+    return heard
+
+
+class Confirming(Adapter):
+    """As python-can's slcan: nothing is handed over, once, for the word that confirms a frame of ours."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.sight, self.bytes = os.pipe()
+
+    def arrive(self, *words: can.Message | None) -> None:
+        for word in words:
+            self.waiting.append(word)  # type: ignore[arg-type]
+            os.write(self.bytes, b"\r")
+
+    def recv(self, timeout: float) -> can.Message | None:
+        if self.waiting:
+            os.read(self.sight, 1)
+        return super().recv(timeout)
+
+    def fileno(self) -> int:
+        return self.sight
+
+
+def test_answers_behind_the_words_of_a_serial_adapter_are_taken_at_once():
+    adapter = Confirming()
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus.open()
+    answers = [can.Message(arbitration_id=number, data=b"\0", is_extended_id=False) for number in (0x181, 0x281)]
+    adapter.arrive(None, answers[0], None, None, answers[1])
+    bus.drain()
+    assert set(bus.frames) == {0x181, 0x281}
+
+
+def test_a_serial_adapter_that_is_gone_does_not_keep_the_loop():
+    adapter = Confirming()
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus.open()
+    os.close(adapter.bytes)  # there is always something to be read: its end
+    looks: list[float] = []
+    adapter.recv = lambda timeout: looks.append(timeout)  # type: ignore[assignment]
+    bus.drain()
+    assert len(looks) <= MOST

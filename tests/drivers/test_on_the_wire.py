@@ -161,3 +161,14 @@ def test_a_drive_that_somebody_else_has_stopped_is_disabled_by_sdo_and_reset_by_
     drive.reset_fault()
     drive.enable()
     assert twin.drive_state is DriveState.OPERATION_ENABLED
+
+
+def test_torque_is_cut_without_waiting_for_the_drive_and_confirmed_after():
+    w = connected()
+    w.instruments.drive.enable()
+    now = w.wire.now()
+    w.instruments.cut()
+    assert w.wire.now() == now  # nothing was waited for
+    w.wire.wait_until(now + 0.005)
+    assert w.twin.drive.drive_state is DriveState.SWITCH_ON_DISABLED
+    assert w.instruments.safe()

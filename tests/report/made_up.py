@@ -69,7 +69,7 @@ def curves(seed: int = 1, revolutions: int = 28, grid: int = 512) -> dict[str, A
     cycle = np.concatenate([np.linspace(0, 15, 300), np.linspace(15, -15, 600), np.linspace(-15, 15, 600)])
     up = np.concatenate([np.ones(300), -np.ones(600), np.ones(600)])
     torsion = (cycle / 7160 - 0.00004 * up * (1 - (cycle / 17) ** 2)) * 180 * 60 / np.pi
-    return {
+    return _loads() | {
         "ke.theta_deg": theta,
         "ke.revolutions_forward": forward,
         "ke.revolutions_reverse": reverse,
@@ -173,6 +173,25 @@ def coefficients() -> list[dict[str, float | str]]:
         row |= {"phase_deg": np.degrees(np.arctan2(b, a)), "u_phase": np.degrees(u / c)} if resolved else {}
         rows.append({key: float(value) for key, value in row.items()})
     return rows
+
+
+def _loads() -> dict[str, Array]:
+    """Three assemblies, two depths, four loads."""
+    load = np.tile([0.0, 2.0, 7.5, 15.0], 3)
+    depth, assembly = np.repeat([0.0, 0.0, 0.3], 4), np.repeat([1.0, 2.0, 3.0], 4)
+    value = (1.0 - 0.5 * depth + 0.01 * assembly) * (45.0 + 45.0 * np.exp(-load / 2.5))
+    band = 45.0 + 45.0 * np.exp(-load[:4] / 2.5)
+    return {
+        "load.load": load,
+        "load.value": value,
+        "load.low": value - 0.5,
+        "load.high": value + 0.5,
+        "load.depth_mm": depth,
+        "load.assembly": assembly,
+        "band.load": load[:4],
+        "band.low": 0.97 * band,
+        "band.high": 1.03 * band,
+    }
 
 
 def estimate(name: str, label: str, value: float, half: float, unit: str, how: str) -> Estimate:

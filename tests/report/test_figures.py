@@ -38,6 +38,7 @@ FAMILY = {
     "speed-convergence": "convergence.",
     "coast-down": "coast.",
     "friction": "friction.",
+    "loads": ("load.", "band."),
     "time": "time.",
 }
 every_figure = pytest.mark.parametrize("drawing", CATALOGUE, ids=lambda d: d.name)

@@ -31,6 +31,7 @@ HDRIG = [sys.executable, "-m", "rig.cli"]
 STALLED = re.compile(
     r"no new .* sample for|did not answer|does not answer|sent no PDOs|did not become|watchdog|heartbeat"
 )
+SAME_SYNC = ("twin-can", "twin-canopen", "twin-slcan", "twin-socketcand")  # drive and encoder latch at one SYNC
 TRUE_C2 = 39.6  # arcsec, C_2 of the twin's pure kinematic error (0.01100°)
 SHORT = ["--with", "amplitude_deg=720", "--with", "frequency=0.04", "--with", "cycles=0.5"]  # 19.2 rpm, 13 s
 
@@ -113,6 +114,9 @@ def test_the_kinematic_error_found_over_the_wire_is_that_of_the_plant(twin: Twin
     told = re.search(r"amplitude of order 2\s+([\d.]+)", done.stdout)
     assert told, done.stdout
     assert float(told[1]) == pytest.approx(TRUE_C2, abs=0.8)
+    timing = json.loads((folder / "timing.json").read_text())
+    if bench in SAME_SYNC:  # else every reading is a period old, and the loop is slow by that
+        assert abs(timing["latch_offsets"]["theta_l"]["mean"]) < timing["period"] / 4
 
 
 PLAN = """

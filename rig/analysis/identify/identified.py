@@ -14,10 +14,13 @@ from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.mode import add_mode, damping_gradient
 from rig.analysis.identify.solve import Solved
+from rig.analysis.identify.undetermined import NOTHING, said_open, stand_in, undetermined
 from rig.analysis.intervals import t95
 from rig.core.errors import DataError
+from rig.model.fourier import FourierSeries
 from rig.model.gearfile import SIGMA, UNITS, GearFile, MeasuredSeries, Parameter
 
+TOLD = 0.1  # of 1/K: with a standard error above that it is not told
 AGREE = 3.0  # standard errors by which lock and turning runs may differ in stiffness
 WORTH_TELLING = 0.005  # of K: a smaller difference is within what sensors and windows distort
 BREAKAWAY = 1.0  # τ_s/τ_c assumed where nothing was seen of it: no fall of friction, so no stick-slip is predicted
@@ -29,6 +32,35 @@ NEEDS = {
 }
 
 
+PAIRS = (
+    (
+        ("B_m",),
+        "B_m and B_ml: both drag on the motor alike; what is measured is their sum B_m + B_ml·(1 + σ/N)². "
+        "A friction run with the wave generator out gives B_m alone.",
+    ),
+    (
+        ("B_sp",),
+        "B_sp and B_ml: B_ml drags beside the spring, with a fiftieth of its lever; it was taken as declared to a "
+        "third, else as anything up to the whole drag, and the interval of B_sp says so.",
+    ),
+    (
+        ("B_m",),
+        "B_ml and a delay between the encoders: both add to the mean of θ̃ in proportion to the speed; neither is "
+        "taken from it.",
+    ),
+    (("B_l",), "B_l and what B_ml drags behind the torque sensor: the sensor sees only what passes through it."),
+    (("K",), "K of the gear and of what lies in series (torque sensor, couplings, lock): K is of the whole path."),
+    (
+        ("K", "J_l", "B_l", "B_sp", "F_cl", "J_m", "B_m", "tau_c"),
+        "K, J_l, B_l, B_sp, F_cl and the gain of the torque sensor: all of them scale with it. Likewise J_m, B_m, "
+        "tau_c and the torque constant of the drive. Gains were taken as exact.",
+    ),
+    ((), "Order 1 of the wave generator and an eccentric motor encoder: re-clock the encoder to tell them apart."),
+    ((), "a_0: the zero of the encoders is arbitrary, the constant of θ̃_p was left out."),
+)
+"""What no campaign tells apart, with the parameters that it concerns; none named: whatever was measured."""
+
+
 @dataclass(frozen=True)
 class Identified:
     """Parameters by name (those of the gear file and B_sum, omega_n, zeta, lag, skew), θ̃_p, and what cannot be told."""
@@ -37,6 +69,7 @@ class Identified:
     series: MeasuredSeries
     cannot: tuple[str, ...]
     fits: Fits
+    undetermined: tuple[str, ...] = ()  # names of what a complete identification has and no run here measured
 
     def gear_file(self, output: str, serial: str, simulated: bool, made: str) -> GearFile:
         """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared."""
@@ -47,7 +80,8 @@ class Identified:
                 f"{NEEDS[missing[0]]}"
             )
         kept = {name: self.parameters[name] for name in UNITS}
-        return GearFile(kept, self.series, output, serial, simulated, made, self.cannot)
+        open_ = [said_open(self.undetermined, kept)] if self.undetermined else []
+        return GearFile(kept, self.series, output, serial, simulated, made, (*open_, *self.cannot))
 
 
 def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
@@ -59,19 +93,15 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     _spring(found, cannot, fits)
     _load(found, cannot, fits)
     _motor(found, cannot, fits, said, sigma)
-    for name in ("J_m", "J_l", "K", "B_sp", "B_m", "B_l"):
-        if name not in found and (value := declared(said, name)) is not None:
-            found[name] = Parameter(value, origin="declared", note="not measured by these runs")
-    for name in ("B_sp", "B_m", "B_l", "B_ml", "tau_c", "F_cl"):
-        if name not in found:
-            found[name] = Parameter(0.0, origin="assumed", note="not measured by these runs, nor declared")
+    cannot += stand_in(found, fits, said, sigma)
     if "tau_s" not in found:
-        note = "no fall of friction with speed was seen: none assumed"
+        unknown = found["tau_c"].note == NOTHING
+        note = NOTHING if unknown else "no fall of friction with speed was seen: none assumed"
         found["tau_s"] = Parameter(BREAKAWAY * found["tau_c"].value, origin="assumed", note=note)
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
     add_mode(found, fits)
-    cannot += _always(found)
-    return Identified(found, _series(fits, cannot), tuple(cannot), fits)
+    series = _series(fits, cannot)
+    return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series))
 
 
 def _measured(value: float, u: float, solved: Solved, runs: tuple[str, ...], note: str = "") -> Parameter:
@@ -82,8 +112,11 @@ def _measured(value: float, u: float, solved: Solved, runs: tuple[str, ...], not
 def _spring(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
     """K, B_sp and how late the load encoder reads."""
     spring, (at_K, at_damping, at_delay, _) = fits.spring, spring_columns(fits.terms)
-    if spring is None or spring.coefficients[at_K] <= 0.0 or not spring.u(at_K) < 0.1 * spring.coefficients[at_K]:
-        cannot.append(f"Stiffness K: nothing here shows it; it takes {NEEDS['K']}.")
+    if spring is None or spring.coefficients[at_K] <= 0.0 or not spring.u(at_K) < TOLD * spring.coefficients[at_K]:
+        alone = fits.locked and not fits.slow
+        doubt = "the kinematic error over the few degrees a locked motor turns looks the same" if alone else ""
+        needs = "a slow run beside the lock test" if alone else NEEDS["K"]
+        cannot.append(f"Stiffness K: {doubt or 'nothing here shows it'}; it takes {needs}.")
         return
     c, K = spring.coefficients, 1.0 / spring.coefficients[at_K]
     running = tuple(dict.fromkeys(w.run for w in fits.windows))
@@ -136,8 +169,7 @@ def _load(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
         cannot.append(f"J_l: it takes {NEEDS['J_l']}.")
     friction = fits.load_friction
     if friction is None:
-        cannot.append("B_l and F_cl: they take the shaft torque at four plateaus of at least two speeds, unloaded.")
-        return
+        return  # what of them is known is said with what stands in for them
     s, runs = friction.solved, tuple(dict.fromkeys(m.run for m in friction.rows))
     found["B_l"] = _measured(s.coefficients[friction.B_l], s.u(friction.B_l), s, runs)
     if friction.zero is None:
@@ -151,7 +183,6 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
     """J_m, the motor's drag as a sum, Coulomb and falling friction."""
     friction = fits.motor_friction
     if friction is None:
-        cannot.append("Motor friction: it takes both torques at four plateaus of at least two speeds, unloaded.")
         return
     s, runs = friction.solved, tuple(dict.fromkeys(m.run for m in friction.rows))
     total, u = float(s.coefficients[friction.B]), s.u(friction.B)
@@ -184,9 +215,10 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
 
 def _series(fits: Fits, cannot: list[str]) -> MeasuredSeries:
     size, runs = 2 * fits.terms, tuple(s.run for s in fits.slow) + tuple(dict.fromkeys(w.run for w in fits.windows))
-    if fits.spring is None:
-        cannot.append("Kinematic error: no slow run and no run at speed gives it.")
-        return MeasuredSeries(fits.series, np.full((size, size), np.nan), "assumed")
+    if fits.spring is None or not runs:
+        cannot.append("Kinematic error: no slow run and no run at speed gives it; it is left out.")
+        none = FourierSeries((0.0,) * fits.terms, (0.0,) * fits.terms)
+        return MeasuredSeries(none, np.full((size, size), np.nan), "assumed", note="not determined by these runs")
     return MeasuredSeries(fits.series, fits.spring.covariance[:size, :size], "measured", runs)
 
 
@@ -203,20 +235,9 @@ def order_amplitudes(series: MeasuredSeries) -> list[tuple[int, float, float]]:
 
 
 def _always(found: Mapping[str, Parameter]) -> list[str]:
-    """What no such campaign can tell apart, each pair named."""
+    """What no such campaign can tell apart, each pair named; pairs of which nothing was measured are left out."""
     said = [
-        "B_m and B_ml: both drag on the motor alike; what is measured is their sum B_m + B_ml·(1 + σ/N)². "
-        "A friction run with the wave generator out gives B_m alone.",
-        "B_sp and B_ml: B_ml drags beside the spring, with a fiftieth of its lever; it was taken as declared to a "
-        "third, else as anything up to the whole drag, and the interval of B_sp says so.",
-        "B_ml and a delay between the encoders: both add to the mean of θ̃ in proportion to the speed; neither is "
-        "taken from it.",
-        "B_l and what B_ml drags behind the torque sensor: the sensor sees only what passes through it.",
-        "K of the gear and of what lies in series (torque sensor, couplings, lock): K is of the whole path.",
-        "K, J_l, B_l, B_sp, F_cl and the gain of the torque sensor: all of them scale with it. Likewise J_m, B_m, "
-        "tau_c and the torque constant of the drive. Gains were taken as exact.",
-        "Order 1 of the wave generator and an eccentric motor encoder: re-clock the encoder to tell them apart.",
-        "a_0: the zero of the encoders is arbitrary, the constant of θ̃_p was left out.",
+        text for names, text in PAIRS if not names or any(n in found and found[n].origin == "measured" for n in names)
     ]
     if found["tau_s"].origin != "measured":
         said.append(

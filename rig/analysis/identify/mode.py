@@ -63,9 +63,12 @@ def add_mode(found: dict[str, Parameter], fits: Fits) -> None:
     up = [free_mode({**values, name: values[name] + h}, ratio) for name, h in zip(PARTS, halves, strict=True)]
     by_part = np.array(up) - best  # (4, 2): by half an interval of each
     squares = np.einsum("ik,ij,jk->k", by_part, _correlations(fits, halves), by_part)
-    for name, value, square in zip(("omega_n", "zeta"), best, squares, strict=True):
-        half = math.sqrt(square) if square > 0.0 else math.nan
-        found[name] = Parameter(float(value), (value - half, value + half), "measured", found["K"].runs)
+    for name, value, square, parts in zip(("omega_n", "zeta"), best, squares, (PARTS[:3], PARTS), strict=True):
+        guessed = [part for part in parts if found[part].origin != "measured"]
+        half = math.sqrt(square) if square > 0.0 and not guessed else math.nan
+        origin = found[guessed[0]].origin if guessed else "measured"
+        note = f"made with {', '.join(guessed)}, not determined by these runs" if guessed else ""
+        found[name] = Parameter(float(value), (value - half, value + half), origin, found["K"].runs, note)
 
 
 def _finite(half: float) -> float:

@@ -96,7 +96,11 @@ def _resonance(campaign: Campaign, splits: Sequence[Split]) -> str:
     made = [float(np.sqrt(0.5 * np.sum(np.abs(s.simulated[2:]) ** 2))) for s in splits if s.simulated is not None]
     orders = [60.0 * f_n / s.fast.speed_rpm for s in splits]
     has, meets = ", ".join(f"{size:.1f}" for size in made), ", ".join(f"{n:.1f}" for n in orders)
-    return f"The model has {has} arcsec: its natural frequency, {f_n:.1f} Hz, is order {meets} at these speeds."
+    return (
+        f"The model has {has} arcsec: its natural frequency, {f_n:.1f} Hz, is order {meets} at these speeds. Orders "
+        "below it are amplified, the load no longer follows those above it: they grow with speed until they pass it "
+        "and shrink from there on."
+    )
 
 
 def _rising(paper: str, what: str, sizes: Sequence[Number], speeds: Sequence[float], rule: str) -> Claim:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from rig.analysis.reproduction.campaign import Campaign
-from rig.analysis.reproduction.claim import Claim, Number, at_most, missing, positive
+from rig.analysis.reproduction.claim import Claim, Number, Ruling, at_most, missing, positive
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.loads import by_load, drawn, points
 
@@ -65,8 +65,10 @@ def steadily(curve: Curve, friction: str) -> Claim:
         return missing(STEADILY, NO_RUNS)
     rise, low, high = max(rises, key=lambda r: r[0].value)
     rule = "The largest change from one load to the next up to 7.5 N·m: at most zero with its 95 % interval."
-    told = f"The largest change, from {low:g} to {high:g} N·m, is {{}}.{friction if rise.value > 0 else ''}"
-    return Claim(STEADILY, at_most(rise, 0.0), told, (rise,), rule)
+    ruling = at_most(rise, 0.0)
+    why = " The interval holds zero: a rise there is not told from a fall." if ruling is Ruling.OPEN else ""
+    told = f"The least fall or largest rise, from {low:g} to {high:g} N·m, is a change by {{}}.{why}"
+    return Claim(STEADILY, ruling, told + (friction if rise.value > 0 else ""), (rise,), rule)
 
 
 def levels(curve: Curve) -> Claim:

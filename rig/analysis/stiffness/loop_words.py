@@ -48,7 +48,12 @@ def _add_rates(found: Findings, s: Stiffness) -> None:
     found.figure("loop_hysteretic", "Half width of the loop at no rate", h.value, "N·m", h.half, how)
     found.figure("loop_viscous", "What widens it with the rate", v.value, "N·m·s/rad", v.half, how)
     found.tables["loop_against_rate"] = [
-        {"windup_rate_arcmin/s": w.rate * ARCMIN, "direction": float(w.direction), "half_width_nm": w.half, "u": w.u}
+        {
+            "windup_rate_arcmin/s": w.rate * ARCMIN,
+            "direction": float(w.direction),
+            "half_width_nm": w.half,
+            "standard_uncertainty_nm": w.u,
+        }
         for w in s.widths
     ]
     found.curve(

@@ -18,10 +18,10 @@ class AssemblySweep(Sweep):
 
     depths_mm: tuple[float, ...] = field(default=(0.15, 0.3), metadata={"signed": True})  # deeper than the reference
     reference: int = 3  # assemblies at the reference depth
-    weights: tuple[float, ...] = field(default=(0.0, 1.0, 3.0, 7.5, 15.0), metadata={"signed": True})  # N·m
+    weights: tuple[float, ...] = field(default=(0.0, 1.0, 3.0, 7.5, 15.0), metadata={"signed": True})  # N·m each
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
-    frequency: float = 0.01  # Hz
-    cycles: float = 1.0
+    frequency: float = 0.01  # Hz, of the triangle
+    cycles: float = 1.0  # under each weight
 
     def sections(self) -> list[StepSection]:
         """The reference depth as often as asked, then each of the others once."""

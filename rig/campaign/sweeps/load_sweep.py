@@ -19,7 +19,7 @@ class LoadSweep(Sweep):
 
     weights: tuple[float, ...] = field(default=WEIGHTS, metadata={"signed": True})  # N·m on the load
     amplitude_deg: float = 1440.0  # deg of the motor, zero to peak
-    frequency: float = 0.01  # Hz
+    frequency: float = 0.01  # Hz, of the triangle
     cycles: float = 1.0  # under each weight, each way
 
     def sections(self) -> list[StepSection]:

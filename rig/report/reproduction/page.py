@@ -16,7 +16,7 @@ from rig.analysis.reproduction.exhibit import Exhibit
 from rig.report.figures import CATALOGUE, Drawing, Frame, svg
 from rig.report.page import css_string
 from rig.report.palette import DARK, LIGHT, variables
-from rig.report.reproduction import loads, spectrum_cpm, turn
+from rig.report.reproduction import spectrum_cpm, turn
 from rig.report.reproduction.text import SAID, SIGN, TONE, cell, count, found, record
 from rig.report.words import origin
 from rig.runfile.manifest import write_atomic
@@ -25,7 +25,7 @@ HERE = Path(__file__).parent
 NAME = "reproduction.html"
 DATA = "reproduction.json"
 WIDE, NARROW = 640.0, 360.0  # px; each figure is drawn twice, so that its text is legible on a phone too
-OURS = (turn.TURNS, turn.COMPARED, spectrum_cpm.DRAWING, loads.DRAWING)
+OURS = (turn.TURNS, turn.COMPARED, spectrum_cpm.DRAWING)
 SUBSCRIPT = re.compile(r"([A-Za-zθτψωΩ]\u0303?)_([a-z]{1,2})(?![a-z_])")  # θ̃_p, K_n, B_sp, tau_c: as symbols
 DRAWINGS: Mapping[str, Drawing] = {d.name: d for d in (*CATALOGUE, *OURS)}
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from rig.core.errors import DataError, UsageError
+from rig.core.errors import UsageError
 from rig.runfile.run import Run
 
 
@@ -36,8 +36,8 @@ def export(run: Run, kind: str, target: Path | None = None) -> Path:
     """Write `run` as `kind` (a key of FORMATS) and return the file.
 
     `target` is a file or a folder; without it the file stands in the run folder. Raises UsageError
-    when the format is unknown, its package is not installed, or the file exists: nothing is overwritten. Raises
-    DataError when it cannot be written; then there is no file.
+    when the format is unknown, its package is not installed, the file exists (nothing is overwritten) or cannot be
+    written; then there is no file.
     """
     if kind not in FORMATS:
         raise UsageError(f"there is no format {kind!r}, expected one of {', '.join(FORMATS)}")
@@ -70,7 +70,7 @@ def _target(run: Run, form: Format, target: Path | None) -> Path:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DataError(f"{target} cannot be made: {error.strerror}") from error
+        raise UsageError(f"cannot write {target}: {error.strerror}; name another place with --to") from error
     return target / name
 
 
@@ -83,12 +83,12 @@ def _in_place(path: Path) -> Iterator[Path]:
     except FileExistsError:
         raise UsageError(f"{path} exists already; nothing is overwritten") from None
     except OSError as error:
-        raise DataError(f"{path} cannot be written: {error.strerror}") from error
+        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with --to") from error
     try:
         yield part
         part.replace(path)
     except OSError as error:
-        raise DataError(f"{path} cannot be written: {error.strerror or error}") from error
+        raise UsageError(f"cannot write {path}: {error.strerror or error}; name another place with --to") from error
     finally:
         part.unlink(missing_ok=True)
         if not path.stat().st_size:

@@ -12,7 +12,7 @@ from typing import Any
 import pyarrow as pa
 
 from rig import __version__
-from rig.core.errors import NotReady, UsageError
+from rig.core.errors import UsageError
 from rig.runfile import manifest as manifests
 from rig.runfile.archive import NAME as SAMPLES
 from rig.runfile.archive import open_parquet
@@ -25,13 +25,13 @@ MAPPING_COPY = "import.toml"
 
 
 def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, software: Dict[str, Any] | None) -> Path:
-    """Make the folder under `root`; returns it. Raises NotReady when it cannot be written; then nothing is left."""
+    """Make the folder under `root`; returns it. Raises UsageError when it cannot be written; then nothing is left."""
     with manifests.told(UsageError, f"{source} cannot be read any more"):
         about = manifest_of(run, mapping, source, software)
     folder = create(root, mapping.procedure, about)
     done = False
     try:
-        with manifests.told(NotReady, f"the imported run cannot be written to {folder}"):
+        with manifests.told(UsageError, f"cannot write the imported run to {folder}"):
             manifests.write_atomic(folder / MAPPING_COPY, mapping.text.encode())
             rows = _write_samples(folder, run)
             _close(folder, run, rows, source.name)

@@ -63,6 +63,7 @@ class Puppet:
         self.checked: list[dict[str, Any]] = []
         self.refusal = ""  # what every act is refused with
         self.problems: dict[str, str] = {}  # what every check finds
+        self.campaigns: list[dict[str, Any]] = []  # that can be gone on with
         self.frames: list[bytes] = []  # sent to every page, once
         self.controller = "this"
         listening = socket.create_server(("127.0.0.1", 0))
@@ -118,6 +119,10 @@ class Puppet:
         @app.get("/api/catalogue")
         async def offered() -> Any:
             return OFFERED
+
+        @app.get("/api/campaigns")
+        async def campaigns() -> Any:
+            return {"campaigns": self.campaigns}
 
         @app.get("/api/runs")
         async def runs() -> Any:

@@ -1,40 +1,15 @@
-"""Each button in each state; what a press sends, how often, and what halt does in spite of everything."""
+"""What a press sends, how often, and what halt does in spite of everything. Each button in each state: next door."""
 
 from __future__ import annotations
 
 import pytest
 from playwright.sync_api import Page
 
-from rig.station.rules import allowed
 from tests.console.browser.conftest import Open
 from tests.console.browser.look import enabled, in_state, text, until
-from tests.console.browser.puppet import BENCH, RUN, Puppet
+from tests.console.browser.puppet import BENCH, Puppet
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
-URGENT = {"hold", "stop"}
-IDLE = URGENT | {"check", "prove", "tare", "note", "disconnect"}
-SITUATIONS = {  # what the station is said to be → the buttons that may be pressed
-    "disconnected": ({"state": "disconnected", "bench": None}, URGENT | {"connect", "check"}),
-    "connected": ({"state": "connected", "bench": BENCH}, IDLE),
-    "ready": ({"state": "ready", "bench": BENCH, "proof": "ratio 49.994"}, IDLE),
-    "running": ({"state": "running", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "holding": ({"state": "holding", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "stopping": ({"state": "stopping", "bench": BENCH, "job": "run kinematic-error", "run": RUN}, URGENT | {"note"}),
-    "fault": (
-        {"state": "fault", "bench": BENCH, "fault": "following error 12.4 deg", "run": None},
-        URGENT | {"check", "reset", "note", "disconnect"},
-    ),
-}
-
-
-def test_a_button_may_be_pressed_exactly_where_the_station_allows_it(page: Page, station: Puppet) -> None:
-    for name, (told, expected) in SITUATIONS.items():
-        station.tell(**{"job": "", "run": None, "proof": None, "fault": "", **told})
-        in_state(page, name)
-        assert enabled(page) - {"take_control"} == expected, name
-        assert all(allowed(station.picture)[act] is True for act in expected), name
-        may_start = allowed(station.picture)["start"] is True
-        page.wait_for_selector(f"#start[aria-disabled={str(not may_start).lower()}]")
 
 
 def test_a_button_that_may_not_be_pressed_says_why_and_sends_nothing(page: Page, station: Puppet) -> None:
@@ -125,3 +100,25 @@ def test_a_page_with_a_wrong_token_only_looks(open_page: Open, station: Puppet) 
     page.wait_for_timeout(200)
     assert station.acts == []
     assert enabled(page) == set()
+
+
+def test_a_campaign_that_was_stopped_is_gone_on_with_by_clicking(page: Page, station: Puppet) -> None:
+    left = {"folder": "runs/2026-11-20-1129-campaign-quick-TWIN-1a2b", "plan": "quick", "bench": "twin", "done": 3,
+            "total": 12, "started_utc": "2026-11-20T11:29:00Z", "why": "stopped by the operator"}  # fmt: skip
+    station.tell(
+        state="ready", bench=BENCH, job="campaign quick", campaign={**left, "current": "friction", "left_s": 9}
+    )
+    page.wait_for_selector("#campaign:visible")
+    page.click("[data-kind=plan]")
+    assert page.locator("#chosen option").count() == 1
+    station.campaigns = [left]
+    station.tell(job="", campaign=None)  # it ends: asked for again
+    page.wait_for_selector("#chosen optgroup[label='Go on with'] option", state="attached")
+    page.select_option("#chosen", left["folder"])
+    assert "3 of 12 runs are done; stopped by the operator" in text(page, "#summary")
+    page.wait_for_selector("#start[aria-disabled=false]:has-text('Go on with campaign quick')")
+    assert station.checked[-1]["resume"] == left["folder"]
+    page.click("#start")
+    until(lambda: len(station.acts) == 1, "campaign")
+    sent = station.acts[0]
+    assert (sent["act"], sent["resume"], "plan" in sent) == ("campaign", left["folder"], False)

@@ -24,6 +24,17 @@ PAINTED = """node => {
 TEXTS = ("#state", "#fault", "#halt b", ".tile dt", ".tile .basis", ".summary", "#steps .said", "#bench")
 TOUCH = 44  # px, the least a finger hits
 
+WRITTEN = """() => {
+  window.written = [];
+  const plain = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+    const { a, b } = this.getTransform();  // turned by a right angle: along the height
+    const room = Math.abs(b) > Math.abs(a) ? this.canvas.height : this.canvas.width;
+    if (this.canvas.checkVisibility()) window.written.push([text, this.measureText(text).width / room]);
+    return plain.call(this, text, ...at);
+  };
+}"""
+
 
 def _running(station: Puppet) -> None:
     station.tell(state="running", bench=BENCH, run=RUN, job="run kinematic-error")
@@ -47,6 +58,23 @@ def test_one_screen_without_scrolling_and_halt_always_at_the_same_place(page: Pa
         assert places[0]
         assert places[0]["x"] + places[0]["width"] <= width
         assert places[0]["height"] > TOUCH
+
+
+def test_what_is_written_along_an_axis_fits_it_and_every_axis_has_numbers_on_it(page: Page, station: Puppet) -> None:
+    page.evaluate(WRITTEN)
+    for name, (width, height) in SCREENS.items():
+        page.set_viewport_size({"width": width, "height": height})
+        station.tell(state="running", bench=BENCH, run={**RUN, "uid": name}, campaign={"plan": "quick", "done": 3,
+                     "total": 12, "current": "kinematic-error", "left_s": 300.0})  # fmt: skip
+        page.wait_for_selector("#campaign:visible")
+        page.evaluate("window.written = []")
+        page.select_option("#theme", "dark")
+        page.select_option("#theme", "calm")  # every chart is drawn anew
+        page.wait_for_timeout(200)
+        written = dict(page.evaluate("window.written"))
+        assert {text: share for text, share in written.items() if share > 1.0} == {}, name
+        assert "θ̃ about its mean, arcsec at the output" in written
+        assert {"2", "4"} <= set(written) or {"1", "2"} <= set(written), f"orders have no numbers on {name}"
 
 
 def test_every_button_and_field_is_large_enough_for_a_finger(page: Page, station: Puppet) -> None:

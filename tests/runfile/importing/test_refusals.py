@@ -144,13 +144,13 @@ def test_a_root_that_cannot_be_written_is_not_the_operators_mapping(foreign: For
 
 
 def test_a_disk_that_fills_up_leaves_no_half_run(foreign: Foreign, monkeypatch: pytest.MonkeyPatch) -> None:
-    from rig.core.errors import NotReady
+    from rig.core.errors import UsageError
     from rig.runfile.importing import import_file, write
 
     def full(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(write, "_write_samples", full)
-    with pytest.raises(NotReady, match=r"the imported run cannot be written to .*: No space left on device"):
+    with pytest.raises(UsageError, match=r"cannot write the imported run to .*: No space left on device"):
         import_file(foreign.file(), foreign.mapping(MAPPING), foreign.out)
     assert not list(foreign.out.rglob("manifest.json"))

@@ -26,7 +26,7 @@ function options(size) {
     ...size,
     scales: { x: { time: false, range: [0.4, MOST + 0.6] }, y: { range: (plot, low, high) => [0, (high ?? 10) * 1.12 || 10] } },
     series: [{}, { fill: ink().bar, stroke: ink().bar, width: 0, paths: uPlot.paths.bars({ size: [0.62, 40] }), points: { show: false } }],
-    axes: [axis("", { size: 22, incrs: [1], space: 16 }), axis("arcsec", { size: 46, space: 18 })],
+    axes: [axis("", { size: 22, incrs: [1, 2, 5], space: 16 }), axis("arcsec", { size: 46, space: 18 })],
     legend: { show: false }, cursor: { show: false }, padding: [8, 10, 0, 0],
   };
 }

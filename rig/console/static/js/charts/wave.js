@@ -53,7 +53,7 @@ export class Wave {
       scales: { x: { time: false, range: [0, 360] }, y: { range: steady(20) } },
       series: [{}, bare, bare, bare, bare, ...[0, 1, 2].map((k) => line(way(k), 1)), line(c.forward, 2.4), line(c.reverse, 2.4, [7, 4]), line(c.fit, 1.5)],
       bands: [{ series: [1, 2], fill: `${c.forwardSoft}55` }, { series: [3, 4], fill: `${c.reverseSoft}55` }],
-      axes: [axis("wave-generator angle, deg", { size: 36, incrs: [15, 30, 45, 90], space: 50 }), axis("kinematic error θ̃ about its mean, arcsec at the output", { size: 50 })],
+      axes: [axis("wave-generator angle, deg", { size: 36, incrs: [15, 30, 45, 90], space: 50 }), axis("θ̃ about its mean, arcsec at the output", { size: 50 })],
       legend: { show: false }, cursor: { show: false }, padding: [10, 14, 0, 0],
       hooks: { draw: [(plot) => this.#mark(plot)] },
     };

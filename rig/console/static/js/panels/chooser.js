@@ -2,7 +2,7 @@
 
 import { $, h, refill, say, show } from "../dom.js";
 import { plain } from "../numbers.js";
-import { headers } from "../token.js";
+import { get, headers } from "../token.js";
 import { typed, written } from "./fields.js";
 import { permit } from "./buttons.js";
 
@@ -10,6 +10,8 @@ const PAUSE = 150; // ms without a key before the server is asked
 
 export class Chooser {
   catalogue = { procedures: [], plans: [] };
+  left = []; // campaigns that were stopped before their end
+  going; // folder of the one that goes on, null for none; undefined: not asked yet
   kind = "procedure";
   kept = new Map(); // what was typed, by procedure: changing one's mind loses nothing
   ok = false;
@@ -31,7 +33,7 @@ export class Chooser {
   /** What `start` or `campaign` sends. */
   get order() {
     const note = $("start-note").value;
-    if (this.kind === "plan") return { act: "campaign", more: { plan: $("chosen").value, note } };
+    if (this.kind === "plan") return { act: "campaign", more: { ...this.#plan(), note } };
     return { act: "start", more: { procedure: $("chosen").value, parameters: this.#values(), note } };
   }
 
@@ -40,7 +42,8 @@ export class Chooser {
     const act = this.kind === "plan" ? "campaign" : "start";
     const allowed = refused ? "this page has no valid token: it only looks" : state.allowed?.[act];
     permit($("start"), allowed === true && !this.ok ? "a parameter cannot be meant: see above" : allowed);
-    say($("start"), this.kind === "plan" ? `Start campaign ${$("chosen").value}` : `Start ${$("chosen").value}`);
+    say($("start"), this.#words);
+    this.#look(state.campaign?.folder ?? null);
     const bench = state.bench?.source ?? null;
     if (bench !== this.bench) {
       this.bench = bench;
@@ -48,17 +51,51 @@ export class Chooser {
     }
   }
 
-  #kind(kind) {
-    this.kind = kind;
-    for (const button of $("chooser").querySelectorAll("[data-kind]")) button.setAttribute("aria-pressed", String(button.dataset.kind === kind));
-    const offered = kind === "plan" ? this.catalogue.plans : this.catalogue.procedures;
-    $("chosen").replaceChildren(...grouped(offered));
+  get #words() {
+    const chosen = this.#chosen;
+    if (chosen?.plan) return `Go on with campaign ${chosen.plan}`;
+    return this.kind === "plan" ? `Start campaign ${$("chosen").value}` : `Start ${$("chosen").value}`;
+  }
+
+  /** A new campaign by its plan, or one to go on with by its folder. */
+  #plan() {
+    const chosen = this.#chosen;
+    return chosen?.plan ? { resume: chosen.name } : { plan: $("chosen").value };
+  }
+
+  /** A campaign that has ended may be one to go on with. */
+  async #look(going) {
+    if (going === this.going) return;
+    this.going = going;
+    if (going === null) this.#left(await get("/api/campaigns").catch(() => ({})));
+  }
+
+  #left({ campaigns = [] }) {
+    const before = $("chosen").value;
+    this.left = campaigns.map(unfinished);
+    if (this.kind !== "plan") return;
+    this.#fill();
+    if (this.#offered.some((one) => one.name === before)) $("chosen").value = before;
     this.#choose();
   }
 
+  #kind(kind) {
+    this.kind = kind;
+    for (const button of $("chooser").querySelectorAll("[data-kind]")) button.setAttribute("aria-pressed", String(button.dataset.kind === kind));
+    this.#fill();
+    this.#choose();
+  }
+
+  #fill() {
+    $("chosen").replaceChildren(...grouped(this.#offered));
+  }
+
+  get #offered() {
+    return this.kind === "plan" ? [...this.catalogue.plans, ...this.left] : this.catalogue.procedures;
+  }
+
   get #chosen() {
-    const offered = this.kind === "plan" ? this.catalogue.plans : this.catalogue.procedures;
-    return offered.find((one) => one.name === $("chosen").value);
+    return this.#offered.find((one) => one.name === $("chosen").value);
   }
 
   #choose() {
@@ -90,7 +127,7 @@ export class Chooser {
     const number = ++this.#asked;
     const chosen = this.#chosen;
     if (!chosen) return;
-    const question = this.kind === "plan" ? { plan: chosen.name } : { procedure: chosen.name, parameters: this.#values() };
+    const question = this.kind === "plan" ? this.#plan() : { procedure: chosen.name, parameters: this.#values() };
     const said = await check({ ...question, ...(this.bench ? {} : { bench: $("bench-name").value }) });
     if (number === this.#asked) this.#tell(said); // an answer to what was typed before is none
   }
@@ -127,6 +164,12 @@ function grouped(offered) {
   for (const one of offered) groups.set(one.group ?? "", [...(groups.get(one.group ?? "") ?? []), one]);
   const option = (one) => h("option", { value: one.name }, one.title ?? one.name);
   return [...groups].flatMap(([group, members]) => (group ? [h("optgroup", { label: group }, ...members.map(option))] : members.map(option)));
+}
+
+/** A campaign that was left, among the plans. */
+function unfinished({ folder, plan, done, total, started_utc, why }) {
+  const begun = (started_utc ?? "").slice(0, 16).replace("T", " ");
+  return { name: folder, plan, group: "Go on with", title: `${plan}, ${done} of ${total} done, begun ${begun} UTC`, summary: `${done} of ${total} runs are done; ${why}. It goes on in its own order, on the bench it began with.` };
 }
 
 /** Name, field, unit; the problem below it. */

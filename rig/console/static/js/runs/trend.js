@@ -34,9 +34,14 @@ export class Trend {
     };
   }
 
+  /** Of values and intervals; the band, which two repeats leave very wide, takes no more room than they do. */
   #range() {
-    const ends = this.points.flatMap((p) => [p.value, ...p.ci95.filter((end) => end !== null), ...(p.level === null || p.reproducibility === null ? [] : [p.level - p.reproducibility, p.level + p.reproducibility])]);
-    const [low, high] = [Math.min(...ends), Math.max(...ends)];
+    const measured = this.points.flatMap((p) => [p.value, ...p.ci95.filter((end) => end !== null)]);
+    const band = this.points.filter((p) => p.level !== null && p.reproducibility !== null);
+    const [least, most] = [Math.min(...measured), Math.max(...measured)];
+    const span = most - least;
+    const low = Math.max(Math.min(least, ...band.map((p) => p.level - p.reproducibility)), least - span);
+    const high = Math.min(Math.max(most, ...band.map((p) => p.level + p.reproducibility)), most + span);
     const room = Math.max((high - low) * 0.12, Math.abs(high) * 1e-3, 1e-9);
     return [low - room, high + room];
   }

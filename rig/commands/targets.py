@@ -1,0 +1,32 @@
+"""Where a verb is to write: tried before anything moves, and what is said when it cannot be written."""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from rig.core.errors import UsageError
+
+BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
+
+
+def refuse_unwritable(folder: Path, option: str = "--out") -> None:
+    """Raises UsageError when `folder`, or the nearest one above it that exists, takes no new file. Leaves nothing."""
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    with writing(folder, option), tempfile.NamedTemporaryFile(dir=there, prefix=".hdrig-") as tried:
+        tried.write(BLOCK)
+        tried.flush()
+
+
+@contextlib.contextmanager
+def writing(target: Path, option: str = "--out") -> Iterator[None]:
+    """Turns an OSError into a UsageError: what cannot be written, why, and the option that names another place."""
+    try:
+        yield
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise UsageError(f"cannot write {target}: {why}; name another place with {option}") from None

@@ -1,0 +1,72 @@
+"""A place that cannot be written is one sentence and exit code 2 in every verb, before anything moves."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rig.cli import main
+from rig.commands.targets import refuse_unwritable, writing
+from rig.core.errors import DataError, Exit, UsageError
+from tests.commands.made_run import made_run
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> str:
+    return str(made_run(tmp_path / "good"))
+
+
+VERBS = {
+    "run": ["run", "kinematic-error", "--out"],
+    "sweep": ["run", "load-sweep", "--out"],
+    "campaign": ["campaign", "quick", "--out"],
+    "demo": ["demo", "--out"],
+    "close-loop": ["close-loop", "--out"],
+    "import": ["import", "x.csv", "--map", "lara8", "--out"],
+    "analyse": ["analyse", "RUN", "--out"],
+    "export": ["export", "RUN", "--to"],
+    "reproduce": ["reproduce", "RUN", "--out"],
+    "trace": ["trace", "RUN", "--out"],
+    "identify": ["identify", "RUN", "-o"],
+}
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_place_that_cannot_be_written_is_refused_alike_by_every_verb(
+    verb: str, run: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    words = [run if word == "RUN" else word for word in VERBS[verb]]
+    assert main([*words, str(tmp_path / "file" / "x")]) == Exit.USAGE
+    said = capsys.readouterr()
+    assert "cannot write" in said.err
+    assert "Not a directory; name another place with -" in said.err
+    assert "about to turn" not in said.err
+    assert said.out == ""
+
+
+def test_what_is_tried_leaves_nothing(tmp_path: Path) -> None:
+    refuse_unwritable(tmp_path / "a" / "b")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_by_its_own_words(tmp_path: Path) -> None:
+    told = r"cannot write a: No space left on device; name another place with --to"
+    with pytest.raises(UsageError, match=told), writing(Path("a"), "--to"):
+        raise OSError(28, "No space left on device")
+
+
+def test_a_run_whose_report_finds_no_room_is_complete_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("rig.report.page.write", full)
+    assert main(["run", "standstill", "--with", "duration=0.5", "--out", str(tmp_path)]) == Exit.INCOMPLETE
+    assert "the run is complete in" in capsys.readouterr().err
+    manifest = next(p for p in tmp_path.rglob("manifest.json") if "standstill" in p.parent.name)
+    assert json.loads(manifest.read_text())["status"] == "completed"
+    assert DataError.exit == Exit.INCOMPLETE

@@ -1,0 +1,48 @@
+"""Every button in every state the station can be in: a press does what the table says, or says why not."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Locator, Page
+
+from rig.station.rules import allowed
+from tests.console.browser.look import text, until
+from tests.console.browser.puppet import Puppet
+from tests.console.browser.table import AT_REST, BUTTONS, SITUATIONS, Button
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
+SHOWN = "button => button.checkVisibility() && !button.closest('[inert]')"
+
+
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_every_button_does_what_the_table_says_or_says_why_not(page: Page, station: Puppet, name: str) -> None:
+    told, expected = SITUATIONS[name]
+    station.tell(**{**AT_REST, **told})
+    page.wait_for_selector(f"html[data-revision='{station.revision}']", state="attached")
+    if "start" in expected:
+        page.wait_for_selector("#start[aria-disabled=false]")  # its parameters have been looked at
+    for what, button in BUTTONS.items():
+        found = page.locator(button.selector)
+        if not found.evaluate(SHOWN):
+            assert what not in expected, f"{what} is hidden"
+        elif what in expected:
+            assert _sent(found, station) == [button.act], what
+        else:
+            assert _sent(found, station) == [], what
+            assert text(page, "#answer") == f"Not possible now: {_why(button, station)}", what
+
+
+def _sent(button: Locator, station: Puppet) -> list[str]:
+    """The acts that one press brought to the server. What is covered or dashed is pressed all the same."""
+    before = len(station.acts)
+    halts = button.get_attribute("id") == "halt"
+    button.dispatch_event("pointerdown" if halts else "click")
+    if button.get_attribute("aria-disabled") != "true":
+        until(lambda: len(station.acts) > before, "the act")
+    button.page.wait_for_timeout(20)  # for what would come besides
+    return [act["act"] for act in station.acts[before:]]
+
+
+def _why(button: Button, station: Puppet) -> str:
+    """In the words of the station."""
+    return str({**allowed(station.picture), "take_control": "this page holds control"}[button.act])
