@@ -49,8 +49,7 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
         p = _floored(p, solution, runs)
         solution, held, worths = convicted(solution, p.court)
     if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
-        solution = polished(solution, runs, covered)
-        solution, held, worths = convicted(solution, p.court)
+        solution, held, worths = _polished(p, solution, (solution, held, worths), runs, covered)
     p, solution = _own_convicted(p, solution)
     solution, held, worths = convicted(unmasked(solution, runs), p.court)
     words = _in_words(solution, runs)
@@ -74,6 +73,17 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
         return case
     other = heard(case.p, others, runs, covered)
     return case if other.loud else other
+
+
+Sentence = tuple[Solution, Design, list[Worth]]
+
+
+def _polished(p: Prepared, s: Solution, so_far: Sentence, runs: Sequence[int], covered: Reach) -> Sentence:
+    """Laws fitted again beside those that stayed; as they were where that loses one: two terms of one effect can trade
+    what single runs show, and foretell nonsense of others."""
+    again = convicted(polished(s, runs, covered), p.court)
+    kept = {term.name for term in again[0].design.terms}
+    return again if kept >= {term.name for term in s.design.terms} else so_far
 
 
 def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:

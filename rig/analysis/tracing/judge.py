@@ -12,7 +12,18 @@ from rig.analysis.tracing.equations import Equations, Key
 from rig.analysis.tracing.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.noise import Measured, floor_of, leniency
 from rig.analysis.tracing.search import as_fit, reduced
-from rig.analysis.tracing.thresholds import APART, EXPLAINED, HARMFUL, NAMED, QUIET, REAL, SMALLEST, UNREAL, UNSTEADY
+from rig.analysis.tracing.thresholds import (
+    APART,
+    EXPLAINED,
+    HARMFUL,
+    MISSING,
+    NAMED,
+    QUIET,
+    REAL,
+    SMALLEST,
+    UNREAL,
+    UNSTEADY,
+)
 from rig.model.effect import Array, Parameter, Reach
 
 FAIR = 0.04  # of an effect's work: a fifth of its size
@@ -81,9 +92,9 @@ class Worth:
 
     @property
     def _explains_all(self) -> bool:
-        """Where nothing is left of it on unseen runs, sizes that differ between runs differ by less than the noise of
-        a run's mean."""
-        return self.share > ALL and self.left < QUIET and abs(self.true - 1.0) < FAIRLY
+        """Where next to nothing is left of it on unseen runs, sizes differ from run to run by less than the noise of a
+        run's mean."""
+        return self.share > ALL and self.left < MISSING and abs(self.true - 1.0) < FAIRLY
 
 
 def court(eq: Equations, measured: Measured, held_out: Sequence[int]) -> Court:
