@@ -143,7 +143,7 @@ class LimitsSection(Strict):
     following_deg: Annotated[float, quantity("deg", **Positive)]
     following_s: Annotated[float, quantity("s", **NotNegative)]
     twist_deg: Annotated[float, quantity("deg", **Positive)]
-    stale_s: Annotated[float, quantity("s", **Positive)]
+    stale_s: Annotated[float, quantity("s", **Positive, le=1)]  # a motor at 600 rpm turns ten times in a second
 
 
 class HandSection(Strict):

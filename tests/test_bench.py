@@ -61,3 +61,17 @@ def test_the_clock_is_the_world_or_the_wall_and_never_virtual_on_real_devices(
     (tmp_path / "real.toml").write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match="only on the twin"):
         read(str(tmp_path / "real.toml")).open("virtual")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("devices.load_encoder.node=1", r"two devices are node 1 on bus 'rig'"),
+        ("loop.latch_lead=0.6", r"latch_lead = 0.6 s is no shorter than the period of 0.001 s"),
+        ("loop.rate=250,devices.drive.watchdog=0.01", r"a watchdog of 0.01 s is under three periods"),
+        ("limits.stale_s=100", r"stale_s = 100.* s: expected less than or equal to 1"),
+    ],
+)
+def test_numbers_that_do_not_go_together_are_refused(change: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        read("twin-can", change.split(","))
