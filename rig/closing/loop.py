@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from rig.analysis.tracing.result import NextRun, Status, Trace
+from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs

@@ -9,8 +9,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from rig.analysis.tracing.record import document
-from rig.analysis.tracing.result import Status, Trace
+from rig.analysis.tracing.outcome.record import document
+from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.core.errors import NotReady, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
 

@@ -25,7 +25,7 @@ from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.result import Trace
+    from rig.analysis.tracing.outcome.result import Trace
     from rig.closing.story import Story
 
 PLAN = "modest"
@@ -111,7 +111,7 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
 
 def look(folder: Path) -> Trace:
     """Trace all runs in `folder`, written there as trace.json."""
-    from rig.analysis.tracing.record import write_trace
+    from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.trace import trace
 
     found = trace(folder)

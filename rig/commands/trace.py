@@ -10,7 +10,7 @@ from rig.commands.targets import refuse_unwritable, writing
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.result import NextRun, Trace
+    from rig.analysis.tracing.outcome.result import NextRun, Trace
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
-    from rig.analysis.tracing.record import write_trace
+    from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.trace import trace
     from rig.report.trace.campaign import provenance
     from rig.report.trace.page import write

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.result import Before, Errors, NextRun, Status, Trace, Verdict
+from rig.analysis.tracing.outcome.result import Before, Errors, NextRun, Status, Trace, Verdict
 from rig.bench import read
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.plan import parse_plan

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from rig.analysis.tracing.campaign import read_campaign
+from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.core.errors import UsageError
 
 Columns = dict[str, Any]

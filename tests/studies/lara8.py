@@ -122,7 +122,7 @@ def spiked(campaign: Path, to: Path, put: Callable[[Columns, float], None], size
 
 def traced(campaign: Path) -> Mapping[str, Any]:
     """trace.json of a campaign."""
-    from rig.analysis.tracing.record import document
+    from rig.analysis.tracing.outcome.record import document
     from rig.analysis.tracing.trace import trace
 
     return dict(json.loads(json.dumps(document(trace(campaign)))))

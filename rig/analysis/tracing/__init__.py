@@ -1,1 +1,9 @@
-"""From measured runs to the effect the paper's model lacks."""
+"""From measured runs to the effect the paper's model lacks. `trace` leads through it:
+
+runs/     what is read, on one grid, split into fitted and held out
+fit/      the rig's equations, baseline and effects fitted together, the search for effects
+floor/    what no model has to explain: repeats, lines, what every run has to itself
+court/    what may be said: effects weighed on unseen runs, rivals, the next run
+rest/     what is left, and the coordinate it lives in
+outcome/  errors before and after, free simulation, arrays for the page, trace.json
+"""

@@ -7,21 +7,21 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.bank import Bank, fill, reach
-from rig.analysis.tracing.campaign import Campaign, read_campaign
-from rig.analysis.tracing.channels import known_of
-from rig.analysis.tracing.equations import Equations, Key, Noise, equations, spoiling
-from rig.analysis.tracing.hearing import heard, heard_again
-from rig.analysis.tracing.holdout import Split, split
-from rig.analysis.tracing.judge import Court, court
-from rig.analysis.tracing.model import Solution, design, fit
-from rig.analysis.tracing.noise import Measured, floor_of, guess, measure, quieter
-from rig.analysis.tracing.own import Own, find
-from rig.analysis.tracing.report import report
-from rig.analysis.tracing.result import Trace
-from rig.analysis.tracing.search import Found, relawed, search, still
-from rig.analysis.tracing.shadows import SHADOWS, of_the_library
-from rig.analysis.tracing.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.court.hearing import heard, heard_again
+from rig.analysis.tracing.court.judge import Court, court
+from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
+from rig.analysis.tracing.fit.bank import Bank, fill, reach
+from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.search import Found, relawed, search, still
+from rig.analysis.tracing.floor.noise import Measured, floor_of, guess, measure, quieter
+from rig.analysis.tracing.floor.own import Own, find
+from rig.analysis.tracing.outcome.report import report
+from rig.analysis.tracing.outcome.result import Trace
+from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
+from rig.analysis.tracing.runs.holdout import Split, split
+from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE

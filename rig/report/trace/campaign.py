@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rig.analysis.tracing.result import Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.report.numbers import duration, number_of
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rig.analysis.tracing.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.report.figures.arrays import line
 from rig.report.numbers import join
 from rig.report.trace.channels import CHANNELS, Channel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rig.analysis.angle import ARCSEC
-from rig.analysis.tracing.result import Errors
+from rig.analysis.tracing.outcome.result import Errors
 
 
 class Channel(NamedTuple):

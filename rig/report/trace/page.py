@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rig.analysis.result import Array
-from rig.analysis.tracing.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.figures import Drawing

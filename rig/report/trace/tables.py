@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from rig.analysis.tracing.result import Candidate, Status, Trace
+from rig.analysis.tracing.outcome.result import Candidate, Status, Trace
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rig.analysis.tracing.local import IN_SHORT
-from rig.analysis.tracing.result import Found, Status, Trace
+from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.outcome.result import Found, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE

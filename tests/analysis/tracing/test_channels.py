@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.channels import ORDERS, series, slopes
+from rig.analysis.tracing.fit.channels import ORDERS, series, slopes
 
 
 def test_the_series_is_cosine_and_sine_of_each_order_in_turn() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rig.analysis.tracing.counts import LOCKED, one_a_stay, resting
+from rig.analysis.tracing.runs.counts import LOCKED, one_a_stay, resting
 
 COUNTS = 10_000
 COUNT = 2 * np.pi / COUNTS

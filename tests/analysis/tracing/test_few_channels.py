@@ -10,10 +10,10 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from rig.analysis.tracing.campaign import read_campaign
-from rig.analysis.tracing.cannot import cannot, together
-from rig.analysis.tracing.record import document
-from rig.analysis.tracing.result import Trace
+from rig.analysis.tracing.outcome.record import document
+from rig.analysis.tracing.outcome.result import Trace
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.trace import prepare, trace
 from rig.core.errors import UsageError
 

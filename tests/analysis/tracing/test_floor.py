@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor import autocorrelation, compare, effective, freedom, output_turns, strokes
+from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns, strokes
 
 RNG = np.random.default_rng(5)
 

@@ -7,9 +7,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from rig.analysis.tracing import interference
-from rig.analysis.tracing.equations import Equations, Key
-from rig.analysis.tracing.interference import find_interference
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor import interference
+from rig.analysis.tracing.floor.interference import find_interference
 from rig.model.effect import Array
 
 DT, N = 0.004, 10_000

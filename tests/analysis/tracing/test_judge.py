@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.equations import Term
-from rig.analysis.tracing.judge import unresolved, unsteadiness
+from rig.analysis.tracing.court.judge import unresolved, unsteadiness
+from rig.analysis.tracing.fit.equations import Term
 from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
 from tests.contract.test_effects import REACH

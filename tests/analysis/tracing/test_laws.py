@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.smoothing import thin
+from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Fit, Moved, Port
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, TORQUE, LoadDependentKinematicError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.local import _heights, _jumps
+from rig.analysis.tracing.floor.local import _heights, _jumps
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)

@@ -7,8 +7,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from rig.analysis.tracing import campaign
-from rig.analysis.tracing.membership import one_rig, starts
+from rig.analysis.tracing.runs import campaign
+from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.core.errors import UsageError
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.record import document
+from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.trace import trace
 
 pytestmark = pytest.mark.slow

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.bins import BINNED, rms
-from rig.analysis.tracing.pictures import interval
-from rig.analysis.tracing.rest import Rest
-from rig.analysis.tracing.shares import COORDINATES, PAIRS, score_of_orders, shares
-from rig.analysis.tracing.suspects import Tried, reason
-from rig.analysis.tracing.unknown import folds
+from rig.analysis.tracing.court.suspects import Tried, reason
+from rig.analysis.tracing.outcome.pictures import interval
+from rig.analysis.tracing.rest.bins import BINNED, rms
+from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, score_of_orders, shares
+from rig.analysis.tracing.rest.unknown import folds
 
 SLOW, FAST = 0.6, 20.0  # output rad seen in a run
 

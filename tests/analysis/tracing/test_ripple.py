@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.ripple import DAY, HIGHEST, Seen, _laws
+from rig.analysis.tracing.outcome.ripple import DAY, HIGHEST, Seen, _laws
 
 RNG = np.random.default_rng(3)
 SPEEDS = (6.0, 12.0, 20.0, 31.0, -20.0, -31.0)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.result import Status
-from rig.analysis.tracing.shadows import SHADOWS, Creep, Droop
+from rig.analysis.tracing.court.shadows import SHADOWS, Creep, Droop
+from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Port
 from rig.model.effects import LIBRARY

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.smoothing import Smoother, flat, flat_rate, kernel, thin
+from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, kernel, thin
 
 
 @pytest.mark.parametrize("derivative", [0, 1, 2, 3])

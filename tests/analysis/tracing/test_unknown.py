@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import Rest
-from rig.analysis.tracing.unknown import homes, plainest
+from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.unknown import homes, plainest
 from rig.model.memory import play
 
 DT = 1 / 125

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.result import (
+from rig.analysis.tracing.outcome.result import (
     Before,
     Candidate,
     Errors,

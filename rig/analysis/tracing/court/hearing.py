@@ -1,0 +1,111 @@
+"""What the search brought, before the court: which effects stay, and a second hearing where the first explained little.
+
+The search takes the best suspect first. A look-alike that comes before the true effect is refused on unseen runs, and
+the true one was never asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from rig.analysis.tracing.court.judge import Worth, convicted, court, unresolved
+from rig.analysis.tracing.court.shadows import unmasked
+from rig.analysis.tracing.fit.bank import Bank
+from rig.analysis.tracing.fit.model import Design, Solution, design, fit
+from rig.analysis.tracing.fit.parameters import effects
+from rig.analysis.tracing.fit.search import Found, polished, reduced, search
+from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.outcome.report import own_shares
+from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
+from rig.model.effect import Parameter, Reach
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+
+@dataclass(frozen=True)
+class Heard:
+    """The model with the effects that may be named, on the held-out runs, and their parameters in words."""
+
+    p: Prepared
+    solution: Solution
+    held: Design
+    worths: list[Worth]
+    words: dict[str, tuple[Parameter, ...]]
+
+    @property
+    def loud(self) -> bool:
+        """Whether more is left on the held-out runs than may be."""
+        total, single = self.p.court.worst(self.p.court.residuals(self.solution, self.held))
+        return total > EXPLAINED or single > MISSING
+
+
+def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
+    """Effects are refused until all that are left may be named; their laws are fitted again beside each other."""
+    solution, held, worths = convicted(found.solution, p.court)
+    if len(solution.design.terms) < len(found.solution.design.terms):
+        p = _floored(p, solution, runs)
+        solution, held, worths = convicted(solution, p.court)
+    if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
+        solution, held, worths = _polished(p, solution, (solution, held, worths), runs, covered)
+    p, solution = _own_convicted(p, solution)
+    solution, held, worths = convicted(unmasked(solution, runs), p.court)
+    words = _in_words(solution, runs)
+    if vague := unresolved(solution, words, covered):
+        gone = [i for i, term in enumerate(solution.design.terms) if term.name in vague]
+        solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
+        words = _in_words(solution, runs)
+    return Heard(p, solution, held, worths, words)
+
+
+def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Heard:
+    """Where much is left, those that nobody asked for want of room: all but the refused ones. What they say counts when
+    it explains everything; else the first hearing stands."""
+    stay = {term.name for term in case.solution.design.terms}
+    refused = frozenset(name for name in found.names if name not in stay)
+    if not refused or case.p.own.line is not None or not case.loud:
+        return case
+    d = case.solution.design
+    others = search(d, bank, runs, case.solution.keys, covered, case.p.floors, found.ranking, refused)
+    if not set(others.names) - stay:
+        return case
+    other = heard(case.p, others, runs, covered)
+    return case if other.loud else other
+
+
+Sentence = tuple[Solution, Design, list[Worth]]
+
+
+def _polished(p: Prepared, s: Solution, so_far: Sentence, runs: Sequence[int], covered: Reach) -> Sentence:
+    """Laws fitted again beside those that stayed; as they were where that loses one: two terms of one effect can trade
+    what single runs show, and foretell nonsense of others."""
+    again = convicted(polished(s, runs, covered), p.court)
+    kept = {term.name for term in again[0].design.terms}
+    return again if kept >= {term.name for term in s.design.terms} else so_far
+
+
+def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
+    return effects(s, runs) if s.design.terms else {}
+
+
+def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
+    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them."""
+    measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    return replace(p, measured=measured, court=court(p.eq, measured, p.split.held_out))
+
+
+def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
+    """Without effects of each run's own that take too little of the held-out excess to be named."""
+    shares = own_shares(p, s)
+    failing = [name for name, share in shares.items() if share < NAMED]
+    if not failing:
+        return p, s
+    left = p.own.without(failing)
+    again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
+    eq = replace(s.design.eq, own=left.columns())
+    again = replace(again, court=court(again.eq, again.measured, p.split.held_out))
+    return again, fit(design(eq, s.design.terms, p.split.fitted))

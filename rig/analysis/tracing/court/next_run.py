@@ -1,0 +1,107 @@
+"""Rivals of a named effect, and the run that would decide between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rig.analysis.tracing.court.expected import proposals, sigmas
+from rig.analysis.tracing.court.judge import unseen
+from rig.analysis.tracing.fit.bank import reach
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, Scored, possible
+from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+
+SIGMAS: Final = 3.0  # standard deviations, at least
+HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
+
+
+def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str, ...], NextRun | None]:
+    """Effects that alone would have done as well as the first one named, and the cheapest run that tells them apart."""
+    best = next((r for r in found.ranking if r.term.name == names[0]), None)
+    if best is None or len(names) > 1:
+        return (), None
+    others = [r for r in found.ranking if r.term.name not in names]
+    close = [r for r in others if r.evidence > CLOSE * best.evidence or _as_good(p, r, best)]
+    rivals = tuple(r.term.name for r in close)
+    if not rivals:
+        return (), None
+    asked = _by_information(p, best, close)
+    return rivals, asked or _by_table({names[0], *rivals})
+
+
+def _as_good(p: Prepared, rival: Scored, best: Scored) -> bool:
+    """Whether a rival far behind in the bank's shape explains everything alone once its shape is fitted."""
+    if rival.evidence < HALF * best.evidence:
+        return False
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    s = refine(p.baseline.design, rival.term, runs, covered)[1]
+    term = s.design.terms[0]
+    if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
+        return False
+    total, single = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
+    return total < QUIET and single < STILL_RUN
+
+
+def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:
+    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; None when none is.
+
+    A rival is one while it has CLOSE of the best one's evidence: what the run tells, in nats, has to be more than that.
+    """
+    eq = p.eq
+    proposed = proposals(eq.runs[0].pieces[0].dt)
+    need = max(SIGMAS, float(np.sqrt(2 * (1 - CLOSE) * best.evidence)))
+    told = np.full(len(proposed), np.inf)
+    for other in close:
+        for f, g in ((best.term, other.term), (other.term, best.term)):
+            told = np.minimum(told, sigmas(p.baseline, f, g, p.split.fitted, proposed))
+    able = [i for i in range(len(proposed)) if told[i] > need]
+    if not able:
+        return None
+    cost = [run.cost(eq.runs[0].pieces[0].dt) for run in proposed]
+    first = min(able, key=lambda i: (cost[i], -told[i]))
+    names = " from ".join(sorted({best.term.name, *(r.term.name for r in close)}))
+    because = (
+        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), the cheapest of "
+        f"{len(able)} runs that would: {cost[first]:.0f} s of rig time with its repeat"
+    )
+    return NextRun(proposed[first].procedure, dict(proposed[first].conditions), because)
+
+
+def _by_table(pair: set[str]) -> NextRun:
+    """What is known to separate some effects where no run of the catalogue is expected to by its numbers."""
+    for members, procedure, conditions, why in DECIDERS:
+        if len(members & pair) >= 2:
+            return NextRun(procedure, conditions, f"separates {' from '.join(sorted(pair))}: {why}")
+    return NextRun("constant_torque", {"speed_rpm": 500.0}, f"separates {' from '.join(sorted(pair))} by speed")
+
+
+DECIDERS: Sequence[tuple[frozenset[str], str, dict[str, float | bool | str], str]] = (
+    (
+        frozenset({"thermal_friction_drift", "quadratic_drag", "stribeck_friction"}),
+        "friction",
+        {"speeds_rpm": "15,30,60,120,200,310,400,500", "output_deg": 4.0, "breakaways": 1},
+        "every speed from creep to fast within three minutes, rising and falling: at two or three speeds, minutes "
+        "apart, falling friction, drag and warming bend the same curve",
+    ),
+    (
+        frozenset({"nonlinear_stiffness", "hysteretic_stiffness", "lost_motion"}),
+        "stiffness_lock",
+        {"output_locked": True},
+        "nested amplitudes show whether the branches meet",
+    ),
+    (
+        frozenset({"output_once_per_rev", "torque_sensor_crosstalk", "gravity_unbalance"}),
+        "constant_torque",
+        {"speed_rpm": 400.0},
+        "a real angle error makes torque when it turns fast",
+    ),
+)

@@ -1,0 +1,117 @@
+"""Laws that are no effect of the library and look like one of it: none is ever named, but where one explains more, the
+effect it was taken for is not named either. They are searched for beside the library's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+from scipy.signal import lfilter
+
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.model import Solution, extended, fit
+from rig.analysis.tracing.fit.search import Scored, reduced
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+
+
+class Creep(Effect):
+    """A part of the wind-up that comes late: φ gains Σ c_i·(T through a first-order lag of T_i)      [findley1976]
+
+    A loop in torque against wind-up as hysteresis makes it, but one that closes when it is gone round slowly.
+    """
+
+    name: ClassVar[str] = "creep"
+    in_short: ClassVar[str] = "a part of the wind-up comes seconds late"
+    source: ClassVar[str] = "findley1976"
+    remembers: ClassVar[bool] = True
+    LAGS: Final = (0.7, 1.5, 4.0, 8.0, 20.0, 50.0)  # s: from a turn of the motor to a run, 2 to 3 times apart
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One follower a lag, in balance when the run begins."""
+        torque = np.nan_to_num(signals.torque)
+        keep = np.exp(-signals.dt / np.array(self.LAGS))
+        late = [torque[0] + lfilter([1 - k], [1, -k], torque - torque[0]) for k in keep]
+        return {Port.WIND_UP: np.stack(late, 1)}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
+class Droop(Effect):
+    """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
+
+    Under a steady load it is what friction would be that grows with the square of it, but it gives as it takes.
+    """
+
+    name: ClassVar[str] = "droop"
+    in_short: ClassVar[str] = "the torque constant falls with the current"
+    source: ClassVar[str] = "krause2013"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        torque = np.nan_to_num(signals.tau_m)
+        return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Shadow:
+    """A law, what it is taken for, and the coordinate it lives in."""
+
+    effect: Effect
+    of: frozenset[str]
+    coordinate: str
+    sentence: str
+
+
+SHADOWS: Final = {
+    "creep": Shadow(
+        Creep(),
+        frozenset({"hysteretic_stiffness"}),
+        "memory",
+        "A part of the wind-up follows the torque seconds late, as creep does; a loop that does not depend on the rate "
+        "explains less, and no effect of the library explains it.",
+    ),
+    "droop": Shadow(
+        Droop(),
+        frozenset({"load_dependent_friction"}),
+        "load",
+        "The motor's torque falls short of what is told, with the square of it, forth and back alike: its torque "
+        "constant may droop. No effect of the library explains it.",
+    ),
+}
+
+
+def unmasked(s: Solution, runs: Sequence[int]) -> Solution:
+    """With the shadow in the place of its look-alike, wherever it explains more of the fitted runs."""
+    for shadow in SHADOWS.values():
+        mine = [i for i, term in enumerate(s.design.terms) if term.name in shadow.of]
+        if mine:
+            other = fit(extended(reduced(s.design, mine), Term(shadow.effect, ()), runs))
+            s = other if other.gain > s.gain else s
+    return s
+
+
+def of_the_library(ranking: Sequence[Scored]) -> tuple[Scored, ...]:
+    """A ranking without shadows."""
+    return tuple(r for r in ranking if r.term.name not in SHADOWS)
+
+
+def cast(s: Solution) -> list[Shadow]:
+    """The shadows in a model."""
+    return [SHADOWS[term.name] for term in s.design.terms if term.name in SHADOWS]

@@ -1,0 +1,84 @@
+"""Every suspect tried alone beside the baseline: what it leaves on held-out runs, and the reason in words."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rig.analysis.tracing.court.judge import unseen
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import extended, fit
+from rig.analysis.tracing.fit.search import Scored
+from rig.analysis.tracing.outcome.result import Candidate
+from rig.analysis.tracing.thresholds import NAMED, QUIET
+from rig.model.effect import Array
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+SENSORS: Final = {"A": "theta_l", "M": "tau_m", "L": "tau_l"}
+TAKEN: Final = "; what stands in its place explains more"
+IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "L": "shaft torque"}
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One suspect alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`."""
+
+    rms: dict[str, float]
+    share: float
+    channel: str
+
+
+def candidates(
+    p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array], named: Sequence[str], shadowed: Collection[str]
+) -> tuple[Candidate, ...]:
+    """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`. In the place of
+    effects that are `shadowed` a law beside the library explains more."""
+    out = []
+    for r in ranking:
+        found = tried(p, r, before)
+        rms = {SENSORS[c]: value for c, value in found.rms.items()}
+        why = reason(found, r.term.name, named) + (TAKEN if r.term.name in shadowed else "")
+        out.append(Candidate(r.term.name, r.evidence, why, rms))
+    return tuple(out)
+
+
+def tried(p: Prepared, r: Scored, before: Mapping[Key, Array]) -> Tried:
+    """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs."""
+    s = fit(extended(p.baseline.design, r.term, p.split.fitted))
+    after = p.court.residuals(s, unseen(s, p.court))
+    rms: dict[str, float] = {}
+    shares: dict[str, float] = {}
+    changes: dict[str, float] = {}
+    excess: dict[str, float] = {}
+    for c in CHANNELS:
+        keys = [k for k in after if k[1] == c]
+        if not keys:
+            continue
+        rms[c] = float(np.sqrt(np.mean(np.concatenate([after[k] for k in keys]) ** 2)))
+        (first, n), (left, _) = p.court.excess(before, keys), p.court.excess(after, keys)
+        changes[c], excess[c] = abs(first - left), first / n
+        shares[c] = (first - left) / max(first - n, 0.02 * n)
+    loud = {c: change for c, change in changes.items() if excess[c] > QUIET**2} or changes
+    channel = max(loud, key=lambda c: loud[c])
+    return Tried(rms, float(shares[channel]), channel)
+
+
+def reason(found: Tried, name: str, named: Sequence[str]) -> str:
+    """One sentence on what it does alone, and beside the effects that were named."""
+    where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
+    if abs(found.share) < 0.005:
+        return f"alone it removes nothing {where}"
+    if found.share < 0:
+        return (
+            f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-100 * found.share:.0f} % of its excess"
+        )
+    if found.share < NAMED:
+        return f"alone it removes {100 * found.share:.0f} % {where}, {100 * NAMED:.0f} % would be asked for"
+    needless = "" if name in named or not named else f"; beside {' and '.join(named)} it is not needed"
+    return f"alone it removes {100 * min(found.share, 1.0):.0f} % {where}{needless.replace('_', ' ')}"

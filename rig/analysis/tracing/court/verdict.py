@@ -1,0 +1,116 @@
+"""What may be said: explained, nothing missing, unknown, ambiguous."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rig.analysis.tracing.court.next_run import deciding
+from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
+from rig.analysis.tracing.rest.unknown import Home, home
+from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
+from rig.model.effect import Array
+from rig.model.effects import CATALOGUE
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """The verdict, and what follows from it."""
+
+    verdict: Verdict
+    home: Home | None
+    lives_in: tuple[str, ...]
+    next_run: NextRun | None
+    cannot: tuple[str, ...] = ()
+
+
+def decide(
+    p: Prepared,
+    s: Solution,
+    weighed: Sequence[str],
+    left: Mapping[str, float],
+    before: Mapping[Key, Array],
+    after: Mapping[Key, Array],
+    floors: Mapping[Key, float],
+    found: Found,
+) -> Ruling:
+    """From held-out ratios and the effects that may be named, with what is `left` over the floor where each acts."""
+    order = {r.term.name: i for i, r in enumerate(found.ranking)}
+    names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
+    total, single = p.court.worst(after)
+    first, _ = p.court.worst(before)
+    line, shadows = p.own.line, cast(s)
+    names = tuple(name for name in names if name not in SHADOWS)
+    if shadows:
+        return _cast(shadows[0], names, left)
+    loud = total > EXPLAINED or single > MISSING or line is not None
+    done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
+    if not loud:
+        return _settled(p, names, found, first, total)
+    where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+    if line is None and names and done > MOSTLY and total < 2 * EXPLAINED and max(left.values(), default=0.0) < AMISS:
+        ruling = _settled(p, names, found, first, total)
+        return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
+    if line is not None:
+        where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
+    best = where[0]
+    # a line in a sensor is in the columns made from it too: beside one nothing is named; where much is left of what an
+    # effect should explain its name would be a guess; and steps and phases that runs have to themselves take on
+    # whatever there is
+    shared = [name for name in names if name not in p.own.made]
+    names = tuple(name for name in shared if left.get(name, 0.0) <= MISSING and line is None)
+    sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
+    verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
+    return Ruling(verdict, best, _lives(where), None)
+
+
+def _cast(shadow: Shadow, names: Sequence[str], left: Mapping[str, float]) -> Ruling:
+    """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
+    stand = tuple(name for name in names if left.get(name, 0.0) <= MISSING)
+    verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
+    return Ruling(verdict, None, (shadow.coordinate,), None)
+
+
+def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
+    return (
+        f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
+        f"{best.coordinate.replace('_', ' ')} ({best.share:.0%} of it)"
+        + (f", order {best.order:.2f}" if best.order else "")
+        + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
+        + (f"; beside it stand {', '.join(names)}" if names else "")
+        + "."
+    )
+
+
+def _in_short(name: str) -> str:
+    return CATALOGUE[name].in_short if name in CATALOGUE else IN_SHORT[name]
+
+
+def _lives(where: Sequence[Home]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
+
+
+def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Ruling:
+    """Nothing loud remains."""
+    if not names:
+        sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
+        return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
+    words = " and ".join(f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names)
+    rivals, next_run = deciding(p, names, found)
+    sentence = (
+        f"The model lacks {words}: with it the worst held-out error of a channel falls from {before:.1f} "
+        f"to {after:.2f} times the floor."
+    )
+    if rivals:
+        sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
+    status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
+    return Ruling(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)

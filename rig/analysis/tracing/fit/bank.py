@@ -1,0 +1,110 @@
+"""Every effect of the library in every shape worth trying, as columns beside the rig's equations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Equations, Key, Term
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.workers import WORKERS
+from rig.model.effect import Effect, Reach
+
+Single = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Bank:
+    """`terms` and, by block, their bare columns side by side (n, c) in single precision with the place of each.
+
+    `places[channel][i]` is the slice of term i in that channel, or None.
+    """
+
+    terms: tuple[Term, ...]
+    columns: dict[Key, Single]
+    places: dict[str, tuple[slice | None, ...]]
+    spoilt: dict[Key, Single]  # what sensor noise does to the columns, in a few runs that stand for all (n, c)
+
+    def widths(self) -> dict[str, int]:
+        """Columns per term, by index of term, as a plain dict of channel to total width."""
+        return {c: max((p.stop for p in places if p is not None), default=0) for c, places in self.places.items()}
+
+
+def reach(runs: Sequence[Recording]) -> Reach:
+    """What the runs cover."""
+    pieces = [p for run in runs for p in run.pieces]
+    speeds = np.concatenate([np.abs(p.omega_m[p.way != 0]) for p in pieces]) if pieces else np.zeros(0)
+    torque = np.concatenate([np.abs(p.torque) for p in pieces])
+    turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
+    return Reach(
+        ratio=runs[0].ratio,
+        fastest=float(np.percentile(speeds, 99.9)) if speeds.size else 0.0,
+        slowest=float(np.percentile(speeds, 1)) if speeds.size else 0.0,
+        torque=float(np.nanmax(torque)) if np.isfinite(torque).any() else 0.0,
+        duration=max(float(p.t[-1]) for p in pieces) - min(float(p.t[0]) for p in pieces),
+        rate=min(run.rate for run in runs),
+        band=2.0 * min(run.smoother.sigma_hz for run in runs),  # the low-pass leaves a seventh of it there
+        load_turns=float(np.nanmax(turns)) / (2 * np.pi),
+        counts_m=runs[0].counts_m,
+        counts_l=runs[0].counts_l,
+        has=frozenset().union(*(run.knows for run in runs)),
+    )
+
+
+def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered: Reach) -> Bank:
+    """Columns of all shapes of those `effects` that the channels measured can show, for those runs."""
+    able = [effect for effect in effects if effect.needs <= covered.has]
+    terms = tuple(Term(effect, shape) for effect in able for shape in effect.shapes(covered))
+
+    def of(run: int) -> _Filled:
+        return _filled(eq, run, terms)
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        found = list(pool.map(of, runs))
+    places = {c: _places(c, [f.widths for f in found], len(terms)) for c in CHANNELS}
+    columns = {key: m for f in found for key, m in f.columns.items()}
+    return Bank(terms, columns, places, {key: m for f in found for key, m in f.spoilt.items()})
+
+
+@dataclass(frozen=True)
+class _Filled:
+    """One run's part of the bank; columns of each term by channel."""
+
+    columns: dict[Key, Single]
+    spoilt: dict[Key, Single]
+    widths: list[dict[str, int]]
+
+
+def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> _Filled:
+    """Term by term, so that no run's columns are held in double precision together."""
+    bare: list[dict[str, Single]] = []
+    spoilt: list[dict[str, Single]] = []
+    for term in terms:
+        made = eq.term(run, term)
+        bare.append({c: eq.bare((run, c), m).astype(np.float32) for c, m in made.items()})
+        if run in eq.noisy:
+            shaken = eq.spoilt_term(run, term, made)
+            spoilt.append({c: m.astype(np.float32) for c, m in shaken.items()})
+    widths = [{c: m.shape[1] for c, m in columns.items()} for columns in bare]
+    return _Filled(_joined(run, bare), _joined(run, spoilt), widths)
+
+
+def _joined(run: int, made: Sequence[dict[str, Single]]) -> dict[Key, Single]:
+    return {(run, c): np.hstack([m[c] for m in made if c in m]) for c in CHANNELS if any(c in m for m in made)}
+
+
+def _places(channel: str, found: Sequence[list[dict[str, int]]], terms: int) -> tuple[slice | None, ...]:
+    for widths in found:
+        if any(channel in w for w in widths):
+            edges, out = 0, []
+            for w in widths:
+                wide = w.get(channel, 0)
+                out.append(slice(edges, edges + wide) if wide else None)
+                edges += wide
+            return tuple(out)
+    return (None,) * terms

@@ -1,0 +1,170 @@
+"""The rig's equations of all runs as blocks of rows, each run's own offsets already taken out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import CHANNELS, Rows, footprint, is_measured, rows, shared_columns, unmasked
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.workers import WORKERS
+from rig.model.effect import MEASURED, Array, Effect, Known, Shape
+
+Key = tuple[int, str]  # run, channel
+FEWEST = 12  # rows of a run in a channel: a brisk lock test that sticks and slips is two dozen readings, and good ones
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What cannot be explained, by channel: RMS `sigma`, rows per independent row `kappa`, and how far a run's own
+    offset may lie from the others' (`local`, infinite where it is free)."""
+
+    sigma: dict[str, float]
+    kappa: dict[str, float]
+    local: dict[str, float]
+
+    def weight(self, channel: str) -> float:
+        """1/variance of one row when all are taken as independent."""
+        return 1.0 / (self.sigma[channel] ** 2 * self.kappa[channel])
+
+    def free(self, channel: str) -> Noise:
+        """With offsets of that channel that are every run's own."""
+        return replace(self, local={**self.local, channel: np.inf})
+
+    def pull(self, channel: str, n: int) -> float:
+        """How much of its mean a run of `n` rows loses: all when its offset is free."""
+        own = self.local[channel]
+        if not np.isfinite(own):
+            return 1.0
+        share = n / (n + 1.0 / (self.weight(channel) * own**2))
+        return float(1.0 - np.sqrt(1.0 - share))
+
+
+@dataclass(frozen=True)
+class Term:
+    """One effect in the model, with the shape it has there."""
+
+    effect: Effect
+    shape: Shape
+
+    @property
+    def name(self) -> str:
+        """Of the effect."""
+        return self.effect.name
+
+
+@dataclass(frozen=True)
+class Equations:
+    """`rows` of every run and channel as they are; `own` are columns (n, q) each run has to itself."""
+
+    runs: tuple[Recording, ...]
+    rows: dict[Key, Rows]
+    noise: Noise
+    own: dict[Key, Array] = field(default_factory=dict)
+    noisy: dict[int, Recording] = field(default_factory=dict)  # a few runs with their own sensor noise once more
+    stands_for: dict[Key, float] = field(default_factory=dict)  # rows all fitted runs have like it, over its own
+
+    def of(self, runs: Sequence[int]) -> list[Key]:
+        """Keys of those runs, in order."""
+        return [(i, c) for i in runs for c in CHANNELS if (i, c) in self.rows]
+
+    @cached_property
+    def local(self) -> dict[Key, Array]:
+        """Columns of a run's own without its offset, orthonormal (n, q)."""
+        found = {key: r.own for key, r in self.rows.items() if r.own.shape[1]}
+        both = {key: np.hstack([m[key] for m in (found, self.own) if key in m]) for key in {**found, **self.own}}
+        return {key: orthonormal(self.without_offset(key, x)) for key, x in both.items()}
+
+    def without_offset(self, key: Key, x: Array) -> Array:
+        """`x` (n,) or (n, k) with as much of its mean gone as the run's offset is its own; all of it in A of a locked
+        run, whose clamp turns the output a little."""
+        free = key[1] == "A" and self.runs[key[0]].locked
+        return np.asarray(x - (1.0 if free else self.noise.pull(key[1], x.shape[0])) * x.mean(0))
+
+    def bare(self, key: Key, x: Array) -> Array:
+        """`x` (n,) or (n, k) without what the run has to itself."""
+        x = self.without_offset(key, x)
+        local = self.local.get(key)
+        return x if local is None else np.asarray(x - local @ (local.T @ x))
+
+    def kept(self, run: int) -> dict[str, Rows]:
+        """Rows of a run by channel."""
+        return {c: r for c in CHANNELS if (r := self.rows.get((run, c))) is not None}
+
+    def term(self, run: int, term: Term) -> dict[str, Array]:
+        """Columns of an effect in the channels of a run (rows, k), masked, not yet bare."""
+        return columns(self.runs[run], term, self.kept(run))
+
+    def spoilt(self, run: int) -> dict[str, tuple[Array, Array]]:
+        """What sensor noise does to the response (n,) and to the baseline's columns (n, b) of one run, bare."""
+        noisy, out = self.noisy[run], {}
+        for c, r in self.kept(run).items():
+            y, z, at = unmasked(noisy, c)
+            shared = z[:, shared_columns(noisy, c, at)]
+            out[c] = self.bare((run, c), y[r.keep] - r.y), self.bare((run, c), shared[r.keep] - r.z)
+        return out
+
+    def spoilt_term(self, run: int, term: Term, clean: dict[str, Array]) -> dict[str, Array]:
+        """What the same noise does to the columns of a term, whose `clean` ones are given, bare."""
+        noisy = columns(self.noisy[run], term, self.kept(run))
+        return {c: self.bare((run, c), noisy[c] - clean[c]) for c in clean}
+
+    def knowing(self, known: Known) -> Equations:
+        """With what is known of the gear by now."""
+        noisy = {i: run.knowing(known) for i, run in self.noisy.items()}
+        return replace(self, runs=tuple(run.knowing(known) for run in self.runs), noisy=noisy)
+
+    def leaning_on_it(self) -> Equations:
+        """With the baseline's columns made again in runs that miss a sensor, whose part is made with what is known."""
+        missing = [i for i, run in enumerate(self.runs) if not run.knows >= MEASURED]
+        made = {(i, c): rows(self.runs[i], c) for i, c in self.rows if i in missing}
+        return replace(self, rows={**self.rows, **made})
+
+
+def orthonormal(x: Array) -> Array:
+    """An orthonormal basis (n, q) of the columns of `x`."""
+    q, r = np.linalg.qr(x)
+    return np.asarray(q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()])
+
+
+def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:
+    """Columns of `term` in each channel of `kept`, pieces joined, rows as in `kept`."""
+    made = [footprint(term.effect.columns(piece, term.shape), piece, run.smoother, run.knows) for piece in run.pieces]
+    joined = {c: np.concatenate([m[c] for m in made])[r.keep] for c, r in kept.items() if c in made[0]}
+    # a column of something that was not measured explains nothing
+    return {c: z if np.isfinite(z).all() else np.zeros_like(z) for c, z in joined.items()}
+
+
+def equations(runs: Sequence[Recording], noise: Noise) -> Equations:
+    """Rows of all runs and the channels they measured."""
+
+    def of(i: int) -> dict[Key, Rows]:
+        made = {(i, c): rows(runs[i], c) for c in CHANNELS if is_measured(runs[i], c)}
+        return {key: r for key, r in made.items() if r.y.size >= FEWEST}
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        found = list(pool.map(of, range(len(runs))))
+    return Equations(tuple(runs), {key: r for part in found for key, r in part.items()}, noise)
+
+
+def spoiling(eq: Equations, fitted: Sequence[int]) -> Equations:
+    """With a second helping of sensor noise for a few of the fitted runs, which stand for all of them.
+
+    Of each procedure the run that turns fastest and the one that turns slowest.
+    """
+    chosen: dict[int, list[int]] = {}
+    for procedure in sorted({eq.runs[i].procedure for i in fitted}):
+        mine = sorted((i for i in fitted if eq.runs[i].procedure == procedure), key=lambda i: eq.runs[i].turning)
+        chosen |= dict.fromkeys((mine[0], mine[-1]), mine)
+    stands_for: dict[Key, float] = {}
+    for c in CHANNELS:
+        for i, mine in chosen.items():
+            if (i, c) in eq.rows:
+                speakers = sum(1 for j in set(mine) & set(chosen) if (j, c) in eq.rows)
+                like = sum(eq.rows[j, c].y.size for j in mine if (j, c) in eq.rows)
+                stands_for[i, c] = like / (speakers * eq.rows[i, c].y.size)
+    return replace(eq, noisy={i: eq.runs[i].noisier(i) for i in chosen}, stands_for=stands_for)

@@ -1,0 +1,242 @@
+"""Baseline and effects fitted together: weighted least squares over runs, intervals from the scatter between pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.fit.channels import BASELINE, INDEX
+from rig.analysis.tracing.fit.equations import Equations, Key, Term
+from rig.analysis.tracing.thresholds import LAG, LATEST, MESH, SECOND
+from rig.analysis.tracing.workers import WORKERS
+from rig.model.effect import Array
+
+STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle
+BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
+PINNED = 1e6  # times what the data know of it
+PIECES = 4  # of a run and channel: the clusters of the sandwich, each many correlation times long
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some of the model's columns in one block, bare, (n, k), and their places among all coefficients (k,).
+
+    `spoilt` is what sensor noise does to them (n, k), in the blocks that stand for all; else None.
+    """
+
+    z: Array
+    at: npt.NDArray[np.int64]
+    spoilt: Array | None
+
+
+@dataclass(frozen=True)
+class Design:
+    """Columns of every block: the baseline's part first, then one part a term that acts there. Parts are shared between
+    designs, never changed. `noise` is what sensor noise does to the responses."""
+
+    eq: Equations
+    terms: tuple[Term, ...]
+    widths: tuple[int, ...]
+    y: dict[Key, Array]
+    noise: dict[Key, Array]
+    parts: dict[Key, tuple[Part, ...]]
+    gram: Array  # normal matrix (p, p) and right side (p,), what sensor noise adds taken off
+    right: Array
+
+    @property
+    def size(self) -> int:
+        """Coefficients in all."""
+        return len(BASELINE) + sum(self.widths)
+
+    def place(self, term: int) -> slice:
+        """Where the coefficients of a term are."""
+        start = len(BASELINE) + sum(self.widths[:term])
+        return slice(start, start + self.widths[term])
+
+    def residual(self, key: Key, x: Array) -> Array:
+        """What coefficients `x` (p,) leave in a block, (n,)."""
+        e = self.y[key]
+        for part in self.parts[key]:
+            e = e - part.z @ x[part.at]
+        return e
+
+    def noise_left(self, key: Key, x: Array) -> Array:
+        """What sensor noise does to that residual, (n,)."""
+        e = self.noise[key]
+        for part in self.parts[key]:
+            if part.spoilt is not None:
+                e = e - part.spoilt @ x[part.at]
+        return e
+
+    def whole(self, key: Key) -> tuple[Array, npt.NDArray[np.int64]]:
+        """All columns of a block side by side, and their places."""
+        parts = self.parts[key]
+        return np.hstack([part.z for part in parts]), np.concatenate([part.at for part in parts])
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Coefficients (p,), their normal matrix, and the design they came from."""
+
+    x: Array
+    gram: Array
+    right: Array
+    design: Design
+    keys: tuple[Key, ...]
+
+    def value(self, name: str) -> float:
+        """A baseline coefficient."""
+        return float(self.x[INDEX[name]])
+
+    @property
+    def gain(self) -> float:
+        """How much of the weighted sum of squares of the responses the fit explains, less what its prior takes."""
+        gram = self.design.gram + np.diag(prior(self.design.size))
+        return float(2 * self.design.right @ self.x - self.x @ gram @ self.x)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All baseline coefficients by name."""
+        return dict(zip(BASELINE, map(float, self.x), strict=False))
+
+    def residual(self, key: Key) -> Array:
+        """What is left in a block, bare, (n,)."""
+        return self.design.residual(key, self.x)
+
+
+def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
+    """Columns of the baseline and of `terms` for those runs."""
+    keys = eq.of(runs)
+    spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
+    parts: dict[Key, tuple[Part, ...]] = {
+        key: (Part(eq.bare(key, eq.rows[key].z), np.array(eq.rows[key].at), spoilt[key][1] if key in spoilt else None),)
+        for key in keys
+    }
+    y = {key: eq.bare(key, eq.rows[key].y) for key in keys}
+    out = Design(eq, (), (), y, {key: n for key, (n, _) in spoilt.items()}, parts, np.zeros((0, 0)), np.zeros(0))
+    gram, right = normal(out, {key: part[0] for key, part in parts.items()})
+    out = replace(out, gram=gram, right=right)
+    for term in terms:
+        out = extended(out, term, runs)
+    return out
+
+
+def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
+    """The design with one more term."""
+
+    def of(run: int) -> dict[Key, tuple[Array, Array | None]]:
+        made = d.eq.term(run, term)
+        spoilt = d.eq.spoilt_term(run, term, made) if run in d.eq.noisy else {}
+        return {(run, c): (d.eq.bare((run, c), columns), spoilt.get(c)) for c, columns in made.items()}
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        made = {key: c for part in pool.map(of, runs) for key, c in part.items() if key in d.y}
+    width = next(iter(made.values()))[0].shape[1] if made else 0
+    at = np.arange(d.size, d.size + width)
+    new = {key: Part(z, at, spoilt) for key, (z, spoilt) in made.items()}
+    parts = {key: (*old, new[key]) if key in new else old for key, old in d.parts.items()}
+    out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), parts=parts)
+    part, right = normal(out, new)
+    part, right = part[:, at], right[at]
+    gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, part[d.size :]]])
+    return replace(out, gram=gram, right=np.concatenate([d.right, right]))
+
+
+def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
+    """Products of all columns with the new ones (p, p), and of the new ones with y (p,), sensor noise taken off.
+
+    Noise in columns makes inertias come out low when it is left in. What it adds is found by adding each run's noise
+    once more: products of the differences that makes      [fuller1987]
+    """
+    gram, right = np.zeros((d.size, d.size)), np.zeros(d.size)
+    for key, mine in new.items():
+        w = d.eq.noise.weight(key[1])
+        right[mine.at] += w * (mine.z.T @ d.y[key])
+        for part in d.parts[key]:
+            gram[np.ix_(part.at, mine.at)] += w * (part.z.T @ mine.z)
+        if mine.spoilt is None:
+            continue
+        w *= d.eq.stands_for[key]
+        right[mine.at] -= w * (mine.spoilt.T @ d.noise[key])
+        for part in d.parts[key]:
+            if part.spoilt is not None:
+                gram[np.ix_(part.at, mine.at)] -= w * (part.spoilt.T @ mine.spoilt)
+    return gram, right
+
+
+def prior(size: int, stiffness: float = STIFFNESS) -> Array:
+    """Information (size,) known beforehand: the three columns that may only be small."""
+    out = np.zeros(size)
+    out[INDEX["mesh"]] = (stiffness / MESH) ** 2
+    out[INDEX["damping_2"]] = (stiffness / SECOND) ** 2
+    out[INDEX["lag"]] = 1 / LAG**2
+    return out
+
+
+def without(s: Solution, terms: Sequence[int]) -> Solution:
+    """The fit when those terms are not there: their coefficients are zero, the others find their best."""
+    gone = np.concatenate([np.arange(s.design.size)[s.design.place(i)] for i in terms]) if terms else np.zeros(0, int)
+    stay = np.setdiff1d(np.arange(s.design.size), gone)
+    gram = s.design.gram + np.diag(prior(s.design.size))
+    x = np.zeros(s.design.size)
+    x[stay], _, _ = bounded(gram[np.ix_(stay, stay)], s.design.right[stay])
+    return Solution(x, s.gram, s.right, s.design, s.keys)
+
+
+def solve(gram: Array, right: Array) -> Array:
+    """Least squares from normal equations, columns nobody measured left at zero."""
+    scale = 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    scale[np.diag(gram) <= 0] = 0.0
+    scaled = gram * scale * scale[:, None]
+    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    return np.asarray(scale * np.linalg.solve(scaled, right * scale))
+
+
+def fit(d: Design) -> Solution:
+    """Fit all columns of the design to its blocks."""
+    x, gram, right = bounded(d.gram + np.diag(prior(d.size)), d.right)
+    return Solution(x, gram, right, d, tuple(d.y))
+
+
+def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
+    """Least squares whose baseline keeps to BOUNDS: coefficients, and normal equations that pin those at a bound.
+
+    Unbound, a drag of the mesh ten times any gear's would take the place of an encoder read late.
+    """
+    x = solve(gram, right)
+    for name, (low, high) in BOUNDS.items():
+        i = INDEX[name]
+        at = float(np.clip(x[i], low, high))
+        if at != x[i]:
+            pin = PINNED * max(gram[i, i], 1e-300)
+            gram, right = gram.copy(), right.copy()
+            gram[i, i] += pin
+            right[i] += pin * at
+            x = solve(gram, right)
+    return x, gram, right
+
+
+def covariance(s: Solution) -> Array:
+    """Cluster-robust covariance (p, p): every run and channel in quarters      [liang1986]"""
+    d = s.design
+    meat, clusters = np.zeros_like(s.gram), 0
+    for key in s.keys:
+        (z, at), e = d.whole(key), s.residual(key)
+        for part in np.array_split(np.arange(e.size), PIECES):
+            u = d.eq.noise.weight(key[1]) * (z[part].T @ e[part])
+            meat[np.ix_(at, at)] += np.outer(u, u)
+            clusters += 1
+    bread = inverse(s.gram)
+    return np.asarray(bread @ meat @ bread * clusters / max(1, clusters - d.size))
+
+
+def inverse(gram: Array) -> Array:
+    """Inverse of a normal matrix, zero where nothing was measured."""
+    scale = np.where(np.diag(gram) > 0, 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300)), 0.0)
+    scaled = gram * scale * scale[:, None]
+    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    return np.asarray(np.linalg.inv(scaled) * scale * scale[:, None])

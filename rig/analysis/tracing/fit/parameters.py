@@ -1,0 +1,108 @@
+"""Coefficients in the words of the field, with intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rig.analysis.angle import ARCSEC
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of
+from rig.analysis.tracing.fit.model import Solution, covariance, extended, fit
+from rig.analysis.tracing.fit.refine import nudged
+from rig.model.effect import Array, Fit, Parameter, parameter
+
+PLAIN = {
+    "J_m": "kg·m²",
+    "B_m": "N·m·s/rad",
+    "tau_c": "N·m",
+    "J_l": "kg·m²",
+    "B_l": "N·m·s/rad",
+    "tau_cl": "N·m",
+    "lag": "s",
+}
+
+
+def baseline(s: Solution) -> tuple[Parameter, ...]:
+    """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured."""
+    c, out = covariance(s), []
+    seen = np.diag(s.gram) > 1e-12
+    stiff = 1 / s.value("compliance") if s.value("compliance") > 0 else np.nan
+    if seen[INDEX["compliance"]] and np.isfinite(stiff):
+        along = _unit(c, "compliance") * -(stiff**2)
+        out.append(_of("K", stiff, along, c, "N·m/rad"))
+        damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
+        both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
+        both += _unit(c, "compliance") * (2 * s.value("damping") * stiff - lag) * stiff**2
+        out.append(_of("B_sp", damping, both, c, "N·m·s/rad"))
+    out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    if seen[INDEX["a1"]]:
+        out += [_order(s, c, n) for n in range(1, ORDERS + 1)]
+    return tuple(out)
+
+
+def _order(s: Solution, c: Array, n: int) -> Parameter:
+    a, b = s.value(f"a{n}"), s.value(f"b{n}")
+    size = max(float(np.hypot(a, b)), 1e-15)
+    along = (_unit(c, f"a{n}") * a + _unit(c, f"b{n}") * b) / size * ARCSEC
+    return _of(f"theta_p_order_{n}", size * ARCSEC, along, c, "arcsec")
+
+
+def _unit(c: Array, name: str) -> Array:
+    out = np.zeros(c.shape[0])
+    out[INDEX[name]] = 1.0
+    return out
+
+
+def _of(name: str, value: float, along: Array, c: Array, unit: str) -> Parameter:
+    return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
+
+
+def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
+    """Parameters of every effect in the model; the shape's uncertainty is in all intervals."""
+    d, slopes = s.design, []
+    for i, term in enumerate(s.design.terms):
+        for j, loose in enumerate(term.effect.loose):
+            if loose:
+                slopes.append((i, j))
+                d = extended(d, nudged(term, j, s.x[s.design.place(i)]), runs)
+    wide = fit(d)
+    # about the solution itself: the added columns only widen the intervals
+    c = covariance(replace(wide, x=np.concatenate([s.x, np.zeros(len(slopes))])))
+    out: dict[str, tuple[Parameter, ...]] = {}
+    for i, term in enumerate(s.design.terms):
+        out[term.name] = joined(out.get(term.name, ()), term.effect.parameters(_fit(s, c, i, slopes)), term.effect.adds)
+    return out
+
+
+def joined(
+    before: Sequence[Parameter], more: Sequence[Parameter], adds: frozenset[str] = frozenset()
+) -> tuple[Parameter, ...]:
+    """Figures of two terms of one effect: what `adds` is summed, half widths in full, for they are not independent;
+    of the others that have the same name the second is numbered."""
+    out = {p.name: p for p in before}
+    for p in more:
+        known = out.get(p.name)
+        if known is None:
+            out[p.name] = p
+        elif p.name in adds:
+            half = (known.ci95[1] - known.ci95[0] + p.ci95[1] - p.ci95[0]) / 2
+            out[p.name] = parameter(p.name, known.value + p.value, half, p.unit)
+        else:
+            name = f"{p.name}_{sum(n.startswith(p.name) for n in out) + 1}"
+            out[name] = replace(p, name=name)
+    return tuple(out.values())
+
+
+def _fit(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]]) -> Fit:
+    """The part of coefficients and covariance that belongs to one term."""
+    term, place = s.design.terms[i], s.design.place(i)
+    k, size = place.stop - place.start, place.stop - place.start + len(term.shape)
+    spread = np.zeros((size, c.shape[0]))
+    spread[np.arange(k), np.arange(place.start, place.stop)] = 1.0
+    for at, (owner, j) in enumerate(slopes):
+        if owner == i:  # the column is the change with the logarithm
+            spread[k + j, s.design.size + at] = term.shape[j]
+    first = s.design.eq.runs[0]
+    return Fit(s.x[place], term.shape, spread @ c @ spread.T, first.pieces[0].gear, first.ratio)

@@ -1,0 +1,247 @@
+"""Which effects together explain what the baseline leaves: forward, with drops, on the fitted runs alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.bank import Bank
+from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS, known_of
+from rig.analysis.tracing.fit.equations import Key, Term
+from rig.analysis.tracing.fit.model import Design, Solution, extended, fit, without
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
+from rig.analysis.tracing.thresholds import EVIDENCE, MOST, RELATIVE, SMALLEST, STILL, STILL_RUN
+from rig.model.effect import Array, Fit, Known, Reach
+
+ROUNDS = 4
+SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A term of the bank with its evidence in nats."""
+
+    term: Term
+    evidence: float
+    drop: float
+    size: float  # RMS over floor where it matters most
+
+
+@dataclass(frozen=True)
+class Found:
+    """Terms in the model and the fit; `ranking` is the first round's, best shape of each effect."""
+
+    solution: Solution
+    ranking: tuple[Scored, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Effects in the model, once each, in order of entry."""
+        return tuple(dict.fromkeys(term.name for term in self.solution.design.terms))
+
+
+@dataclass(frozen=True)
+class Search:
+    """What stays the same during a search."""
+
+    bank: Bank
+    own: Own
+    runs: tuple[int, ...]
+    keys: tuple[Key, ...]
+    covered: Reach
+    refused: frozenset[str]
+
+    def ranked(self, s: Solution, u: dict[str, Array]) -> list[Scored]:
+        """All terms by evidence, best first; refused ones and those with an impossible sign are left out."""
+        n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in self.keys)
+        tried: dict[str, int] = {}
+        for term in self.bank.terms:
+            tried[term.name] = tried.get(term.name, 0) + 1
+        out = []
+        for found in drops(self.bank, self.own, u, s):
+            term = self.bank.terms[found.term]
+            k = found.coefficients.size
+            evidence = found.drop / 2 - k / 2 * np.log(n) - np.log(tried[term.name])
+            out.append((evidence, found, term))
+        out.sort(key=lambda item: -item[0])
+        out = [item for item in out if item[2].name not in self.refused]
+        likely = [(e, f, term) for e, f, term in out if e > 0 and possible(s, term, f.coefficients)]
+        return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in likely[:60]]
+
+    def size(self, d: Design, found: Drop) -> float:
+        """RMS of the term over the floor, in the block where it is largest."""
+        most = 0.0
+        for key in self.keys:
+            place = self.bank.places[key[1]][found.term]
+            if place is not None and key in self.bank.columns:
+                f = self.bank.columns[key][:, place] @ found.coefficients
+                most = max(most, float(np.sqrt(np.mean(f**2))) / d.eq.noise.sigma[key[1]])
+        return most
+
+
+def search(
+    d: Design,
+    bank: Bank,
+    runs: Sequence[int],
+    keys: Sequence[Key],
+    covered: Reach,
+    floors: Mapping[Key, float],
+    ranking: tuple[Scored, ...] = (),
+    refused: frozenset[str] = frozenset(),
+) -> Found:
+    """Add the best term again and again, then drop what the later ones made needless. `ranking` is that of the first
+    round when this is no first search; effects `refused` are not tried."""
+    s = fit(d)
+    fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered, refused)
+    u = cross(bank, d, keys, 0)
+    barren: set[Term] = set()  # found needless as soon as the others were fitted again
+    for _ in range(MOST - len(d.terms)):
+        if still(s, floors):
+            break
+        ranked = fixed.ranked(s, u)
+        ranking = ranking or _best_of_each(ranked)
+        least = max(EVIDENCE, RELATIVE * (ranking[0].evidence if ranking else 0.0))
+        worth = (r for r in ranked if r.evidence > least and r.size > SMALLEST and r.term not in barren)
+        chosen = next((r for r in worth if _new(r.term, s)), None)
+        if chosen is None:
+            break
+        s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
+        d, first, entered = s.design, len(BASELINE), s.design.terms[-1]
+        new = cross(bank, d, keys, first)
+        u = {c: m[:first] for c, m in u.items()}
+        u = {c: np.vstack([u[c], new[c]]) for c in u}
+        d, s, u = _pruned(s, u)
+        if entered not in d.terms:
+            barren.add(chosen.term)
+    return Found(s, ranking)
+
+
+def possible(s: Solution, term: Term, coefficients: Array) -> bool:
+    """Whether signs and sizes are such an effect's."""
+    return term.effect.plausible(as_fit(s, term, coefficients))
+
+
+def as_fit(s: Solution, term: Term, coefficients: Array) -> Fit:
+    """The coefficients of one term, without their covariance."""
+    size = coefficients.size + len(term.shape)
+    first = s.design.eq.runs[0]
+    return Fit(coefficients, term.shape, np.zeros((size, size)), first.pieces[0].gear, first.ratio)
+
+
+def still(s: Solution, floors: Mapping[Key, float]) -> bool:
+    """Whether nothing is left in any channel, nor in any single run."""
+    square = {key: float(np.mean(s.residual(key) ** 2)) / floors[key] ** 2 for key in s.keys}
+    rows = {key: s.design.y[key].size for key in s.keys}
+    for channel in CHANNELS:
+        mine = [key for key in s.keys if key[1] == channel]
+        if mine and np.average([square[k] for k in mine], weights=[rows[k] for k in mine]) > STILL**2:
+            return False
+    return max(square.values()) < STILL_RUN**2
+
+
+def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
+    for _ in range(ROUNDS):
+        d, before = s.design, s.design.eq.runs[runs[0]].pieces[0].gear
+        now = known_of(s.values, before)
+        if _change(before, now) < SETTLED:
+            break
+        terms = d.terms
+        d = reduced(d, range(len(terms)))
+        d = replace(d, eq=d.eq.knowing(now))
+        for term in terms[:-1]:
+            d = extended(d, term, runs)
+        s = refine(d, terms[-1], runs, covered)[1]
+    return s
+
+
+def polished(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Every term's shape found again beside the terms that are left, each in its turn."""
+    for term in s.design.terms:
+        i = s.design.terms.index(term)
+        s = refine(reduced(s.design, [i]), term, runs, covered)[1]
+    return settled(s, runs, covered) if s.design.terms else s
+
+
+def relawed(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """Every effect that remembers, tried in its other laws too: which law it is shows only beside free offsets."""
+    for term in [t for t in s.design.terms if t.effect.remembers]:
+        bare = reduced(s.design, [i for i, t in enumerate(s.design.terms) if t.name == term.name])
+        fixed = {_chosen(t) for t in s.design.terms if t.name == term.name}
+        others = [Term(term.effect, shape) for shape in term.effect.shapes(covered)]
+        others = [other for other in others if _chosen(other) not in fixed]
+        if others:
+            best = max(others, key=lambda other: fit(extended(bare, other, runs)).gain)
+            other = refine(bare, best, runs, covered)[1]
+            s = other if other.gain > s.gain else s
+    return s
+
+
+def _chosen(term: Term) -> tuple[float, ...]:
+    """The part of the shape that a refit does not move."""
+    return tuple(v for v, loose in zip(term.shape, term.effect.loose, strict=True) if not loose)
+
+
+def _change(before: Known, now: Known) -> float:
+    """Relative, of what effects lean on."""
+    a, b = before.kinematic_error, now.kinematic_error
+    old = np.array([*a.a, *a.b])
+    series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
+    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1))
+
+
+def _new(term: Term, s: Solution) -> bool:
+    return all(t.name != term.name or not _same(t, term) for t in s.design.terms)
+
+
+def _same(a: Term, b: Term) -> bool:
+    """The same effect again in a shape that the refit would have found."""
+    fixed = [i for i, loose in enumerate(a.effect.loose) if not loose]
+    return a.effect.expands(a.shape) or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
+
+
+def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
+    best: dict[str, Scored] = {}
+    for r in ranked:
+        best.setdefault(r.term.name, r)
+    return tuple(best.values())
+
+
+def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[str, Array]]:
+    """Without terms that explain nothing any more beside the newer ones."""
+    d = s.design
+    while len(d.terms) > 1:
+        n = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
+        loss = [(s.gain - without(s, [i]).gain) / 2 - d.widths[i] / 2 * np.log(n) for i in range(len(d.terms))]
+        worst = int(np.argmin(loss))
+        if loss[worst] > EVIDENCE:
+            break
+        stay = np.setdiff1d(np.arange(d.size), np.arange(d.size)[d.place(worst)])
+        d = reduced(d, [worst])
+        s = fit(d)
+        u = {c: m[stay] for c, m in u.items()}
+    return d, s, u
+
+
+def reduced(d: Design, gone: Sequence[int]) -> Design:
+    """The design without some of its terms."""
+    lost = np.concatenate([np.arange(d.size)[d.place(i)] for i in gone]) if gone else np.zeros(0, int)
+    stay = np.setdiff1d(np.arange(d.size), lost)
+    new = np.full(d.size, -1)
+    new[stay] = np.arange(stay.size)
+    parts = {
+        key: tuple(replace(part, at=new[part.at]) for part in parts if new[part.at[0]] >= 0)
+        for key, parts in d.parts.items()
+    }
+    left = [i for i in range(len(d.terms)) if i not in set(gone)]
+    return replace(
+        d,
+        terms=tuple(d.terms[i] for i in left),
+        widths=tuple(d.widths[i] for i in left),
+        parts=parts,
+        gram=d.gram[np.ix_(stay, stay)],
+        right=d.right[stay],
+    )

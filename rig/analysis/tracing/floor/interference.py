@@ -1,0 +1,138 @@
+"""A line that stands beside the motion, steady or wandering: it makes repeats differ, so the floor hides it.
+
+It is sought window by window, for a wandering line is narrow only for a few seconds, and told from orders of a shaft by
+its frequency, which does not follow the speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
+from rig.model.effect import Array
+
+LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
+WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside
+PADDED = 4  # finer than a window's own resolution
+FEWEST = 3  # windows of a run, each half over the next
+STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
+SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
+
+
+@dataclass(frozen=True)
+class Interference:
+    """Usual frequency, how far runs lie apart (highest over lowest), RMS over all of the residual, and the line itself
+    in every block it was read in, (n, 1)."""
+
+    channel: str
+    frequency_hz: float
+    apart: float
+    share: float
+    columns: dict[Key, Array]
+
+    def sentence(self) -> str:
+        """What it is and is not."""
+        wanders = f", from run to run {100 * (self.apart - 1):.0f} % apart" if self.apart > STEADY else ""
+        return (
+            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, {self.share:.0%} "
+            "of what the model leaves there, and no torque on the load makes it: a pick-up in a sensor is likely. It "
+            "makes repeats differ, so the floors were measured without it."
+        )
+
+
+@dataclass(frozen=True)
+class _Track:
+    """One run: frequency and height over its surroundings, window by window."""
+
+    hz: Array
+    height: Array
+
+
+def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array]) -> Interference | None:
+    """Sought in the fitted residuals `e` alone, then read in `unseen` too. A line in one sensor shows in every equation
+    that uses it: the channel where it is loudest is the one told, all are rid of it.
+    """
+    found = [line for c in CHANNELS if (line := _in_channel(eq, e, unseen, c)) is not None]
+    if not found:
+        return None
+    loudest = max(found, key=lambda line: line.share)
+    return replace(loudest, columns={k: x for line in found for k, x in line.columns.items()})
+
+
+def _in_channel(
+    eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str
+) -> Interference | None:
+    keys = [k for k in e if k[1] == channel and not eq.runs[k[0]].locked]
+    tracks = {k: t for k in keys if (t := _track(*_even(eq, k, e[k]))) is not None}
+    hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS}
+    if len(hits) < 3 or len(hits) < LINE_RUNS * len(tracks):
+        return None
+    hz = np.array([np.median(t.hz[t.height > LINE]) for t in hits.values()])
+    speed = np.array([eq.runs[i].turning for i, _ in hits])
+    apart = float(hz.max() / hz.min())
+    if apart > LINE_WIDE or speed.max() < LINE_FREE * apart * speed.min():
+        return None
+    usual = float(np.median(hz))
+    lines = {k: _line(eq, k, r, usual) for k, r in {**e, **unseen}.items() if k[1] == channel}
+    loud = [(float(lines[k] @ lines[k]), float(e[k] @ e[k])) for k in keys]
+    share = sum(a for a, _ in loud) / max(sum(b for _, b in loud), 1e-300)
+    if share < LOUD_LINE:
+        return None
+    return Interference(channel, usual, apart, share, {k: x[:, None] for k, x in lines.items()})
+
+
+def _even(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
+    """The residual on an even grid (zero where a row is left out), its step [s], and the place of each row."""
+    t = clock(eq, key)
+    dt = float(np.median(np.diff(t)))
+    place = np.round((t - t[0]) / dt).astype(int)
+    even = np.zeros(int(place[-1]) + 1)
+    even[place] = e
+    return even, dt, place
+
+
+def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | None:
+    n = min(int(WINDOW / dt), 2 * even.size // (FEWEST + 1))
+    if n * dt < SHORTEST:
+        return None
+    start = np.arange(0, even.size - n + 1, n // 2)
+    hz = np.fft.rfftfreq(PADDED * n, dt)
+    band = hz > LOWEST
+    power = _power(even, start, n)[:, band]
+    top = np.argmax(power, axis=1)
+    usual = np.maximum(np.median(power, axis=1), 1e-300)
+    return _Track(hz[band][top], power[np.arange(start.size), top] / usual)
+
+
+def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:
+    """Of every window, (windows, bins)."""
+    stretches = even[start[:, None] + np.arange(n)] * np.hanning(n)
+    return np.asarray(np.abs(np.fft.rfft(stretches, PADDED * n, axis=1)) ** 2)
+
+
+def _line(eq: Equations, key: Key, e: Array, about: float) -> Array:
+    """The line in one run (n,): in every window the sinusoid that fits best near `about` Hz, windows faded into one
+    another."""
+    even, dt, place = _even(eq, key, e)
+    n = min(int(WINDOW / dt), even.size)
+    step = max(n // 2, 1)
+    start = np.unique(np.append(np.arange(0, even.size - n + 1, step), even.size - n))
+    hz = np.fft.rfftfreq(PADDED * n, dt)
+    near = np.abs(np.log(np.maximum(hz, 1e-9) / about)) < np.log(LINE_WIDE)
+    power = _power(even, start, n)
+    best = hz[near][np.argmax(power[:, near], axis=1)]
+    fade, out, weight = np.hanning(n + 2)[1:-1], np.zeros(even.size), np.full(even.size, 1e-12)
+    x = np.arange(n) * dt
+    for first, f in zip(start, best, strict=True):
+        z = np.stack([np.cos(2 * np.pi * f * x), np.sin(2 * np.pi * f * x)], 1)
+        c = np.linalg.lstsq(z * fade[:, None], even[first : first + n] * fade, rcond=None)[0]
+        out[first : first + n] += fade * (z @ c)
+        weight[first : first + n] += fade
+    return np.asarray((out / weight)[place])

@@ -1,0 +1,67 @@
+"""What every run shows in its own way: found in what a fit leaves of the fitted runs, given to all runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Solution, design
+from rig.analysis.tracing.floor.interference import Interference, find_interference
+from rig.analysis.tracing.floor.local import (
+    explained,
+    find_steps,
+    find_vibration,
+    joined,
+    lost_counts,
+    step_columns,
+    vibration_columns,
+)
+from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.runs.holdout import Split
+from rig.analysis.tracing.thresholds import OWN
+from rig.model.effect import Array, Parameter
+
+
+@dataclass(frozen=True)
+class Own:
+    """Columns (n, q) by effect and block, the effects' parameters, and a line beside the motion that is no effect of
+    the library."""
+
+    made: dict[str, dict[Key, Array]]
+    parameters: dict[str, tuple[Parameter, ...]]
+    line: Interference | None
+
+    def columns(self) -> dict[Key, Array]:
+        """Of all effects together, and of the line."""
+        return joined([*self.made.values(), *([self.line.columns] if self.line else [])])
+
+    def without(self, names: Sequence[str]) -> Own:
+        """The others."""
+        made = {name: columns for name, columns in self.made.items() if name not in names}
+        return Own(made, {name: self.parameters[name] for name in made}, self.line)
+
+
+def find(s: Solution, parts: Split) -> Own:
+    """In the residuals of `s`, a fit to the fitted runs without columns of their own."""
+    eq, e = s.design.eq, {key: s.residual(key) for key in s.keys}
+    made: dict[str, dict[Key, Array]] = {}
+    words: dict[str, tuple[Parameter, ...]] = {}
+    shaken = find_vibration(eq, e)
+    line = None
+    if shaken is not None and shaken.of_the_load(1 / s.value("compliance") if s.value("compliance") > 0 else np.inf):
+        made["external_vibration"] = vibration_columns(eq, shaken.frequency_hz)
+        words["external_vibration"] = shaken.parameters()
+    else:
+        held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
+        line = find_interference(eq, e, {key: held.residual(key, s.x) for key in held.y})
+    if lost_counts(eq, find_steps(eq, e), repeats(eq.runs, parts.fitted)):
+        held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
+        everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y})
+        columns = step_columns(eq, everywhere)
+        if explained(eq, e, columns) > OWN:
+            made["missed_counts"] = columns
+            words["missed_counts"] = everywhere.parameters()
+    return Own(made, words, line)

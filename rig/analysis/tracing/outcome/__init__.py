@@ -1,0 +1,1 @@
+"""What was found, as one value: errors before and after, free simulation, ripple, arrays for the page, trace.json."""

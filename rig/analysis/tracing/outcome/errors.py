@@ -1,0 +1,32 @@
+"""Errors on held-out runs in physical units, each beside its floor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from rig.analysis.angle import ARCSEC
+from rig.analysis.tracing.court.judge import Court
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.outcome.result import Before, Errors
+from rig.model.effect import Array
+
+UNITS = {"A": ARCSEC, "M": 1.0, "L": 1.0}
+
+
+def errors(eq: Equations, at: Court, e: Mapping[Key, Array]) -> Before:
+    """Per held-out run and pooled."""
+    runs = sorted({i for i, _ in e})
+    return Before({eq.runs[i].name: _of([i], at, e) for i in runs}, _of(runs, at, e))
+
+
+def _of(runs: Sequence[int], at: Court, e: Mapping[Key, Array]) -> Errors:
+    values: list[float | None] = []
+    floors: list[float | None] = []
+    for channel, unit in UNITS.items():
+        keys = [(i, channel) for i in runs if (i, channel) in e]
+        n = sum(e[k].size for k in keys)
+        values.append(float(np.sqrt(sum(e[k] @ e[k] for k in keys) / n)) * unit if n else None)
+        floors.append(float(np.sqrt(sum(at.floors[k] ** 2 * e[k].size for k in keys) / n)) * unit if n else None)
+    return Errors(*values, *floors)

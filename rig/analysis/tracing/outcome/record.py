@@ -1,0 +1,77 @@
+"""trace.json: the result for programs, schema hdrig.trace/1."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rig.analysis.tracing.outcome.result import Before, Trace
+from rig.model.effect import Parameter
+
+SCHEMA = "hdrig.trace/1"
+
+
+def document(trace: Trace) -> dict[str, Any]:
+    """The document as plain values; what is not finite is null."""
+    found = {
+        "schema": SCHEMA,
+        "campaign": trace.campaign,
+        "simulated": trace.simulated,
+        "runs": {"fitted": trace.fitted, "held_out": trace.held_out, "how": trace.held_out_how},
+        "noise_floor": {f.channel: {"rms": f.rms, "unit": f.unit, "how": f.how} for f in trace.floors},
+        "baseline": {
+            "parameters": _parameters(trace.baseline),
+            "after_refit": _parameters(trace.baseline_after),
+            "cannot_be_told_apart": trace.cannot_be_told_apart,
+        },
+        "residual": {
+            "unexplained": trace.unexplained,
+            "lives_in": trace.lives_in,
+            "over_floor_before": trace.ratios_before,
+            "over_floor_after": trace.ratios_after,
+            "ripple": [r.document() for r in trace.ripple],
+        },
+        "candidates": [asdict(candidate) for candidate in trace.candidates],
+        "verdict": asdict(trace.verdict),
+        "effects": {
+            f.effect: {"parameters": _parameters(f.parameters), "share_removed": f.share} for f in trace.effects
+        },
+        "before": _errors(trace.before),
+        "after": _errors(trace.after),
+        "next_run": asdict(trace.next_run) if trace.next_run else None,
+        "notes": trace.notes,
+        "cannot": trace.cannot,
+    }
+    return dict(_plain(found))
+
+
+def write_trace(path: Path, trace: Trace) -> Path:
+    """Write trace.json."""
+    path.write_text(json.dumps(document(trace), ensure_ascii=False, indent=1) + "\n")
+    return path
+
+
+def _parameters(found: Sequence[Parameter]) -> dict[str, Any]:
+    return {p.name: {"value": p.value, "ci95": p.ci95, "unit": p.unit} for p in found}
+
+
+def _errors(errors: Before) -> dict[str, Any]:
+    return {"per_run": {name: asdict(e) for name, e in errors.per_run.items()}, "pooled": asdict(errors.pooled)}
+
+
+def _plain(value: Any) -> Any:
+    """Numbers JSON can hold, whole digits that mean something."""
+    match value:
+        case dict():
+            return {str(k): _plain(v) for k, v in value.items()}
+        case list() | tuple():
+            return [_plain(v) for v in value]
+        case bool() | str() | int() | None:
+            return value
+        case _:
+            number = float(value)
+            return float(f"{number:.10g}") if math.isfinite(number) else None

@@ -1,0 +1,129 @@
+"""From the fit to what is said: verdict, floors, errors before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rig.analysis.tracing.court.judge import Worth, unseen
+from rig.analysis.tracing.court.shadows import cast
+from rig.analysis.tracing.court.suspects import candidates
+from rig.analysis.tracing.court.verdict import decide
+from rig.analysis.tracing.fit import parameters
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.outcome.curves import curves
+from rig.analysis.tracing.outcome.errors import errors
+from rig.analysis.tracing.outcome.free import curves_of, free, with_free
+from rig.analysis.tracing.outcome.pictures import pictures
+from rig.analysis.tracing.outcome.result import Floor, Found, Trace
+from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.rest.lives import lives_in
+from rig.analysis.tracing.rest.unknown import smooth_term
+from rig.analysis.tracing.runs.cannot import cannot, together
+from rig.model.effect import Array, Parameter
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
+
+
+def report(
+    p: Prepared,
+    found: Searched,
+    s: Solution,
+    held: Design,
+    worths: Sequence[Worth],
+    fitted: Mapping[str, tuple[Parameter, ...]],
+) -> Trace:
+    """All of it as one value; `fitted` are the parameters of the effects in `s`."""
+    empty = p.baseline
+    before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
+    floors = p.floors
+    shares = {w.name: w.share for w in worths} | own_shares(p, s)
+    left = {w.name: w.left for w in worths}
+    ruling = decide(p, s, tuple(shares), left, before, after, floors, found)
+    final = after
+    if ruling.home is not None:
+        rest = {key: s.residual(key) for key in s.keys}
+        final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+    shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
+    simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
+    words = p.own.parameters | dict(fitted)
+    return Trace(
+        campaign=p.campaign.name,
+        simulated=p.campaign.simulated,
+        fitted=tuple(p.eq.runs[i].name for i in p.split.fitted),
+        held_out=tuple(p.eq.runs[i].name for i in p.split.held_out),
+        held_out_how=p.split.how,
+        floors=tuple(
+            Floor(SENSORS[c][0], p.measured.noise.sigma[c], SENSORS[c][1], p.measured.how[c])
+            for c in CHANNELS
+            if c in p.measured.how
+        ),
+        baseline=parameters.baseline(empty),
+        baseline_after=parameters.baseline(s),
+        cannot_be_told_apart=together(p.campaign.runs),
+        unexplained=unexplained(p, before),
+        ratios_before=ratios(p, before),
+        ratios_after=ratios(p, final),
+        lives_in=ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ()),
+        candidates=candidates(p, found.ranking, before, ruling.verdict.effects, shadowed),
+        verdict=ruling.verdict,
+        effects=tuple(
+            Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
+        ),
+        before=with_free(errors(p.eq, p.court, before), simulated, 0),
+        after=with_free(errors(p.eq, p.court, final), simulated, 1),
+        next_run=ruling.next_run,
+        notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
+        ripple=ripple,
+        cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
+        curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
+    )
+
+
+def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
+    """What the baseline leaves in the fitted runs, with what each run has to itself."""
+    return {key: baseline.residual(key) for key in baseline.keys}
+
+
+def own_shares(p: Prepared, s: Solution) -> dict[str, float]:
+    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect."""
+    out = {}
+    after = p.court.residuals(s, unseen(s, p.court))
+    for name, mine in p.own.made.items():
+        others = replace(s.design.eq, noisy={}, own=p.own.without([name]).columns())
+        bare = p.court.residuals(s, design(others, s.design.terms, p.court.runs))
+        keys = [k for k in after if k in mine]
+        (before, n), (left, _) = p.court.excess(bare, keys), p.court.excess(after, keys)
+        out[name] = float((before - left) / max(before - n, 0.02 * n)) if keys else 0.0  # no held-out run has any
+    return out
+
+
+def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
+    """RMS over floor, by sensor, on held-out runs."""
+    out = {}
+    for c in CHANNELS:
+        keys = [k for k in e if k[1] == c]
+        if keys:
+            out[SENSORS[c][0]] = p.court.ratio(e, keys)
+    return out
+
+
+def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
+    """Share of the held-out variance the baseline leaves beyond the floor, by sensor."""
+    out = {}
+    for c in CHANNELS:
+        keys = [k for k in e if k[1] == c]
+        total = sum(float(np.var(p.eq.rows[k].y) * p.eq.rows[k].y.size) for k in keys)
+        left = sum(float(e[k] @ e[k]) - p.court.floors[k] ** 2 * e[k].size for k in keys)
+        if total > 0:
+            out[SENSORS[c][0]] = float(np.clip(left / total, 0.0, 1.0))
+    return out

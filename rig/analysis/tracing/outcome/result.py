@@ -1,0 +1,129 @@
+"""What a trace found, as one value: what trace.json says, and the arrays its page draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from rig.analysis.result import Array
+from rig.analysis.tracing.outcome.ripple import Ripple
+from rig.model.effect import Parameter
+
+
+class Status(StrEnum):
+    """The verdict's word."""
+
+    EXPLAINED = "explained"
+    NOTHING = "no_missing_effect"
+    UNKNOWN = "unknown_effect"
+    AMBIGUOUS = "ambiguous"
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The scatter between repeats of one channel: what no model can explain."""
+
+    channel: str  # theta_l, tau_l or tau_m
+    rms: float
+    unit: str
+    how: str
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect of the library, as judged."""
+
+    effect: str
+    evidence: float  # nats by which it beats having nothing more, after paying for its parameters
+    why: str
+    heldout_rms: dict[str, float] = field(default_factory=dict)  # by channel, with it in the model
+
+
+@dataclass(frozen=True)
+class Found:
+    """An effect that was named, with its parameters after the refit of everything together."""
+
+    effect: str
+    parameters: tuple[Parameter, ...]
+    share: float  # of the held-out excess over the floor it removes, in the channel it matters most in
+    shape: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Error of a model on one run (or on all held-out runs), and the floor beside it. None: not measured there."""
+
+    kinematic_error_rms_arcsec: float | None
+    tau_m_rms: float | None
+    tau_l_rms: float | None
+    floor_kinematic_error_arcsec: float | None = None
+    floor_tau_m: float | None = None
+    floor_tau_l: float | None = None
+    free_kinematic_error_rms_arcsec: float | None = None  # of a simulation led by the motor's motion alone
+
+
+@dataclass(frozen=True)
+class Before:
+    """Errors on held-out runs alone."""
+
+    per_run: dict[str, Errors]
+    pooled: Errors
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is missing in the model."""
+
+    status: Status
+    effects: tuple[str, ...]
+    rivals: tuple[str, ...]
+    coordinate: str | None
+    order: float | None  # cycles per turn of that coordinate
+    frequency_hz: float | None
+    sentence: str
+
+
+@dataclass(frozen=True)
+class NextRun:
+    """The cheapest run that would decide, or that would say most of what is unknown."""
+
+    procedure: str
+    conditions: dict[str, float | bool | str]
+    because: str
+
+
+@dataclass(frozen=True)
+class Trace:
+    """All of it. `curves` by dotted name, arrays of equal length within a group; units in the name's last part:
+
+    spectrum.motor_order, spectrum.before_arcsec, spectrum.after_arcsec      held-out kinematic error against order
+    angle.theta_m_deg, angle.before_arcsec, angle.after_arcsec      mean residual; load_angle.* alike
+    direction.*, load.*, speed.*, time.*      mean residual of each run in each channel (`_arcsec`, `_Nm`)
+    run.<name>.theta_m_turns, .measured_arcsec, .before_arcsec, .after_arcsec
+        kinematic error, measured and modelled
+    loop.<name>.windup_arcsec, .torque_Nm, .before_Nm, .after_Nm      torque against wind-up of held-out lock runs
+    """
+
+    campaign: str
+    simulated: bool
+    fitted: tuple[str, ...]
+    held_out: tuple[str, ...]
+    held_out_how: str
+    floors: tuple[Floor, ...]
+    baseline: tuple[Parameter, ...]
+    baseline_after: tuple[Parameter, ...]
+    cannot_be_told_apart: tuple[tuple[str, ...], ...]
+    unexplained: dict[str, float]  # share of the held-out variance the baseline leaves, by channel
+    ratios_before: dict[str, float]  # held-out RMS over floor, by channel
+    ratios_after: dict[str, float]
+    lives_in: tuple[str, ...]
+    candidates: tuple[Candidate, ...]
+    verdict: Verdict
+    effects: tuple[Found, ...]
+    before: Before
+    after: Before
+    next_run: NextRun | None
+    notes: tuple[str, ...]  # runs left out, channels missing, floors that are not to be trusted: one sentence each
+    cannot: tuple[str, ...]  # what this campaign cannot tell, one sentence each
+    curves: dict[str, Array] = field(default_factory=dict)
+    ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing

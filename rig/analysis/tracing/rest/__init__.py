@@ -1,0 +1,1 @@
+"""What is left, and the coordinate it lives in."""

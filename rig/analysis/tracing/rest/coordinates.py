@@ -1,0 +1,73 @@
+"""Coordinates cut into bins: the rest is read bin by bin, so that no form is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, summed
+from rig.model.effect import Array
+
+TURN = 2 * np.pi
+BINS = 60  # of a turn: 6°, a few teeth
+LEVELS = 24  # of a range
+PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
+
+
+def _levels(x: Array, count: int = LEVELS) -> Index:
+    good = np.isfinite(x)
+    if good.sum() < 100 or np.ptp(x[good]) == 0:
+        return np.full(x.size, -1)
+    edges = np.unique(np.quantile(x[good], np.linspace(0, 1, count + 1)[1:-1]))
+    return np.where(good, np.digitize(x, edges), -1)
+
+
+def turned(x: Array, bins: int) -> Index:
+    """Bins of an angle [rad] that comes back to itself; −1 where it is unknown."""
+    good = np.isfinite(x)
+    return np.where(good, (np.mod(np.where(good, x, 0.0), TURN) / TURN * bins).astype(int) % bins, -1)
+
+
+def _branch(r: Rest) -> Index:
+    """1 where the torque rises, else 0."""
+    return (r.at["torque_rate"] > 0).astype(int)
+
+
+def both(a: Index, b: Index) -> Index:
+    """One index of two; −1 where either has none."""
+    return np.where((a >= 0) & (b >= 0), a * (int(b.max(initial=0)) + 1) + b, -1)
+
+
+def _memories(name: str) -> tuple[Callable[[Rest], Index], ...]:
+    """What a torque has been, in each of a few ways."""
+    plays = tuple(lambda r, w=w: _levels(behind(r.at[name], r.run, w)) for w in WIDTHS)
+    leaks = tuple(lambda r, leak=leak: _levels(relaxing(r.at[name], r.run, r.dt, leak)) for leak in LEAKS)
+    return (*plays, *leaks, lambda r: _levels(summed(r.at[name], r.run, r.dt)))
+
+
+INDICES: Mapping[str, Callable[[Rest], Index]] = {
+    "motor_angle": lambda r: turned(r.at["motor_angle"], BINS),
+    "load_angle": lambda r: turned(r.at["load_angle"], 6 * BINS),
+    "speed": lambda r: _levels(np.abs(r.at["speed"])),
+    "load": lambda r: _levels(r.at["load"]),
+    "direction": lambda r: (r.at["direction"] + 1).astype(int),
+    "time": lambda r: _levels(r.at["time"], PERIODS),
+    "temperature": lambda r: _levels(r.at["temperature"]),
+    "memory": lambda r: both(_levels(r.at["load"]), both(_branch(r), (r.at["direction"] + 1).astype(int))),
+}
+JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
+    "time": (
+        lambda r: both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
+        lambda r: both(_levels(r.at["load"]), INDICES["time"](r)),
+        lambda r: both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
+    ),
+    "temperature": (lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),),
+    "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "speed": (lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
+    "load": (lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
+    "memory": _memories("load") + _memories("motor_torque"),
+}
+"""Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is
+said of them."""

@@ -1,0 +1,46 @@
+"""Where what the baseline leaves lives, once effects that explain it have been named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.rest.joined import rest
+from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, shares
+from rig.model.effect import Array
+
+SOME: Final = 0.3  # share of the excess that a coordinate must predict
+MORE: Final = 0.15  # share by which two together must beat the better one alone
+LOUD: Final = 1.3  # squared residual over squared floor of a channel: less is no excess to share out
+MOST: Final = 3  # coordinates that are told
+
+
+def lives_in(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> tuple[str, ...]:
+    """Coordinates that predict residuals `e` in rows they were not fitted to, best first; () when nothing is left.
+
+    Of the channel with the most left. A fixed frequency is `time_periodic`.
+    """
+    parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
+    if not parts:
+        return ()
+    channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
+    if float(np.mean(most.e**2)) < LOUD:
+        return ()
+    found = shares(most, floors, channel)
+    score = np.nan_to_num(found[f"share.{channel}"])
+    alone = dict(zip(COORDINATES, map(float, score), strict=False))
+    told = {name: share for name, share in alone.items() if share > SOME}
+    line = found.get(f"share_frequency_hz.{channel}")
+    if line is not None and line[1] > SOME:
+        told["time_periodic"] = float(line[1])
+    if len(told) > 1:
+        told.pop("time", None)  # every run has a time of its own: it predicts whatever tells runs apart
+    both = dict(zip(PAIRS, map(float, score[len(COORDINATES) :]), strict=True))
+    pair, share = max(both.items(), key=lambda item: item[1])
+    if share > SOME and share > MORE + max(alone[name] for name in pair) and share > MORE + max(alone.values()):
+        told |= dict.fromkeys(pair, share)
+    return tuple(sorted(told, key=lambda name: -told[name]))[:MOST]

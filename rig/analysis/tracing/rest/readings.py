@@ -1,0 +1,64 @@
+"""Ways to read the rest along a coordinate: fitted to some rows, each foretells all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.rest.binned import binned
+from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.model.effect import Array
+
+Rows = npt.NDArray[np.bool_]
+Reading = Callable[[Rest, Rows], Array]
+"""What the rows (n, bool) it is fitted to foretell of every row, (n,)."""
+
+POWERS = 5  # of an angle gone: a cable's spring, its slack, its end
+
+
+def in_bins(index: Callable[[Rest], Index]) -> Reading:
+    """One value a bin."""
+
+    def read(r: Rest, rows: Rows) -> Array:
+        at = index(r)
+        return binned(r, at, rows).guess(at)
+
+    return read
+
+
+def in_columns(columns: Callable[[Rest], Array]) -> Reading:
+    """Least squares on columns (n, k); what is not finite foretells nothing."""
+
+    def read(r: Rest, rows: Rows) -> Array:
+        z = columns(r)
+        good = np.asarray(np.isfinite(z).all(1))
+        z = np.where(good[:, None], z, 0.0)
+        fitted = rows & good
+        e = r.e
+        if r.own_zeros:
+            z, e = z - means(r, fitted, z), e - means(r, fitted)
+        return np.asarray(z @ np.linalg.lstsq(z[fitted], e[fitted], rcond=None)[0])
+
+    return read
+
+
+def means(r: Rest, rows: Rows, of: Array | None = None) -> Array:
+    """Mean over those `rows` of each run, of the rest (n,) or of columns (n, k), at every row; 0 without any."""
+    values = (r.e if of is None else of).reshape(r.e.size, -1)
+    runs, run = np.unique(r.run, return_inverse=True)
+    seen = np.maximum(np.bincount(run[rows], minlength=runs.size), 1)
+    made = [np.bincount(run[rows], column[rows], minlength=runs.size) / seen for column in values.T]
+    return np.stack(made, 1)[run].reshape((r.e if of is None else of).shape)
+
+
+def waves(x: Array, order: float) -> Array:
+    """Cosine and sine of one order, (n, 2)."""
+    return np.stack([np.cos(order * x), np.sin(order * x)], 1)
+
+
+def powers(x: Array) -> Array:
+    """x to x⁵ of an angle over its largest, (n, 5)."""
+    top = float(np.nanmax(np.abs(x), initial=1e-9))
+    return (x / top)[:, None] ** np.arange(1, POWERS + 1)

@@ -1,0 +1,220 @@
+"""Where the rest lives when no effect of the library explains it: a coordinate, an order, a frequency; no name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.rest.binned import score
+from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, both, turned
+from rig.analysis.tracing.rest.joined import Index, Rest, rest
+from rig.analysis.tracing.rest.readings import Reading, in_bins, in_columns, means, powers, waves
+from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
+from rig.model.effect import Array
+
+TURN = 2 * np.pi
+LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
+FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
+SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+PHASES = 30  # of its period
+
+
+@dataclass(frozen=True)
+class Home:
+    """A coordinate the rest lives in: the share of the excess it predicts in rows it was not fitted to."""
+
+    coordinate: str
+    channel: str
+    share: float
+    order: float | None = None  # cycles per turn
+    frequency_hz: float | None = None
+    read: Reading | None = None  # how it was read; none for a line
+    own_zeros: bool = True  # whether every run had a zero of its own beside it
+    late: bool = False  # said only where no plainer one does nearly as well
+
+
+def homes(r: Rest, channel: str) -> list[Home]:
+    """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
+    fold = folds(r)
+    total = float(np.mean(r.e**2)) - 1.0
+    ways = [(name, index) for name, index in INDICES.items()]
+    ways += [(name, index) for name, several in JOINT.items() for index in several]
+    out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), read=in_bins(of)) for name, of in ways]
+    orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
+    out += [h for h in orders if h is not None]
+    out += [h for h in (_line(r, channel), _wound(r, fold, channel)) if h is not None]
+    out += [_by_the_clock(r, fold, channel, sense) for sense in SENSES]
+    return [replace(h, own_zeros=r.own_zeros) for h in sorted(out, key=lambda h: -h.share)]
+
+
+def folds(r: Rest) -> Array:
+    """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
+    return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
+
+
+def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
+    """One harmonic of an angle, order free: its share on the other fold."""
+    x = r.at[name]
+    good = np.isfinite(x)
+    if not good.any():
+        return None
+    x, e = x[good], r.e[good]
+    turns = float(np.ptp(x)) / TURN
+    step = float(np.clip(0.5 / max(turns, 1.0), *FINEST)) if name == "motor_angle" else 1.0
+    rough = np.arange(max(0.5, step), 130.0 if name == "motor_angle" else 400.0, step)
+    power = spectrum(x, e, rough)
+    k = float(rough[int(np.argmax(power))])
+    read = in_columns(lambda rest: waves(rest.at[name], k))
+    return Home(name, channel, _share(r, fold, read), order=k, read=read)
+
+
+def _share(r: Rest, fold: Array, read: Reading) -> float:
+    """Of the excess, what each fold foretells of the other beyond what zeros alone do."""
+    gain = 0.0
+    for test in (0, 1):
+        seen = fold == test
+        e = r.e - (means(r, ~seen) if r.own_zeros else 0.0)
+        gain += float(np.sum(e[seen] ** 2 - (e - read(r, ~seen))[seen] ** 2))
+    return gain / max(r.e.size, 1) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
+
+
+def spectrum(x: Array, e: Array, orders: Array) -> Array:
+    """|Σ e·exp(−i·k·x)|² for orders on a uniform grid, rows counted into fine bins of x first; (orders,)."""
+    step = float(orders[1] - orders[0])
+    period = TURN / step
+    size = 2 ** int(np.ceil(np.log2(4 * orders[-1] / step)))
+    binned = np.bincount((np.mod(x, period) / period * size).astype(int) % size, e, minlength=size)
+    lines = np.abs(np.fft.rfft(binned)) ** 2
+    return np.asarray(lines[np.round(orders / step).astype(int)])
+
+
+def _line(r: Rest, channel: str) -> Home | None:
+    """A frequency that stands out in runs of differing speed; what is slower comes and goes with the motion."""
+    hits: dict[int, list[tuple[float, float, float]]] = {}
+    for run in np.unique(r.run):
+        e, mine = r.e[r.run == run], r.run == run
+        if e.size < 512:
+            continue
+        power = np.abs(np.fft.rfft(e * np.hanning(e.size))) ** 2
+        hz = np.fft.rfftfreq(e.size, r.dt)
+        slow = max(3, int(np.searchsorted(hz, LOWEST)))
+        top = int(np.argmax(power[slow:])) + slow
+        speed = float(np.mean(np.abs(r.at["speed"][mine])))
+        near = slice(max(0, top - 3), top + 4)
+        hits.setdefault(round(hz[top] * 5), []).append((hz[top], speed, float(power[near].sum() / power.sum())))
+    best = max(hits.values(), key=len, default=[])
+    speeds = np.array([s for _, s, _ in best])
+    if len(best) < 3 or speeds.max() < 1.5 * speeds.min():
+        return None
+    share = float(np.mean([s for _, _, s in best])) * len(best) / max(1, np.unique(r.run).size)
+    return Home("time_periodic", channel, share, frequency_hz=float(np.median([f for f, _, _ in best])))
+
+
+def _by_the_clock(r: Rest, fold: Array, channel: str, sense: Callable[[Rest], Array]) -> Home:
+    """What comes and goes with the time, of any form that all runs share: a pump, or a brake that rubs against the
+    `sense` of the motion. Every run has a phase of its own, as clocks that are read to the second leave it.
+    """
+    t, e = r.at["time"], r.e * sense(r)
+    hz = np.arange(SLOWEST, 2 * LOWEST, 0.25 / _longest(r))
+    power = sum((np.abs(_beat(t[r.run == run], e[r.run == run], hz)) ** 2 for run in np.unique(r.run)), np.zeros(1))
+    f = float(hz[int(np.argmax(power))])
+
+    def phase(rest: Rest) -> Index:
+        own, signed = np.zeros(rest.e.size), rest.e * sense(rest)
+        for run in np.unique(rest.run):
+            mine = rest.run == run
+            own[mine] = np.angle(_beat(rest.at["time"][mine], signed[mine], np.array([f]))[0])
+        return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
+
+    share = score(r, fold, phase(r)) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
+    return Home("time_periodic", channel, share, frequency_hz=f, read=in_bins(phase))
+
+
+SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
+
+
+def _longest(r: Rest) -> float:
+    """Of the runs, s."""
+    return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt
+
+
+def _beat(t: Array, e: Array, hz: Array) -> Array:
+    """Amplitude of one run at each frequency, complex, its rows counted into steps of a sixteenth of the shortest
+    period; (frequencies,)."""
+    step = 1 / (32 * LOWEST)
+    place = ((t - t[0]) / step).astype(int)
+    count = np.maximum(np.bincount(place), 1)
+    mean = np.bincount(place, e) / count
+    mean = mean - mean.mean()
+    at = t[0] + step * (np.arange(mean.size) + 0.5)
+    return np.asarray(np.exp(-1j * TURN * np.multiply.outer(hz, at)) @ mean)
+
+
+def _wound(r: Rest, fold: Array, channel: str) -> Home | None:
+    """The output angle gone since the run began, which does not come round: a cable winds up. Said late: in runs of
+    constant speed it is the speed and the time as well."""
+    if not np.isfinite(r.at["load_angle"]).all():
+        return None
+    read = in_columns(lambda rest: powers(rest.at["load_angle"]))
+    return Home("load_angle", channel, _share(r, fold, read), read=read, late=True)
+
+
+def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
+    """Best coordinates of the channel with the most left."""
+    parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
+    channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
+    found = homes(most, channel)
+    if channel == "L":  # its zero may wander from run to run, or a gain does that only loads of several runs show
+        found += homes(replace(most, own_zeros=False), channel)
+    return plainest(found)
+
+
+def plainest(found: Sequence[Home]) -> list[Home]:
+    """The best first, and before it simpler ones that do nearly as well."""
+    best = max(h.share for h in found)
+    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, h.late, SIMPLE.index(h.coordinate), -h.share))
+
+
+SIMPLE: Sequence[str] = (
+    "direction",
+    "time_periodic",
+    "motor_angle",
+    "load_angle",
+    "speed",
+    "load",
+    "memory",
+    "temperature",
+    "time",
+)
+
+
+def smooth_term(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float], found: Home
+) -> dict[Key, Array]:
+    """Held-out residuals without what that coordinate foretells, as read in the fitted runs, and without zeros that are
+    their own beside it."""
+    out = dict(unseen)
+    train, test = rest(eq, fitted, floors, found.channel), rest(eq, unseen, floors, found.channel)
+    if train is None or test is None:
+        return out
+    both = Rest(
+        np.concatenate([train.e, test.e]),
+        np.concatenate([train.run, test.run]),
+        {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
+        train.dt,
+        found.own_zeros,
+    )
+    if found.read is None:
+        return out
+    guess = found.read(both, np.arange(both.e.size) < train.e.size)[train.e.size :]
+    start = 0
+    for key in [k for k in unseen if k[1] == found.channel]:
+        n = unseen[key].size
+        left = unseen[key] - eq.bare(key, guess[start : start + n]) * floors[key]
+        out[key] = left - np.mean(left) if found.own_zeros else left
+        start += n
+    return out

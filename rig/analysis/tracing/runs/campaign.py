@@ -1,0 +1,113 @@
+"""A folder of runs → recordings; what cannot be used is said, and is fatal only when nothing remains."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from rig.analysis.tracing.runs.membership import one_rig, starts
+from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.runs.signs import odd_angles
+from rig.analysis.tracing.workers import WORKERS
+from rig.core.errors import HdrigError, UsageError
+from rig.model.effect import Moved
+from rig.runfile.run import Run
+
+LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Runs of one rig in one assembly, in the order they were taken."""
+
+    name: str
+    runs: tuple[Recording, ...]
+    simulated: bool
+    notes: tuple[str, ...]
+
+
+def read_campaign(folder: Path) -> Campaign:
+    """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
+    if not folder.is_dir():
+        raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
+    places = sorted(path.parent for path in folder.glob("*/manifest.json"))
+    if not places:
+        deeper = sorted({path.parent.parent.name for path in folder.glob("*/*/manifest.json")})
+        hint = f"; {deeper[-1]} in it does" if deeper else ""
+        raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
+    opened, notes = _open(places)
+    opened, unfit = one_rig(opened)
+    begun = starts(opened)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        found = list(pool.map(_record, opened, begun))
+    runs = [r for r in found if isinstance(r, Recording)]
+    notes += unfit
+    notes += [f"{r.name}: {note}" for r in runs for note in r.notes]
+    notes += [r for r in found if isinstance(r, str)]
+    if not runs:
+        raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {'; '.join(notes)[:300]}")
+    runs, odd = _same_gear(sorted(runs, key=lambda r: (r.start, r.name)))
+    runs = _same_sensors(runs)
+    return Campaign(folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes + odd))
+
+
+def _open(places: list[Path]) -> tuple[list[Run], list[str]]:
+    opened: list[Run] = []
+    notes: list[str] = []
+    for place in places:
+        try:
+            opened.append(Run.open(place))
+        except HdrigError as error:
+            notes.append(f"{place.name} was left out: {error}.")
+    return opened, notes
+
+
+def _record(run: Run, start: float) -> Recording | str:
+    try:
+        made = record(run, start)
+    except (HdrigError, ValueError) as error:
+        return f"{run.name} was left out: {error}."
+    if not made.pieces:
+        return f"{run.name} was left out: no 0.1 s of it without a gap."
+    turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
+    if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
+        return f"{run.name} was left out: its motor went {turned:.2f} of a turn, a kinematic error needs a whole one."
+    odd = odd_angles(made)
+    return made if odd is None else f"{run.name} was left out: {odd}."
+
+
+def _same_sensors(runs: list[Recording]) -> list[Recording]:
+    """A sensor is as noisy in every run; where a reading looks rougher than in the smoothest run, it really moved."""
+    turning = [r for r in runs if r.procedure != "standstill" and not r.locked]
+    least: dict[str, float] = {}
+    for run in turning:
+        for name, rms in run.noise.items():
+            raw = rms * run.thinned**0.5
+            least[name] = min(raw, least.get(name, raw))
+    return [
+        replace(run, noise={n: min(rms, least.get(n, rms) / run.thinned**0.5) for n, rms in run.noise.items()})
+        for run in runs
+    ]
+
+
+def _with_past(runs: list[Recording]) -> tuple[Recording, ...]:
+    """Every run with what all of them did: friction that warms a drive leaves its heat to the next run."""
+    past = tuple(_moved(run) for run in runs)
+    return tuple(replace(run, pieces=tuple(replace(p, past=past) for p in run.pieces)) for run in runs)
+
+
+def _moved(run: Recording) -> Moved:
+    omega = np.concatenate([p.omega_m for p in run.pieces])
+    start, end = float(run.pieces[0].t[0]), float(run.pieces[-1].t[-1])
+    return Moved(start, end, float(np.mean(np.abs(omega))), float(np.mean(omega**2)))
+
+
+def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:
+    """A campaign is one rig: runs of another ratio than most are left out."""
+    ratios, counts = np.unique([r.ratio for r in runs], return_counts=True)
+    usual = float(ratios[np.argmax(counts)])
+    odd = [f"{r.name} was left out: ratio {r.ratio:g}, the others have {usual:g}." for r in runs if r.ratio != usual]
+    return [r for r in runs if r.ratio == usual], odd

@@ -1,0 +1,110 @@
+"""What a campaign cannot tell: sensors that were not there, ways and speeds and loads it did not go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.runs.holdout import grouped
+from rig.analysis.tracing.runs.recording import Recording
+
+ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
+ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
+ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a start or a stop, not a direction
+
+SENSORS: Final = {
+    "t": "No run has a time column: rows have no known distance, so that inertias, damping and every effect of speed, "
+    "time or frequency were left out; kinematic error, stiffness and friction were read against angle and torque.",
+    "theta_m": "No motor angle: it was taken from the load angle and the model, so that the kinematic error was never "
+    "read, only inferred from the torque it makes; errors of the motor encoder cannot be seen.",
+    "theta_l": "No load angle: it was taken from the motor angle and the model, a locked output as at rest, so that "
+    "the kinematic error was never read, only inferred from the torque it makes at speed; errors of the load encoder, "
+    "late readings of it and what the output does once per turn cannot be seen.",
+    "tau_m": "No motor torque: friction, cogging and torque ripple of the motor side cannot be seen.",
+}
+
+
+def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
+    """One sentence each, from all runs of a campaign."""
+    has = frozenset().union(*(run.has for run in runs))
+    found = [sentence for channel, sentence in SENSORS.items() if channel not in has]
+    moving = [run for run in runs if run.procedure != "standstill"]
+    found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
+    return tuple(found)
+
+
+def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
+    if "tau_l" in has or not runs:
+        return []
+    inertia = runs[0].pieces[0].gear.J_l
+    return [
+        f"No shaft torque: it was taken from a load inertia of {inertia:.3g} kg·m² and the weight as declared. "
+        "Stiffness and the motor's torque balance are in proportion to them; friction of the load counts as the "
+        "motor's, and a torque sensor's own errors cannot be seen."
+    ]
+
+
+def _alone(runs: Sequence[Recording]) -> list[str]:
+    if len(runs) == 1:
+        return ["One run only: what was held out is of the same run, so that nothing is known of what differs between "
+                "runs, conditions or days."]  # fmt: skip
+    if all(len(group) == 1 for group in grouped(runs, range(len(runs)))):
+        return ["No condition was repeated: the floor is what neighbouring turns or strokes of one run differ by, and "
+                "what changes from run to run looks like an effect."]  # fmt: skip
+    return []
+
+
+def one_way(runs: Sequence[Recording]) -> bool:
+    """Whether the motor turned one way only in all of them."""
+    forward = sum(float(np.clip(np.diff(p.theta_m), 0, None).sum()) for run in runs for p in run.pieces)
+    backward = sum(float(np.clip(np.diff(p.theta_m), None, 0).sum()) for run in runs for p in run.pieces)
+    return min(forward, -backward) < ONE_WAY * max(forward, -backward)
+
+
+def _one_way(runs: Sequence[Recording]) -> list[str]:
+    if not runs or not one_way(runs):
+        return []
+    return ["The motor turned one way only: constant friction and the zero of a torque cannot be told apart, and lost "
+            "motion, hysteresis and presliding have nothing to show in."]  # fmt: skip
+
+
+def one_speed(runs: Sequence[Recording]) -> bool:
+    """Whether all runs that turn do so at about one speed."""
+    speeds = [run.turning for run in runs if not run.locked]
+    return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds)
+
+
+def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
+    if "t" not in has or not one_speed(runs):
+        return []
+    speeds = [run.turning * 30 / np.pi for run in runs if not run.locked]
+    return [f"All runs turn at about {np.mean(speeds):.3g} rpm: constant friction, damping, falling friction and drag "
+            "cannot be told apart, nor a real kinematic error from an encoder's."]  # fmt: skip
+
+
+def _one_load(runs: Sequence[Recording]) -> list[str]:
+    torques = [p.torque[np.isfinite(p.torque)] for run in runs for p in run.pieces]
+    torques = [t for t in torques if t.size]
+    if not torques or not runs:
+        return []
+    low, high = (float(np.percentile(np.concatenate(torques), q)) for q in (1, 99))
+    if high - low > ONE_LOAD:
+        return []
+    return [f"The torque spans {high - low:.2g} N·m: stiffness, its loops and gaps, and what a load does to friction "
+            "and kinematic error are as good as unseen."]  # fmt: skip
+
+
+def together(runs: Sequence[Recording]) -> tuple[tuple[str, ...], ...]:
+    """Baseline parameters that stand before the same column, or nearly.
+
+    B_m and B_ml, and B_l with B_ml, stand before the same speed in equations 6 and 7 whatever is run.
+    """
+    moving = [run for run in runs if run.procedure != "standstill"]
+    found: list[tuple[str, ...]] = [("B_m", "B_ml"), ("B_l", "B_ml")]
+    if moving and one_way(moving):
+        found += [("tau_c", "tau_0"), ("tau_cl", "tau_l0")]
+    if moving and one_speed(moving):
+        found += [("tau_c", "B_m"), ("tau_cl", "B_l")]
+    return tuple(found)

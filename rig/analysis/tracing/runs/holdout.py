@@ -1,0 +1,150 @@
+"""Which runs the fit does not see."""
+
+from __future__ import annotations
+
+import fnmatch
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.floor.repeats import alike, strokes
+from rig.analysis.tracing.runs.recording import Recording
+from rig.core.errors import UsageError
+from rig.model.effect import Signals
+
+LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
+KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
+SPARED = 3  # one stretch of so many is held out
+STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
+TURN = 2 * np.pi
+HELD_PART = "part held out"
+TOO_SHORT = "no run is long enough to hold a part of it out: at least two turns or strokes of the motor are needed"
+
+
+@dataclass(frozen=True)
+class Split:
+    """The runs of the trace (whole ones or parts of them), and which are fitted and held out; standstill is neither."""
+
+    runs: tuple[Recording, ...]
+    fitted: tuple[int, ...]
+    held_out: tuple[int, ...]
+    how: str
+
+
+def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
+    """By the names asked for, else whole repeats and levels, else parts of all runs. Raises UsageError."""
+    moving = [i for i, run in enumerate(runs) if run.procedure != "standstill"]
+    if asked:
+        return _asked(runs, moving, asked)
+    groups = grouped(runs, moving)
+    if sum(len(group) > 1 for group in groups) * 3 < len(groups):
+        return _parts(runs, moving)
+    held = _levels_and_repeats(runs, groups)
+    fitted = tuple(i for i in moving if i not in held)
+    return Split(tuple(runs), fitted, tuple(sorted(held)), "whole repeats, and whole loads and speeds between others")
+
+
+def _asked(runs: Sequence[Recording], moving: list[int], asked: Sequence[str]) -> Split:
+    for pattern in asked:
+        if not any(fnmatch.fnmatchcase(run.name, pattern) for run in runs):
+            raise UsageError(f"--hold-out {pattern} fits no run; there are {', '.join(r.name for r in runs)[:300]}")
+    held = tuple(i for i in moving if any(fnmatch.fnmatchcase(runs[i].name, p) for p in asked))
+    fitted = tuple(i for i in moving if i not in held)
+    if not fitted or not held:
+        raise UsageError(f"--hold-out {' '.join(asked)} leaves {len(fitted)} runs to fit and {len(held)} to test with")
+    return Split(tuple(runs), fitted, held, "runs named with --hold-out")
+
+
+def grouped(runs: Sequence[Recording], moving: Sequence[int]) -> list[list[int]]:
+    """Runs of equal condition together, in the order they were taken."""
+    groups: list[list[int]] = []
+    for i in moving:
+        home = next((g for g in groups if alike(runs[g[0]], runs[i])), None)
+        if home is None:
+            groups.append([i])
+        else:
+            home.append(i)
+    return groups
+
+
+def _level(run: Recording) -> tuple[float, float]:
+    tau_ext = float(run.pieces[0].tau_ext[0])
+    return tau_ext, float(np.mean([np.mean(p.omega_m) for p in run.pieces]))
+
+
+def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> set[int]:
+    held: set[int] = set()
+    for procedure in sorted({runs[g[0]].procedure for g in groups}):
+        mine = sorted((g for g in groups if runs[g[0]].procedure == procedure), key=lambda g: _level(runs[g[0]]))
+        whole = mine[len(mine) // 2 - 1] if len(mine) >= LEVELS else None
+        others = [g for g in mine if g is not whole]
+        held |= set(whole or ())
+        repeated = [g for g in others if len(g) > 1]
+        # every second condition keeps its repeats in the fit: the floor is measured there
+        held |= {g[1] for g in repeated[:: 2 if len(repeated) > 1 else 1]}
+    return held
+
+
+def _parts(runs: Sequence[Recording], moving: list[int]) -> Split:
+    """A third of every run: every third stretch of one that turns on and on, else the last turns or strokes."""
+    made = list(runs)
+    held: list[int] = []
+    for i in moving:
+        parts = _stretches(runs[i]) or _head_and_tail(runs[i])
+        if parts is None:
+            continue
+        made[i] = replace(runs[i], pieces=parts[0])
+        made.append(replace(runs[i], pieces=parts[1], name=f"{runs[i].name} ({HELD_PART})"))
+        held.append(len(made) - 1)
+    if not held:
+        raise UsageError(TOO_SHORT)
+    how = "a third of every run, whole turns or strokes: there are no repeats"
+    return Split(tuple(made), tuple(moving), tuple(held), how)
+
+
+Parts = tuple[tuple[Signals, ...], tuple[Signals, ...]]
+
+
+def _stretches(run: Recording) -> Parts | None:
+    """Whole turns of the motor, long against the filters, every third stretch of them to test with.
+
+    Cut off at its end, a run of one turn of the output or less would be tested at output angles it was not fitted at.
+    """
+    stretches = [s for piece in run.pieces for s in _whole_turns(piece)]
+    if len(stretches) < SPARED + 1:
+        return None
+    held = range(SPARED // 2, len(stretches), SPARED)
+    return tuple(s for j, s in enumerate(stretches) if j not in held), tuple(stretches[j] for j in held)
+
+
+def _whole_turns(piece: Signals) -> list[Signals]:
+    theta = np.abs(piece.theta_m - piece.theta_m[0])
+    if len(strokes(piece.theta_m)) != 1 or theta[-1] < TURN:
+        return []
+    rows = max(1.0, theta.size * TURN / theta[-1])
+    turns = int(np.ceil(STRETCH / rows))
+    marks = np.arange(0.0, theta[-1], TURN * turns)
+    edges = [*np.searchsorted(np.maximum.accumulate(theta), marks), theta.size]
+    cut = [slice(int(lo), int(hi)) for lo, hi in itertools.pairwise(edges)]
+    return [piece.part(rows) for rows in cut if rows.stop - rows.start > STRETCH / 2]
+
+
+def _head_and_tail(run: Recording) -> Parts | None:
+    cut = _cut(run)
+    if cut is None:
+        return None
+    piece = run.pieces[0]
+    return (piece.part(slice(0, cut)),), (piece.part(slice(cut, None)), *run.pieces[1:])
+
+
+def _cut(run: Recording) -> int | None:
+    theta = run.pieces[0].theta_m
+    wish = int(KEPT * theta.size)
+    parts = strokes(theta)
+    if len(parts) >= 2:
+        edges = np.array([p.stop for p in parts[:-1]])
+        return int(edges[np.argmin(np.abs(edges - wish))])
+    turn = int(2 * np.pi / max(1e-9, float(np.mean(np.abs(np.diff(theta))))))
+    return turn * (wish // turn) if theta.size > 2 * turn and turn > 0 and wish >= turn else None
