@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.angle import ARCSEC, RPM
-from rig.analysis.findings import Findings
+from rig.analysis.findings import Findings, pm
 from rig.analysis.flexibility import declared
 from rig.analysis.latch_skew import Late, Wound, legs, load_encoder_late, pairs, torque_late
 from rig.analysis.result import Estimate, Result
@@ -72,7 +72,7 @@ def _wound(run: Source) -> Wound | None:
 
 
 def _told(late: Late) -> str:
-    return f"{MICRO * late.value:.1f} ± {MICRO * late.half:.1f} µs"
+    return pm(MICRO * late.value, MICRO * late.half, "µs")
 
 
 def _figures(found: Findings, load: Late, torque: Late | None, count: int) -> None:

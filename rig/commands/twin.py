@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import signal
+import sys
 from pathlib import Path
 
 from rig.bench import read, twin_parameters
@@ -50,6 +51,8 @@ def run(args: argparse.Namespace) -> int:
     bench = read(args.bench, args.set)
     if bench.file.twin is None:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
+    print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
+    print("wait for 'ready': the first start on a machine compiles the plant, ten seconds or more", file=sys.stderr)
     from sim.wire.assembly import Assembly
     from sim.wire.motor import Rating
     from sim.wire.process import Doors, Process
@@ -61,7 +64,6 @@ def run(args: argparse.Namespace) -> int:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())
     assembly.agenda.at(args.seconds, process.reactor.stop)
-    print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
     for line in process.lines:
         print(line, flush=True)
     print("ready", flush=True)
