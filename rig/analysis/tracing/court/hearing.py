@@ -53,8 +53,10 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
     p, solution = _own_convicted(p, solution)
     solution, held, worths = convicted(unmasked(solution, runs), p.court)
     words = _in_words(solution, runs)
-    if vague := unresolved(solution, words, covered):
-        gone = [i for i, term in enumerate(solution.design.terms) if term.name in vague]
+    while vague := unresolved(solution, words, covered):
+        # one at a time: without it another one's law may be plain
+        least = min((w for w in worths if w.name in vague), key=lambda w: min(w.share, 1.0) * w.size).name
+        gone = [i for i, term in enumerate(solution.design.terms) if term.name == least]
         solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
         words = _in_words(solution, runs)
     return Heard(p, solution, held, worths, words)

@@ -104,7 +104,7 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
     if not names:
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
-    words = " and ".join(f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names)
+    words = _listed([f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names])
     rivals, next_run = deciding(p, names, found)
     sentence = (
         f"The model lacks {words}: with it the worst held-out error of a channel falls from {before:.1f} "
@@ -114,3 +114,8 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
     return Ruling(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)
+
+
+def _listed(words: Sequence[str]) -> str:
+    """a, b and c."""
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
