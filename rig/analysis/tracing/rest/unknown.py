@@ -19,6 +19,7 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
+NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
 PHASES = 30  # of its period
 
@@ -68,8 +69,16 @@ def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
     rough = np.arange(max(0.5, step), 130.0 if name == "motor_angle" else 400.0, step)
     power = spectrum(x, e, rough)
     k = float(rough[int(np.argmax(power))])
+    if name == "motor_angle":  # orders of the output are whole
+        k = _sharpened(x, e, k, step)
     read = in_columns(lambda rest: waves(rest.at[name], k))
     return Home(name, channel, _share(r, fold, read), order=k, read=read)
+
+
+def _sharpened(x: Array, e: Array, order: float, step: float) -> float:
+    """The order of a line that is known to one step of a grid, whose phase would be lost over all the turns."""
+    near = order + step * np.linspace(-1.0, 1.0, NEAR)
+    return float(near[int(np.argmax([abs(np.exp(-1j * k * x) @ e) for k in near]))])
 
 
 def _share(r: Rest, fold: Array, read: Reading) -> float:
