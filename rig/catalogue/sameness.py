@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, NamedTuple
 
-from rig.catalogue.row import Row
+from rig.catalogue.row import Row, number
 
 NOT_THE_POINT = ("note", "assembly")  # conditions that do not change what is measured
 SAID = {
@@ -75,7 +75,8 @@ def _rounded(value: Any) -> Any:
         case bool() | str() | None:
             return value
         case int() | float():
-            return float(f"{value:.6g}")
+            found = number(value)
+            return "no number" if found is None else float(f"{found:.6g}")
         case list():
             return [_rounded(v) for v in value]
         case dict():

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from rig.analysis.identify.friction import motor_friction
-from rig.analysis.identify.gram import Rows, solve
+from rig.analysis.identify.gram import Rows, _guessed, solve
 from rig.analysis.identify.locked import about_the_same_angle, locked_rows
 from rig.analysis.identify.means import Mean, Sides, mean_of, variances
 from rig.analysis.identify.mode import free_mode
@@ -205,3 +205,24 @@ def test_a_mean_knows_its_way() -> None:
     run = wandering(-120.0, 4.0, np.random.default_rng(1))
     means: list[Mean] = [mean_of(p, FLAT, Sides()) for p in plateaus(run) if isinstance(p, Plateau)]
     assert {m.way for m in means} == {-1.0}
+
+
+@pytest.mark.slow
+def test_weights_taken_from_the_scatter_itself_make_a_mean_less_certain() -> None:
+    """Eight stretches of eight windows at one order: their noise is known to a quarter of itself, so are weights."""
+    generator, inside, without = np.random.default_rng(7), [], []
+    for _ in range(800):
+        rows = []
+        for k in range(8):
+            noise = generator.standard_normal((2, 8, 1)) * 10.0 ** (0.25 * (k % 4))
+            rows.append(Rows(f"stretch {k}", np.ones((8, 1, 1), dtype=complex), 3.0 + noise[0] + 1j * noise[1], 1.0))
+        found = solve(rows, [], 1)
+        assert found is not None
+        each = np.array([np.sum(found.influence[r.stretch] ** 2, axis=0) for r in rows])
+        more = float(np.sqrt(_guessed(each / each.sum(), rows)[0]))
+        assert 1.02 < more < 1.25
+        off = abs(found.coefficients[0] - 3.0)
+        inside.append(off <= 1.96 * found.u(0))
+        without.append(off <= 1.96 * found.u(0) / more)
+    assert 0.93 <= np.mean(inside) <= 0.97
+    assert np.mean(without) < np.mean(inside) - 0.01, "the share it is for"

@@ -168,6 +168,17 @@ def test_a_column_that_cannot_be_meant_is_named_with_what_was_expected(
     assert expected in said
 
 
+@pytest.mark.parametrize("value", [10**400, float("nan"), "abc", [1, "a"], {"x": 1}, None])
+@pytest.mark.parametrize("key", ["tau_ext", "output_locked", "speed_rpm", "assembly", "depth_mm"])
+def test_a_condition_that_is_none_is_compared_all_the_same(
+    key: str, value: Any, good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = made_run(tmp_path / "odd", {"conditions": {key: value}})
+    assert main(["compare", str(made), str(good)]) in (Exit.PASS, Exit.USAGE)
+    assert "internal error" not in capsys.readouterr().err
+    assert main(["list", str(tmp_path)]) == Exit.PASS
+
+
 def test_samples_that_are_not_those_that_were_closed_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

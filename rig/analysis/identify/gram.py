@@ -66,9 +66,10 @@ def solve(rows: Sequence[Rows], fixed: Sequence[Known], size: int) -> Solved | N
     birge = _disagreement(parts, c, covariance)
     count = sum(2.0 * r.y.size / r.inflation for r in rows) + 30.0 * len(fixed)
     influence = {r.stretch: _influence(r, v, c, covariance) for r, v in zip(rows, noise, strict=True)}
-    student = _student(covariance, fixed, rows, influence)
-    scale = np.sqrt(birge * _seen(covariance, fixed, rows, influence)) * student
-    influence = {stretch: i * student for stretch, i in influence.items()}  # two fits share what is in the covariance
+    each, all_ = _contributions(covariance, fixed, rows, influence)
+    few = _student(each, all_, rows) * np.sqrt(_guessed(each / np.maximum(all_, 1e-300), rows))
+    scale = np.sqrt(birge * _seen(covariance, all_, rows)) * few
+    influence = {stretch: i * few for stretch, i in influence.items()}  # two fits share what is in the covariance
     widened = covariance * np.outer(scale, scale)
     return Solved(c, widened, max(count - size, 1.0), 0.0, float(np.sqrt(np.max(birge))), influence)
 
@@ -90,31 +91,46 @@ def _reduced(rows: Rows, noise: Array) -> Known:
     return Known(rows.stretch, (weighted @ X).real, (weighted @ y).real)
 
 
-def _seen(covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influence: Mapping[str, Array]) -> Array:
+def _contributions(
+    covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influence: Mapping[str, Array]
+) -> tuple[Array, Array]:
+    """Variance of each coefficient as the windows scatter: by stretch (R, p), and of all, with what is known, (p,)."""
+    each = np.array([np.sum(influence[r.stretch] ** 2, axis=0) for r in rows]).reshape(len(rows), covariance.shape[0])
+    known = sum((np.einsum("ij,jk,ki->i", covariance, k.H, covariance) for k in fixed), np.zeros(covariance.shape[0]))
+    return each, each.sum(axis=0) + known
+
+
+def _seen(covariance: Array, scatter: Array, rows: Sequence[Rows]) -> Array:
     """(p,) variance of each coefficient as the windows scatter, over what the noise of the orders says.
 
     The noise of an order is pooled with that of its neighbours, and orders in one window are not independent: the
     windows, which are, say what both come to      [liang1986]. Believed where there are enough of them.
     """
     windows = sum(max(r.y.shape[0] / r.inflation - 1.0, 0.0) for r in rows)
-    own = np.maximum(np.diag(covariance), 1e-300)
-    known = sum((np.einsum("ij,jk,ki->i", covariance, k.H, covariance) for k in fixed), np.zeros(own.size))
-    scatter = sum((np.sum(i**2, axis=0) for i in influence.values()), np.zeros(own.size))
-    ratio = (known + scatter) / own
+    ratio = scatter / np.maximum(np.diag(covariance), 1e-300)
     return np.asarray(ratio if windows >= ENOUGH else np.maximum(ratio, 1.0))
 
 
-def _student(covariance: Array, fixed: Sequence[Known], rows: Sequence[Rows], influence: Mapping[str, Array]) -> Array:
+def _student(each: Array, all_: Array, rows: Sequence[Rows]) -> Array:
     """(p,) by how much Student's factor is above that of the normal law, for as few windows as speak of a coefficient.
 
     Effective degrees of freedom of Welch and Satterthwaite over the stretches; rows already reduced have their own
     factor in their variance      [gum, G.4]
     """
-    each = np.array([np.sum(influence[r.stretch] ** 2, axis=0) for r in rows]).reshape(len(rows), covariance.shape[0])
     dof = np.array([max(r.y.shape[0] / r.inflation - 1.0, 1.0) for r in rows])[:, None]
-    known = sum((np.einsum("ij,jk,ki->i", covariance, k.H, covariance) for k in fixed), np.zeros(covariance.shape[0]))
-    effective = (each.sum(axis=0) + known) ** 2 / np.maximum(np.sum(each**2 / dof, axis=0), 1e-300)
+    effective = all_**2 / np.maximum(np.sum(each**2 / dof, axis=0), 1e-300)
     return np.array([t95(min(nu, MANY)) / Z95 for nu in effective])
+
+
+def _guessed(share: Array, rows: Sequence[Rows]) -> Array:
+    """(p,) by how much the variance is larger because the stretches are weighted by noise taken from their own scatter.
+
+    1 + 4·Σ f·(1 − f)/ν, with f = `share` (R, p) of a stretch in the variance and ν degrees of freedom behind its noise:
+    two parts of every independent window, at the orders it is pooled over      [meier1953]
+    """
+    pooled = np.array([min(2 * BAND + 1, r.y.shape[1]) for r in rows], dtype=np.float64)
+    free = np.array([max(r.y.shape[0] / r.inflation - 1.0, 0.5) for r in rows])
+    return np.asarray(1.0 + 4.0 * np.sum(share * (1.0 - share) / (2.0 * pooled * free)[:, None], axis=0))
 
 
 def _influence(rows: Rows, noise: Array, c: Array, covariance: Array) -> Array:
