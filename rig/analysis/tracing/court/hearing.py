@@ -17,7 +17,6 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced, search
 from rig.analysis.tracing.floor.noise import measure, quieter
-from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_shares
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
 from rig.model.effect import Parameter, Reach
@@ -94,11 +93,7 @@ def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ..
 
 
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
-    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them. Where
-    nothing was repeated they stay: one turn differs from the next by what the model lacks as well.
-    """
-    if not repeats(p.eq.runs, runs):
-        return p
+    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them."""
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
