@@ -168,7 +168,9 @@ def test_a_column_that_cannot_be_meant_is_named_with_what_was_expected(
     assert expected in said
 
 
-@pytest.mark.parametrize("value", [10**400, float("nan"), "abc", [1, "a"], {"x": 1}, None])
+@pytest.mark.parametrize(
+    "value", [10**400, float("nan"), "abc", [1, "a"], {"x": 1}, None], ids=lambda v: type(v).__name__
+)
 @pytest.mark.parametrize("key", ["tau_ext", "output_locked", "speed_rpm", "assembly", "depth_mm"])
 def test_a_condition_that_is_none_is_compared_all_the_same(
     key: str, value: Any, good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -177,6 +179,15 @@ def test_a_condition_that_is_none_is_compared_all_the_same(
     assert main(["compare", str(made), str(good)]) in (Exit.PASS, Exit.USAGE)
     assert "internal error" not in capsys.readouterr().err
     assert main(["list", str(tmp_path)]) == Exit.PASS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "how"), [("t", "huge"), ("theta_m", "huge"), ("theta_m", "one spike"), ("t", "shuffled")]
+)
+def test_a_recording_for_the_viewer_leaves_out_what_no_rig_reads(name: str, how: str, tmp_path: Path) -> None:
+    made = made_run(tmp_path / "odd", table=SPOILT[how](name))
+    assert main(["view", str(made), "--out", str(tmp_path / "odd.rrd")]) in (Exit.PASS, Exit.USAGE, Exit.INCOMPLETE)
 
 
 def test_samples_that_are_not_those_that_were_closed_are_refused(

@@ -55,6 +55,10 @@ def joined(blocks: list[Block]) -> Block:
     return Block(np.concatenate([block.rows for block in blocks]))
 
 
+LONGEST = 9e9  # s: the viewer counts ns in 64 bits; of longer runs nothing is known
+FARTHEST = 1e12  # rad: a motor at 600 rpm would turn for 500 years; farther is no reading
+
+
 def of_run(run: Run) -> Block:
     """A whole run folder, with a further field for every channel the table lacks.
 
@@ -68,4 +72,6 @@ def of_run(run: Run) -> Block:
     rows["flags"] = run.flags
     if not run.has("t"):
         rows["t"] = np.arange(run.rows) * 1.0
-    return Block(rows[np.isfinite(rows["t"])])
+    for name in ("theta_m", "theta_l"):
+        rows[name][~(np.abs(rows[name]) < FARTHEST)] = np.nan
+    return Block(rows[np.abs(rows["t"]) < LONGEST])
