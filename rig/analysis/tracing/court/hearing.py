@@ -10,13 +10,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rig.analysis.tracing.court.judge import Worth, convicted, court, unresolved
+from rig.analysis.tracing.court.judge import Court, Worth, convicted, court, unresolved, unseen
 from rig.analysis.tracing.court.shadows import unmasked
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced, search
 from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_shares
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
 from rig.model.effect import Parameter, Reach
@@ -38,8 +39,7 @@ class Heard:
     @property
     def loud(self) -> bool:
         """Whether more is left on the held-out runs than may be."""
-        total, single = self.p.court.worst(self.p.court.residuals(self.solution, self.held))
-        return total > EXPLAINED or single > MISSING
+        return is_loud(self.p.court, self.solution, self.held)
 
 
 def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
@@ -93,11 +93,23 @@ def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ..
 
 
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
-    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them."""
+    """With the floor measured beside the effects that stayed: refused ones may have taken noise with them.
+
+    Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
+    nothing is left over that larger floor either.
+    """
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
-    return replace(p, measured=measured, court=court(p.eq, measured, p.split.held_out))
+    again = replace(p, measured=measured, court=court(p.eq, measured, p.split.held_out))
+    known = repeats(p.eq.runs, runs) or not is_loud(again.court, s, unseen(s, again.court))
+    return again if known else p
+
+
+def is_loud(at: Court, s: Solution, held: Design) -> bool:
+    """Whether more is left on the held-out runs than may be."""
+    total, single = at.worst(at.residuals(s, held))
+    return total > EXPLAINED or single > MISSING
 
 
 def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:

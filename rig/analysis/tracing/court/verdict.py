@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.unknown import Home, home
 from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
@@ -57,7 +58,9 @@ def decide(
     if not loud:
         return _settled(p, names, found, first, total)
     where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
-    if line is None and names and done > MOSTLY and total < 2 * EXPLAINED and max(left.values(), default=0.0) < AMISS:
+    known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
+    mostly = done > MOSTLY and total < 2 * EXPLAINED and max(left.values(), default=0.0) < AMISS
+    if line is None and names and known and mostly:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
     if line is not None:

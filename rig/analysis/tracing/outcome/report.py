@@ -52,7 +52,10 @@ def report(
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
-        final = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+        smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
+        # a curve that foretells nothing of unseen runs is not added
+        mine = [key for key in after if key[1] == ruling.home.channel]
+        final = smooth if p.court.ratio(smooth, mine) < p.court.ratio(after, mine) else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
     words = p.own.parameters | dict(fitted)
