@@ -9,7 +9,9 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the angle that is late
+LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which reading is late
+READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
+SOON = 1e-4  # s: a shift by less is its rate
 
 
 class ChannelTimeSkew(Effect):
@@ -31,25 +33,31 @@ class ChannelTimeSkew(Effect):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Expansion points."""
-        return tuple((side, step) for side in (LOAD, MOTOR) for step in self.STEPS)
+        return tuple((side, step) for side in (LOAD, MOTOR, TORQUE) for step in self.STEPS)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column; its coefficient is δ."""
         side, delta = shape
         if side == MOTOR:
             return {Port.READS_THETA_M: -(signals.omega_m + delta / 2 * signals.alpha_m)[:, None]}
+        if side == TORQUE:
+            return {Port.READS_TAU_L: -self._rate(signals, delta)[:, None]}
         late = signals.omega_l + delta / 2 * signals.alpha_l + delta**2 / 6 * signals.jerk_l
         return {Port.READS_THETA_L: -late[:, None]}
 
+    def _rate(self, signals: Signals, delta: float) -> Array:
+        """[T(t + δ) − T(t)]/δ of the smooth reading, N·m/s."""
+        torque = np.nan_to_num(signals.torque)
+        if abs(delta) < SOON:
+            return np.nan_to_num(signals.torque_rate)
+        at = signals.dt * np.arange(torque.size)
+        return np.asarray((np.interp(at + delta, at, torque) - torque) / delta)
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """δ of the load angle, or of the motor angle."""
+        """δ of the load angle, the motor angle or the shaft torque."""
         along = np.zeros(fit.covariance.shape[0])
         along[0] = 1.0
-        return (
-            parameter(
-                f"skew_theta_{'m' if fit.shape[0] == MOTOR else 'l'}", fit.coefficients[0], fit.half_width(along), "s"
-            ),
-        )
+        return (parameter(f"skew_{READING[fit.shape[0]]}", fit.coefficients[0], fit.half_width(along), "s"),)
 
     def expands(self, shape: Shape) -> bool:
         """About the skew itself."""

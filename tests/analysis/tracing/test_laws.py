@@ -9,6 +9,8 @@ import pytest
 
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Fit, Moved, Port
+from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
+from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, NonlinearStiffness
@@ -115,3 +117,12 @@ def test_a_housing_shows_in_both_angles_or_in_the_wind_up_as_its_encoders_are_he
 def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be: bool) -> None:
     fit = Fit(np.array([0.03, driven]), (1.0, 1.0), np.zeros((4, 4)), KNOWN, N)
     assert LoadDependentFriction().plausible(fit) is can_be
+
+
+@pytest.mark.parametrize("late", [0.0, 4e-3])
+def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None:
+    s = motion()
+    column = ChannelTimeSkew().columns(s, (TORQUE_LATE, late))[Port.READS_TAU_L][:, 0]
+    delta = late or 1e-4
+    now = 25.0 * np.sin(2 * np.pi * 0.7 * (s.t + delta) + 0.2)
+    np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)

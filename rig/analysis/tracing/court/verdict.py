@@ -17,7 +17,7 @@ from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.unknown import Home, home
 from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.model.effect import Array
-from rig.model.effects import CATALOGUE
+from rig.model.effects import CATALOGUE, LIBRARY
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
@@ -71,6 +71,7 @@ def decide(
     # whatever there is
     shared = [name for name in names if name not in p.own.made]
     names = tuple(name for name in shared if left.get(name, 0.0) <= MISSING and line is None)
+    names = _beside(best.coordinate, names)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
@@ -78,9 +79,14 @@ def decide(
 
 def _cast(shadow: Shadow, names: Sequence[str], left: Mapping[str, float]) -> Ruling:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
-    stand = tuple(name for name in names if left.get(name, 0.0) <= MISSING)
+    stand = _beside(shadow.coordinate, [name for name in names if left.get(name, 0.0) <= MISSING])
     verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
     return Ruling(verdict, None, (shadow.coordinate,), None)
+
+
+def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Names that may stand beside a rest: one with memory would give its share to any law that remembers."""
+    return tuple(name for name in names if coordinate != "memory" or not LIBRARY[name].remembers)
 
 
 def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, summed
+from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned, summed
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -43,8 +43,23 @@ def both(a: Index, b: Index) -> Index:
 def _memories(name: str) -> tuple[Callable[[Rest], Index], ...]:
     """What a torque has been, in each of a few ways."""
     plays = tuple(lambda r, w=w: _levels(behind(r.at[name], r.run, w)) for w in WIDTHS)
-    leaks = tuple(lambda r, leak=leak: _levels(relaxing(r.at[name], r.run, r.dt, leak)) for leak in LEAKS)
-    return (*plays, *leaks, lambda r: _levels(summed(r.at[name], r.run, r.dt)))
+    return (*plays, *_leaks(name), lambda r: _levels(summed(r.at[name], r.run, r.dt)))
+
+
+def _leaks(name: str) -> tuple[Callable[[Rest], Index], ...]:
+    """What is behind its own past, in a few times, forth and back apart."""
+
+    def of(r: Rest, leak: float) -> Index:
+        return both(_levels(relaxing(np.abs(r.at[name]), r.run, r.dt, leak)), (r.at["direction"] + 1).astype(int))
+
+    signed = tuple(lambda r, leak=leak: _levels(relaxing(r.at[name], r.run, r.dt, leak)) for leak in LEAKS)
+    return signed + tuple(lambda r, leak=leak: of(r, leak) for leak in LEAKS)
+
+
+def _since_turned(r: Rest) -> Index:
+    """Way since the motor last turned back, forth and back apart."""
+    way = since_turned(r.at["motor_angle"], r.at["direction"], r.run)
+    return both(_levels(way), (r.at["direction"] + 1).astype(int))
 
 
 INDICES: Mapping[str, Callable[[Rest], Index]] = {
@@ -57,6 +72,8 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "temperature": lambda r: _levels(r.at["temperature"]),
     "memory": lambda r: both(_levels(r.at["load"]), both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
+LATE: Mapping[str, Callable[[Rest], Index]] = {"memory": _since_turned}
+"""Asked last: where the motor turned back at one place, or never, it is an angle gone and the time."""
 JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "time": (
         lambda r: both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
@@ -67,7 +84,7 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
     "load": (lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
-    "memory": _memories("load") + _memories("motor_torque"),
+    "memory": (*_memories("load"), *_memories("motor_torque"), *_leaks("speed")),
 }
 """Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is
 said of them."""

@@ -46,6 +46,20 @@ def summed(torque: Array, run: Array, dt: float) -> Array:
     return _by_run(torque, run, about_mean)
 
 
+def since_turned(angle: Array, way: Array, run: Array) -> Array:
+    """How far the motor has gone since it last turned back or stood, rad, (n,): what wears off or builds up on the
+    way."""
+    out = np.zeros(angle.size)
+    for one in np.unique(run):
+        mine = np.flatnonzero(run == one)
+        changed = np.flatnonzero(np.diff(way[mine], prepend=way[mine][:1]) != 0)
+        start = np.zeros(mine.size, dtype=int)
+        start[changed] = changed
+        since = np.maximum.accumulate(start)
+        out[mine] = np.abs(angle[mine] - angle[mine][since])
+    return out
+
+
 def _by_run(torque: Array, run: Array, memory: Callable[[Array], Array]) -> Array:
     out = np.full(torque.size, np.nan)
     for one in np.unique(run):

@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import score
-from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, both, turned
+from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE, both, turned
 from rig.analysis.tracing.rest.joined import Index, Rest, rest
 from rig.analysis.tracing.rest.readings import Reading, in_bins, in_columns, means, powers, waves
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
@@ -45,6 +45,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     ways = [(name, index) for name, index in INDICES.items()]
     ways += [(name, index) for name, several in JOINT.items() for index in several]
     out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), read=in_bins(of)) for name, of in ways]
+    late = {name: (in_bins(of), score(r, fold, of(r)) / max(total, 0.05)) for name, of in LATE.items()}
+    out += [Home(name, channel, share, read=read, late=True) for name, (read, share) in late.items()]
     orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
     out += [h for h in orders if h is not None]
     out += [h for h in (_line(r, channel), _wound(r, fold, channel)) if h is not None]
