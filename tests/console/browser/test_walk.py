@@ -60,6 +60,7 @@ def test_every_button_in_every_state_on_the_real_thing(fresh: Rig, open_page: Op
 def _in_fault(page: Page, rig: Rig) -> None:
     _press(page, "jog forward")
     _started(page, "jog")
+    in_state(page, "running", LOADED)  # a fault while it is being enabled is a refusal, and no trip of a run
     rig.ask(do="trip", code=OVERCURRENT)
     in_state(page, "fault", LOADED)
     _only(page, "fault", IN_FAULT)
