@@ -22,7 +22,7 @@ def of_kind(marks: list[Mark], kind: str) -> list[Mark]:
 
 
 def rows(marks: list[Mark]) -> list[Row]:
-    """The issue's rows, in its order."""
+    """What a blind test is asked for, one row each."""
     names = [name for m in marks for name in m.names]
     wrong = [name for m in marks for name in m.wrong]
     clean, outside, pairs = (of_kind(marks, kind) for kind in ("clean", "outside", "pair"))
