@@ -10,7 +10,8 @@ import pytest
 
 from rig.analysis.intervals import Ranged
 from rig.analysis.load_law import LoadRun, down_less_up, load_law
-from rig.commands.load_sweep import runs_of, told
+from rig.commands.load_sweep import told
+from rig.commands.sweep_report import runs_of
 
 LOADS = (0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0)  # N·m
 P_0, P_INF, T_C = 80.0, 50.0, 2.5  # arcsec, arcsec, N·m
@@ -64,12 +65,14 @@ def test_runs_are_read_from_the_campaign_and_those_that_were_stopped_are_not(tmp
         (tmp_path / name).mkdir()
         about = {
             "schema": "hdrig.run/1",
-            "procedure": "kinematic-error",
+            "procedure": "kinematic_error",
             "gear": {"ratio": 50},
             "status": status,
             "conditions": {"tau_ext": 2.5, "note": note},
         }
         (tmp_path / name / "manifest.json").write_text(json.dumps(about))
-        said = {"estimates": {"kinematic_error_peak_to_peak": {"value": 90.0, "unit": "arcsec", "ci95": [89.0, 91.0]}}}
+        size = {"label": "p-p", "value": 90.0, "unit": "arcsec", "ci95": [89.0, 91.0], "how": ""}
+        said = {"schema": "hdrig.result/1", "estimates": {"kinematic_error_peak_to_peak": size}}
         (tmp_path / name / "result.json").write_text(json.dumps(said))
-    assert runs_of(tmp_path) == [LoadRun(2.5, 90.0, down=False), LoadRun(2.5, 90.0, down=True)]
+    found = runs_of(tmp_path)
+    assert [(run.load, run.peak_to_peak.value, note) for run, note in found] == [(2.5, 90.0, "up"), (2.5, 90.0, "down")]

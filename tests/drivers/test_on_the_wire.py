@@ -74,7 +74,7 @@ def test_another_resolution_than_the_bench_file_s_is_refused():
 
 def test_a_node_of_another_profile_is_refused():
     with pytest.raises(NotReady, match=r"CiA 406 device.*expected CiA 402"):
-        connected("devices.drive.node=2")
+        connected("devices.drive.node=2", "devices.load_encoder.node=1")
 
 
 def test_a_node_that_is_not_there_is_a_sentence():
