@@ -16,7 +16,7 @@ from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
 from rig.realtime import RealTime
-from rig.supervisor import Act, State, Supervisor
+from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing import LoopTiming
 
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
@@ -198,7 +198,7 @@ class Loop:
 
     def _leave(self, ending: Ending, confirmed: bool) -> Ending:
         if not confirmed:
-            why = f"{ending.reason}; the drive did not confirm that its torque is off"
+            why = f"{ending.reason}; {UNCONFIRMED}"
             self.supervisor.act(Act.TRIP, why)
             return Ending("tripped", why, Exit.TRIPPED, ending.finding)
         if ending.status == "tripped":

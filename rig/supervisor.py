@@ -7,6 +7,8 @@ from enum import StrEnum
 
 from rig.core.errors import NotReady
 
+UNCONFIRMED = "the drive did not confirm that its torque is off"  # of a fault: there may be torque still
+
 
 class State(StrEnum):
     """What the rig may do now."""

@@ -59,7 +59,8 @@ def _run(link: Link, feed: Feed) -> dict[str, Any] | None:
         "missed": counted.missed,
     }
     known = {key: value for key, value in run.items() if key != "ring"}
-    left = max(run["duration"] - figures["t"], 0.0)
+    held = link.picture["state"] == "holding"  # a held run does not go on: nothing of it is left
+    left = None if held else max(run["duration"] - figures["t"], 0.0)
     return {**known, **figures, "left_s": left, "rows": counted.ticks, "lateness": lateness}
 
 

@@ -31,3 +31,6 @@ class Chain:
 
 def _said(closed: bool | None, text: str) -> dict[str, Any]:
     return {"known": closed is not None, "closed": closed, "text": text}
+
+
+SILENT_DRIVE = _said(None, "not known: the drive is silent, and what it told last may hold no more")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from rig.supervisor import UNCONFIRMED
+
 ALWAYS = ("hold", "stop", "halt")  # in any state, on any revision, any number of times
 ACTS = (
     *ALWAYS, "connect", "disconnect", "check", "prove", "tare", "start", "campaign", "reset", "jog", "note", "answer",
@@ -56,6 +58,11 @@ def advice(picture: Mapping[str, Any]) -> str:
         return f"{picture['job'][0].upper()}{picture['job'][1:]}: hold, stop and halt work at any moment."
     if picture["bench"] is None:
         return "Choose a bench and connect it; nothing is energised by that."
+    if picture["state"] == "fault" and UNCONFIRMED in picture["fault"]:
+        return (
+            "Press the hard-wired stop: there may be torque still. When the rig is whole and free to turn, and the "
+            "drive answers again, reset the fault."
+        )
     if picture["state"] == "fault":
         return "Look at the rig: when it is whole and free to turn, reset the fault. The proof is made anew after it."
     if _unsure(picture):

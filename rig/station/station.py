@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -13,11 +14,12 @@ from rig.core.operator import Change
 from rig.live.switches import Counts, Switches
 from rig.session import Session
 from rig.station.analysis import Analysis
-from rig.station.chain import Chain
+from rig.station.chain import SILENT_DRIVE, Chain
 from rig.station.channel import Channel
 from rig.station.interrupts import Panel
 from rig.station.person import PagePerson
 from rig.station.rules import why_not
+from rig.station.silence import Silence
 from rig.station.status import Status
 from rig.station.telling import Teller
 from rig.supervisor import Act, State
@@ -51,7 +53,7 @@ class Station:
         self.stack = contextlib.ExitStack()  # leaving it takes the torque off and lets go of the devices
         self.person: PagePerson | None = None
         self.analysis: Analysis | None = None
-        self.chain = Chain()
+        self.chain, self.silence = Chain(), Silence()
         self.closing = False
         self._next_reading = 0.0
         self._halts = switches.pressed.halt
@@ -87,11 +89,12 @@ class Station:
         if instruments.latch is not None:
             instruments.latch()
         sample = instruments.read(clock.wait_until(clock.now() + instruments.lead))
-        self.teller.idle(sample, clock.now())
-        self._look_at_chain(session, energised=False)
+        heard = self.silence.hear(sample, clock.now())
+        self.teller.idle(heard, clock.now())
+        self._look_at_chain(session, energised=False, silent=math.isnan(heard.theta_m))
 
-    def _look_at_chain(self, session: Session, energised: bool) -> None:
-        seen = self.chain.judge(session.instruments.drive.voltage, energised)
+    def _look_at_chain(self, session: Session, energised: bool, silent: bool = False) -> None:
+        seen = SILENT_DRIVE if silent else self.chain.judge(session.instruments.drive.voltage, energised)
         if seen != self.status.chain:
             self.status.chain = seen
             self.teller.tell()
@@ -223,7 +226,7 @@ class Station:
 
     def connected(self, session: Session) -> None:
         """A session that was entered on `stack`."""
-        self.session, self.chain = session, Chain()
+        self.session, self.chain, self.silence = session, Chain(), Silence()
         self.teller.supervisor = session.supervisor
         hand, session.instruments.operator = session.instruments.operator, None
         self.person = PagePerson(self.teller, self.panel, self.attend, hand)

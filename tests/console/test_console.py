@@ -254,7 +254,7 @@ def test_a_hold_is_kept_until_a_stop(ready: Hand) -> None:
     ready.do("start", procedure="kinematic-error", parameters=FOREVER)
     ready.until(lambda s: s["run"] and s["run"]["t"] > 1.0)
     ready.do("hold")
-    assert ready.until(lambda s: s["state"] == "holding")["run"] is not None
+    assert ready.until(lambda s: s["state"] == "holding")["run"]["left_s"] is None, "it does not go on"
     ready.do("note", text="held to look at the coupling")
     ready.do("stop")
     state = ready.until(lambda s: not s["job"])

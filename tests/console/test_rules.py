@@ -9,6 +9,7 @@ import pytest
 
 from rig.station.rules import ACTS, ALWAYS, advice, allowed
 from rig.station.status import Status
+from rig.supervisor import UNCONFIRMED
 
 BENCH: dict[str, Any] = {"name": "twin", "torque_sensor": True}
 FREE = {"tau_ext": 0.0, "output_locked": False, "depth_mm": 0.0, "assembly": 1}
@@ -58,6 +59,12 @@ def test_a_trip_that_is_still_being_confirmed_promises_no_gentle_end() -> None:
     assert advice(STATES["just tripped"][0].picture()) == (
         "Torque off is commanded and is being confirmed: stay clear of the rig."
     )
+
+
+def test_a_torque_nobody_confirmed_to_be_off_is_answered_by_the_hard_wired_stop() -> None:
+    status = replace(STATES["fault"][0], fault=f"CAN bus 'rig' is lost; {UNCONFIRMED}")
+    assert advice(status.picture()).startswith("Press the hard-wired stop")
+    assert "hard-wired stop" not in advice(STATES["fault"][0].picture())
 
 
 def test_who_holds_a_run_is_told_that_it_does_not_go_on_from_there() -> None:

@@ -11,6 +11,7 @@ from rig.commands.show.words import late, peak
 
 KEYS = "keys: h hold  s stop  Space halt (torque off)"
 BAR = 12  # characters
+HOLDING = "holding"  # of the states an event can carry
 SETTLED = 1.0  # s to watch before a pace is believed
 UP, CLEAR = "\x1b[1A", "\r\x1b[J"  # to the line above; from here to the end of the screen
 
@@ -55,9 +56,10 @@ class Terminal(Screen):
         t, duration = event["t"], self._run["duration_s"]
         self._t = t
         share = min(max(t / duration, 0.0), 1.0) if duration > 0 else 0.0
+        left = "" if event["state"] == HOLDING else self._left(t)  # a held run does not go on
         bar = ("█" * round(BAR * share)).ljust(BAR, "░")
         return [
-            f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{self._left(t)}, "
+            f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{left}, "
             f"{peak(event)}",
             f"{late(event)} · {KEYS}",
         ]

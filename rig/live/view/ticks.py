@@ -38,6 +38,6 @@ def rounded_out(low: float, high: float, most: int = 6) -> tuple[float, float]:
 def written(value: float, step: float) -> str:
     """A tick's number with the decimals its step needs."""
     decimals = max(0, -math.floor(math.log10(step) + 1e-9))
-    if decimals and abs(step * 10**decimals - round(step * 10**decimals)) > 1e-6:
-        decimals += 1  # a step of 0.25 or 0.025
+    if abs(step * 10**decimals - round(step * 10**decimals)) > 1e-6:
+        decimals += 1  # a step of 2.5 or 0.025
     return f"{value:.{decimals}f}".replace("-", "−")

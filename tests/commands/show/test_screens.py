@@ -6,6 +6,8 @@ import io
 import os
 from typing import Any
 
+import pytest
+
 from rig.commands.show import outlet as outlets
 from rig.commands.show.enrich import Enriched
 from rig.commands.show.lines import Lines
@@ -46,6 +48,20 @@ def test_a_run_stands_in_two_lines_with_state_progress_peak_to_peak_lateness_and
     assert first == "SIMULATED RUNNING kinematic-error ██████░░░░░░ 50.0/100.0 s, p-p 93.4 arcsec"[:79]
     assert second.startswith("late p50 52 µs, p99 180 µs, 3 cycles missed")
     assert KEYS[:20] in second
+
+
+def test_a_held_run_does_not_go_on_and_promises_no_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter((100.0, 110.0))
+    monkeypatch.setattr("rig.commands.show.terminal.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("rig.commands.show.terminal._width", lambda stream: 200)
+    stream = io.StringIO()
+    terminal = Terminal(stream)
+    for event in (BENCH, RUN, progress(10.0), progress(20.0)):
+        terminal.take(event)
+    assert "80 s left" in rows(stream.getvalue())[-2]
+    terminal.take({**progress(20.0), "state": "holding"})
+    assert "HOLDING" in rows(stream.getvalue())[-2]
+    assert "left" not in rows(stream.getvalue())[-2]
 
 
 def test_what_is_said_goes_above_and_nothing_of_the_foot_stays_behind() -> None:

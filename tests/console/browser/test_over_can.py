@@ -231,6 +231,9 @@ def test_when_the_twin_is_gone_the_trip_shows_within_a_second_in_words_with_what
     page.wait_for_selector("#advice:has-text('reset the fault')", timeout=1e3 * LOADED)
     assert "the drive did not confirm" in text(page, "#fault")
     assert page.locator("[data-act=prove]").get_attribute("aria-disabled") == "true"
+    assert "hard-wired stop" in text(page, "#advice")
+    page.wait_for_selector("#chain[data-chain=unknown]", timeout=1e3 * LOADED)  # nobody tells of it any more
+    page.wait_for_selector("[data-tile=speed] .value:has-text('—')", timeout=1e3 * LOADED)
     (run,) = fresh.closed(1)
     assert run["status"] == "tripped"
     page.wait_for_selector("#events li[data-kind=trip]")

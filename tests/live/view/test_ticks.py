@@ -19,6 +19,8 @@ def test_numbers_carry_the_decimals_of_their_step_and_a_true_minus() -> None:
     assert written(20.0, 20.0) == "20"
     assert written(0.3, 0.1) == "0.3"
     assert written(0.0, 0.025) == "0.000"
+    assert [written(tick, 2.5) for tick in ticks(-2.5, 7.5, most=4)] == ["−2.5", "0.0", "2.5", "5.0", "7.5"]
+    assert written(25.0, 25.0) == "25"
 
 
 @pytest.mark.parametrize("span", [0.0, -1.0, float("nan"), float("inf")])

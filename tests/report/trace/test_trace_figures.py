@@ -7,7 +7,7 @@ from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS
 from rig.report.figures import Frame, svg
 from rig.report.figures.canvas import Drawing
 from rig.report.trace.channels import CHANNELS
-from rig.report.trace.figures import CATALOGUE, before_after, home
+from rig.report.trace.figures import CATALOGUE, before_after, home, where
 from rig.report.trace.page import drawn
 from tests.report.trace import made_up
 
@@ -66,3 +66,17 @@ def test_what_predicts_the_residual_is_named_in_the_order_the_tracer_gives() -> 
 
 def test_the_motor_torque_is_shown_in_millinewton_metres() -> None:
     assert "RMS 8.5 mN·m off before" in before_after.MOTOR_TORQUE.say(CURVES)  # a fifth of 60 mN·m/√2
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.2, 5.6), (-50.0, 50.0), (60.0, 330.0), (7.0, 420.0)])
+def test_a_scale_of_torque_or_speed_has_ticks_to_read_it_by(low: float, high: float) -> None:
+    """Torques of a campaign under small loads lie between two decades."""
+    curves = dict(CURVES)
+    for coordinate in ("load", "speed"):
+        curves[f"where.A.{coordinate}.x"] = np.linspace(low, high, len(curves[f"where.A.{coordinate}.x"]))
+    figure = where.draw(curves, Frame(760.0))
+    assert figure is not None
+    for panel in figure.axes:
+        if panel.get_xlabel() in ("Torque, N·m", "Speed, rpm"):
+            left, right = panel.get_xlim()
+            assert sum(left <= tick <= right for tick in panel.get_xticks()) >= 2, (panel.get_xlabel(), left, right)

@@ -18,6 +18,8 @@ from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
 
 RATIOS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 DECADES = (-100.0, -10.0, 0.0, 10.0, 100.0, 1000.0)
+FINER = tuple(m * 10.0**d for d in (-1, 0, 1, 2, 3) for m in (1, 2, 5))
+FEWEST = 2  # ticks from which a scale can be read
 HEAD, BETWEEN, FOOT, LEFT, GAP = 50.0, 34.0, 44.0, 46.0, 12.0
 
 
@@ -119,7 +121,7 @@ def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None
 def _ticks(panel: Axes, q: Coordinate) -> None:
     if q.knee is not None:
         low, high = panel.get_xlim()
-        panel.xaxis.set_major_locator(FixedLocator([v for v in DECADES if low <= v <= high]))
+        panel.xaxis.set_major_locator(FixedLocator(_beyond_the_knee(low, high)))
         panel.xaxis.set_minor_locator(NullLocator())
     elif q.ticks is not None:
         panel.xaxis.set_major_locator(FixedLocator(list(q.ticks)))
@@ -129,6 +131,12 @@ def _ticks(panel: Axes, q: Coordinate) -> None:
     names = {-1.0: "−", 1.0: "+"} if q.key == "direction" else {}
     panel.xaxis.set_major_formatter(FuncFormatter(lambda v, _: names.get(v, plain(v, 3))))
     panel.tick_params(axis="x", labelsize=10.5, color=LIGHT["axis"])
+
+
+def _beyond_the_knee(low: float, high: float) -> list[float]:
+    """Decades, or 1, 2, 5 where fewer than two of those are in sight."""
+    decades, finer = ([v for v in steps if low <= v <= high] for steps in (DECADES, FINER))
+    return decades if len(decades) >= FEWEST else finer
 
 
 def say(curves: Curves) -> str:

@@ -63,7 +63,8 @@ export function progress(state) {
   const share = run && run.duration ? Math.min(run.t / run.duration, 1) : 0;
   $("run-meter").setAttribute("aria-valuenow", String(Math.round(100 * share)));
   $("run-meter").firstElementChild.style.transform = `scaleX(${share.toFixed(4)})`;
-  say($("run-time"), run ? `${Math.round(100 * share)} %   ${lasting(run.t)} of at most ${lasting(run.duration)}   ${lasting(run.left_s)} left` : "");
+  const left = run && Number.isFinite(run.left_s) ? `   ${lasting(run.left_s)} left` : "";
+  say($("run-time"), run ? `${Math.round(100 * share)} %   ${lasting(run.t)} of at most ${lasting(run.duration)}${left}` : "");
   show($("campaign"), Boolean(campaign));
   if (campaign) say($("campaign"), `campaign ${campaign.plan}: run ${campaign.done + 1} of ${campaign.total}, ${campaign.current ?? ""}${Number.isFinite(campaign.left_s) ? `, about ${lasting(campaign.left_s)} left` : ""}`);
 }
