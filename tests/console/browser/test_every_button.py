@@ -34,12 +34,14 @@ def test_every_button_does_what_the_table_says_or_says_why_not(page: Page, stati
 
 def _sent(button: Locator, station: Puppet) -> list[str]:
     """The acts that one press brought to the server. What is covered or dashed is pressed all the same."""
-    before = len(station.acts)
+    before, page = len(station.acts), button.page
+    page.evaluate("document.querySelector('#answer').textContent = ''")
     halts = button.get_attribute("id") == "halt"
     button.dispatch_event("pointerdown" if halts else "click")
     if button.get_attribute("aria-disabled") != "true":
         until(lambda: len(station.acts) > before, "the act")
-    button.page.wait_for_timeout(20)  # for what would come besides
+        until(lambda: text(page, "#answer") != "", "the answer, lest it be taken for that of the next press")
+    page.wait_for_timeout(20)  # for what would come besides
     return [act["act"] for act in station.acts[before:]]
 
 
