@@ -10,6 +10,8 @@ REFERENCES: dict[str, str] = {
     "fuller1987": "W. A. Fuller, Measurement Error Models, Wiley (1987)",
     "liang1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, "
     "Biometrika 73 (1986) 13-22",
+    "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "
+    "improved finite sample properties, Journal of Econometrics 29 (1985) 305-325",
     "meier1953": "P. Meier, Variance of a weighted mean, Biometrics 9 (1953) 59-73",
     "preisig1993": "H. A. Preisig, D. W. T. Rippin, Theory and application of the modulating function method, "
     "Computers & Chemical Engineering 17 (1993) 1-16",

@@ -75,7 +75,7 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     made = law(at)
     own_zero = np.concatenate([x - x.mean() for x in np.split(made, RUNS)])
     e = 4.0 * own_zero / own_zero.std() + rng.normal(0, 1, own_zero.size)
-    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT), "A"))
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, np.zeros((RUNS * ROWS, 0))), "A"))
     assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.5
 
@@ -88,7 +88,9 @@ def test_order_and_frequency_are_said_with_it() -> None:
         (np.cos(12.437 * at["motor_angle"]), lambda h: (h.order, 12.437, 0.002)),
         (1.0 * (np.mod(at["time"], 9.7) < 1.4), lambda h: (h.frequency_hz, 1 / 9.7, 0.002)),
     ):
-        found = plainest(homes(Rest(6 * law + rng.normal(0, 1, law.size), run, at, DT), "A"))
+        found = plainest(
+            homes(Rest(6 * law + rng.normal(0, 1, law.size), run, at, DT, np.zeros((RUNS * ROWS, 0))), "A")
+        )
         said, expected, near = of(found[0])
         assert said == pytest.approx(expected, abs=near)
 
@@ -96,5 +98,7 @@ def test_order_and_frequency_are_said_with_it() -> None:
 def test_noise_lives_nowhere() -> None:
     rng = np.random.default_rng(6)
     at = coordinates(rng)
-    found = homes(Rest(rng.normal(0, 1.3, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT), "A")
+    found = homes(
+        Rest(rng.normal(0, 1.3, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT, np.zeros((RUNS * ROWS, 0))), "A"
+    )
     assert found[0].share < 0.1

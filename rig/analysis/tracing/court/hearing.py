@@ -77,10 +77,11 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
     return case if other.loud else other
 
 
-Sentence = tuple[Solution, Design, list[Worth]]
+Convicted = tuple[Solution, Design, list[Worth]]
+"""As `convicted` gives it."""
 
 
-def _polished(p: Prepared, s: Solution, so_far: Sentence, runs: Sequence[int], covered: Reach) -> Sentence:
+def _polished(p: Prepared, s: Solution, so_far: Convicted, runs: Sequence[int], covered: Reach) -> Convicted:
     """Laws fitted again beside those that stayed; as they were where that loses one: two terms of one effect can trade
     what single runs show, and foretell nonsense of others."""
     again = convicted(polished(s, runs, covered), p.court)

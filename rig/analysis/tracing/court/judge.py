@@ -70,7 +70,8 @@ class Worth:
     """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
     the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
-    same within the channel where it is worst. `harm` is by how much the worst channel is worse with it."""
+    same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
+    largest ratio that remains in a channel in which it acts at all."""
 
     name: str
     share: float
@@ -81,6 +82,7 @@ class Worth:
     unsteady: float = 0.0
     apart: float = 0.0
     harm: float = 1.0
+    anywhere: float = 0.0
 
     @property
     def named(self) -> bool:
@@ -139,8 +141,18 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     true = float((before - after) / own)
     held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
     unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
+    acts = [[k for k in size if k[1] == c] for c in CHANNELS]
     return Worth(
-        name, float(share), most, float(np.sqrt(after / n)), true, ground, unsteady, apart, harm(at, bare, whole)
+        name,
+        float(share),
+        most,
+        float(np.sqrt(after / n)),
+        true,
+        ground,
+        unsteady,
+        apart,
+        harm(at, bare, whole),
+        max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
     )
 
 

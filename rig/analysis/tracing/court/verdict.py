@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.fit.equations import Key
@@ -38,13 +39,13 @@ def decide(
     p: Prepared,
     s: Solution,
     weighed: Sequence[str],
-    left: Mapping[str, float],
+    worths: Sequence[Worth],
     before: Mapping[Key, Array],
     after: Mapping[Key, Array],
     floors: Mapping[Key, float],
     found: Found,
 ) -> Ruling:
-    """From held-out ratios and the effects that may be named, with what is `left` over the floor where each acts."""
+    """From held-out ratios and the effects that may be named, `weighed`; those shared by all runs have `worths`."""
     order = {r.term.name: i for i, r in enumerate(found.ranking)}
     names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
     total, single = p.court.worst(after)
@@ -52,14 +53,14 @@ def decide(
     line, shadows = p.own.line, cast(s)
     names = tuple(name for name in names if name not in SHADOWS)
     if shadows:
-        return _cast(shadows[0], names, left)
+        return _cast(shadows[0], _clean(names, worths))
     loud = total > EXPLAINED or single > MISSING or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         return _settled(p, names, found, first, total)
     where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
-    mostly = done > MOSTLY and total < 2 * EXPLAINED and max(left.values(), default=0.0) < AMISS
+    mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
     if line is None and names and known and mostly:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
@@ -70,16 +71,21 @@ def decide(
     # effect should explain its name would be a guess; and steps and phases that runs have to themselves take on
     # whatever there is
     shared = [name for name in names if name not in p.own.made]
-    names = tuple(name for name in shared if left.get(name, 0.0) <= MISSING and line is None)
-    names = _beside(best.coordinate, names)
+    names = _beside(best.coordinate, _clean(shared, worths)) if line is None else ()
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
 
 
-def _cast(shadow: Shadow, names: Sequence[str], left: Mapping[str, float]) -> Ruling:
+def _clean(names: Sequence[str], worths: Sequence[Worth]) -> tuple[str, ...]:
+    """Those beside which nothing is left in any channel they act in."""
+    amiss = {w.name for w in worths if w.anywhere > MISSING}
+    return tuple(name for name in names if name not in amiss)
+
+
+def _cast(shadow: Shadow, names: Sequence[str]) -> Ruling:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
-    stand = _beside(shadow.coordinate, [name for name in names if left.get(name, 0.0) <= MISSING])
+    stand = _beside(shadow.coordinate, names)
     verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
     return Ruling(verdict, None, (shadow.coordinate,), None)
 

@@ -1,4 +1,4 @@
-"""Baseline and effects fitted together: weighted least squares over runs, intervals from the scatter between pieces."""
+"""Baseline and effects fitted together: weighted least squares over runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from rig.model.effect import Array
 STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle
 BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
 PINNED = 1e6  # times what the data know of it
-PIECES = 4  # of a run and channel: the clusters of the sandwich, each many correlation times long
 
 
 @dataclass(frozen=True)
@@ -218,25 +217,3 @@ def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
             right[i] += pin * at
             x = solve(gram, right)
     return x, gram, right
-
-
-def covariance(s: Solution) -> Array:
-    """Cluster-robust covariance (p, p): every run and channel in quarters      [liang1986]"""
-    d = s.design
-    meat, clusters = np.zeros_like(s.gram), 0
-    for key in s.keys:
-        (z, at), e = d.whole(key), s.residual(key)
-        for part in np.array_split(np.arange(e.size), PIECES):
-            u = d.eq.noise.weight(key[1]) * (z[part].T @ e[part])
-            meat[np.ix_(at, at)] += np.outer(u, u)
-            clusters += 1
-    bread = inverse(s.gram)
-    return np.asarray(bread @ meat @ bread * clusters / max(1, clusters - d.size))
-
-
-def inverse(gram: Array) -> Array:
-    """Inverse of a normal matrix, zero where nothing was measured."""
-    scale = np.where(np.diag(gram) > 0, 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300)), 0.0)
-    scaled = gram * scale * scale[:, None]
-    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
-    return np.asarray(np.linalg.inv(scaled) * scale * scale[:, None])

@@ -9,7 +9,8 @@ import numpy as np
 
 from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of
-from rig.analysis.tracing.fit.model import Solution, covariance, extended, fit
+from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.refine import nudged
 from rig.model.effect import Array, Fit, Parameter, parameter
 

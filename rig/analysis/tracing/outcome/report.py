@@ -47,8 +47,7 @@ def report(
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = p.floors
     shares = {w.name: w.share for w in worths} | own_shares(p, s)
-    left = {w.name: w.left for w in worths}
-    ruling = decide(p, s, tuple(shares), left, before, after, floors, found)
+    ruling = decide(p, s, tuple(shares), worths, before, after, floors, found)
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}

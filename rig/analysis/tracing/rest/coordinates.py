@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned, summed
+from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned, slid, summed
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -21,6 +21,15 @@ def _levels(x: Array, count: int = LEVELS) -> Index:
     if good.sum() < 100 or np.ptp(x[good]) == 0:
         return np.full(x.size, -1)
     edges = np.unique(np.quantile(x[good], np.linspace(0, 1, count + 1)[1:-1]))
+    return np.where(good, np.digitize(x, edges), -1)
+
+
+def _steps(x: Array, count: int = LEVELS) -> Index:
+    """Levels as wide as each other: most rows have little load, and a lock test most of the range."""
+    good = np.isfinite(x)
+    if good.sum() < 100 or np.ptp(x[good]) == 0:
+        return np.full(x.size, -1)
+    edges = np.linspace(float(x[good].min()), float(x[good].max()), count + 1)[1:-1]
     return np.where(good, np.digitize(x, edges), -1)
 
 
@@ -47,7 +56,7 @@ def _memories(name: str) -> tuple[Callable[[Rest], Index], ...]:
 
 
 def _leaks(name: str) -> tuple[Callable[[Rest], Index], ...]:
-    """What is behind its own past, in a few times, forth and back apart."""
+    """How far it is behind its own past, in a few times: with its sign, and its size forth and back apart."""
 
     def of(r: Rest, leak: float) -> Index:
         return both(_levels(relaxing(np.abs(r.at[name]), r.run, r.dt, leak)), (r.at["direction"] + 1).astype(int))
@@ -62,6 +71,12 @@ def _since_turned(r: Rest) -> Index:
     return both(_levels(way), (r.at["direction"] + 1).astype(int))
 
 
+def _slid(r: Rest) -> Index:
+    """Way since the motor last rested, forth and back apart."""
+    way = slid(r.at["motor_angle"], r.at["time"], r.run)
+    return both(_levels(way), (r.at["direction"] + 1).astype(int))
+
+
 INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "motor_angle": lambda r: turned(r.at["motor_angle"], BINS),
     "load_angle": lambda r: turned(r.at["load_angle"], 6 * BINS),
@@ -72,7 +87,7 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "temperature": lambda r: _levels(r.at["temperature"]),
     "memory": lambda r: both(_levels(r.at["load"]), both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
-LATE: Mapping[str, Callable[[Rest], Index]] = {"memory": _since_turned}
+LATE: Sequence[tuple[str, Callable[[Rest], Index]]] = (("memory", _since_turned), ("memory", _slid))
 """Asked last: where the motor turned back at one place, or never, it is an angle gone and the time."""
 JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "time": (
@@ -82,8 +97,14 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     ),
     "temperature": (lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),),
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
-    "speed": (lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),),
-    "load": (lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),),
+    "speed": (
+        lambda r: _steps(np.abs(r.at["speed"])),
+        lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),
+    ),
+    "load": (
+        lambda r: _steps(r.at["load"]),
+        lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),
+    ),
     "memory": (*_memories("load"), *_memories("motor_torque"), *_leaks("speed")),
 }
 """Coordinates that show only beside another one: what grows with time grows at some angle or load. The key is what is

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.tracing.fit.channels import BASELINE
 from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.fit.model import prior
 from rig.model.effect import Array
 
 Index = npt.NDArray[np.int64]
@@ -18,13 +20,21 @@ Index = npt.NDArray[np.int64]
 @dataclass(frozen=True)
 class Rest:
     """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
-    `own_zeros`: whether every run has a zero of its own, as angles and a torque sensor do."""
+    `z` (n, p) are the baseline's columns over the floor, but for those that may only be small. `own_zeros`: whether
+    every run has a zero of its own, as angles and a torque sensor do."""
 
     e: Array
     run: Array
     at: dict[str, Array]
     dt: float
+    z: Array
     own_zeros: bool = True
+
+    def thinned(self, most: int) -> Rest:
+        """Every so many-th row of it, so that no more than `most` are left."""
+        by = -(-self.e.size // most)
+        at = {name: x[::by] for name, x in self.at.items()}
+        return replace(self, e=self.e[::by], run=self.run[::by], at=at, dt=self.dt * by, z=self.z[::by])
 
 
 def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Rest | None:
@@ -34,9 +44,22 @@ def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], cha
         return None
     made = [_coordinates(eq, k) for k in keys]
     at = {name: np.concatenate([m[name] for m in made]) for name in made[0]}
+    if channel == "L":  # what the reading has wrong would go with the reading: the torque the model expects
+        at["load"] = at["load"] - np.concatenate([e[k] for k in keys])
     run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
     smooth = eq.runs[keys[0][0]].smoother
-    return Rest(np.concatenate([e[k] / floors[k] for k in keys]), run, at, smooth.dt * smooth.step, channel != "M")
+    acting = {int(i) for k, rows in eq.rows.items() if k[1] == channel for i in rows.at}
+    free = sorted(acting & {int(i) for i in np.flatnonzero(prior(len(BASELINE)) == 0)})
+    z = np.concatenate([_baseline(eq, k)[:, free] / floors[k] for k in keys])
+    left = np.concatenate([e[k] / floors[k] for k in keys])
+    return Rest(left, run, at, smooth.dt * smooth.step, z, channel != "M")
+
+
+def _baseline(eq: Equations, key: Key) -> Array:
+    """All its columns, bare, (n, b)."""
+    out = np.zeros((eq.rows[key].y.size, len(BASELINE)))
+    out[:, list(eq.rows[key].at)] = eq.bare(key, eq.rows[key].z)
+    return out
 
 
 def _coordinates(eq: Equations, key: Key) -> dict[str, Array]:

@@ -1,4 +1,5 @@
-"""What a torque has been, as a coordinate of the present: how far a play, a slow spring or a sum of it is behind.
+"""What a torque or a speed has been, as a coordinate of the present: how far a play, a slow spring or a sum of it is
+behind, in the unit of what is given.
 
 A rest with memory follows none of the things that are measured at the same moment. Three kinds of memory, each of a few
 sizes, cover what gears and sensors do: they keep a part of the last excursion (play), forget with time (leak) or keep
@@ -18,6 +19,7 @@ from rig.model.memory import play
 
 WIDTHS: Final = (0.03, 0.1, 0.3)  # of the largest torque: half widths of a play
 LEAKS: Final = (1.5, 8.0, 40.0)  # s: between a turn of the motor and a run
+STOOD: Final = 0.5  # s without a row that turns: no reversal takes so long
 LARGEST: Final = 0.99  # quantile of |torque| that counts as the largest
 
 
@@ -57,6 +59,17 @@ def since_turned(angle: Array, way: Array, run: Array) -> Array:
         start[changed] = changed
         since = np.maximum.accumulate(start)
         out[mine] = np.abs(angle[mine] - angle[mine][since])
+    return out
+
+
+def slid(angle: Array, time: Array, run: Array) -> Array:
+    """How far the motor has gone, forth and back, since it last rested for STOOD s or the run began, rad, (n,)."""
+    out = np.zeros(angle.size)
+    for one in np.unique(run):
+        mine = np.flatnonzero(run == one)
+        gone = np.cumsum(np.abs(np.diff(angle[mine], prepend=angle[mine][:1])))
+        start = np.where(np.diff(time[mine], prepend=-np.inf) > STOOD, gone, 0.0)
+        out[mine] = gone - np.maximum.accumulate(start)
     return out
 
 

@@ -1,4 +1,5 @@
-"""Ways to read the rest along a coordinate: fitted to some rows, each foretells all of them."""
+"""Ways to read the rest along a coordinate: fitted to some rows, each foretells all of them, with what it changes of
+the baseline and without zeros of runs."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ def in_bins(index: Callable[[Rest], Index]) -> Reading:
 
     def read(r: Rest, rows: Rows) -> Array:
         at = index(r)
-        return binned(r, at, rows).guess(at)
+        found = binned(r, at, rows)
+        return np.nan_to_num(found.guess(at) + r.z @ found.beside.shift)
 
     return read
 
@@ -34,7 +36,7 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
     def read(r: Rest, rows: Rows) -> Array:
         z = columns(r)
         good = np.asarray(np.isfinite(z).all(1))
-        z = np.where(good[:, None], z, 0.0)
+        z = np.hstack([np.where(good[:, None], z, 0.0), r.z])
         fitted = rows & good
         e = r.e
         if r.own_zeros:

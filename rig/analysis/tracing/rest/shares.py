@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.rest.binned import score
+from rig.analysis.tracing.rest.binned import Halves, score
 from rig.analysis.tracing.rest.bins import BINNED
 from rig.analysis.tracing.rest.coordinates import INDICES
 from rig.analysis.tracing.rest.joined import Index, Rest
@@ -26,14 +26,15 @@ PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "di
 def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Array]:
     """`share.*` of one channel: bin means of one half of the rows against the other half."""
     excess = float(np.mean(r.e**2)) - 1.0
-    fold = folds(r)
-    alone = [score(r, fold, levels(r, name)) for name in COORDINATES]
+    h = Halves(r, folds(r))
+    fold = h.fold
+    alone = [score(h, levels(r, name)) for name in COORDINATES]
     for i, (name, orders) in enumerate(ORDERS_OF.items()):
         alone[i] = max(alone[i], score_of_orders(r, fold, floors, channel, name, orders))
-    both = [score(r, fold, crossed(r, *pair)) for pair in PAIRS]
+    both = [score(h, crossed(r, *pair)) for pair in PAIRS]
     own = [channel == "L" and bool({"load", "memory"} & {*names}) for names in (*((c,) for c in COORDINATES), *PAIRS)]
     out = {f"share.{channel}": np.where(own, np.nan, np.clip(np.array(alone + both) / excess, 0.0, 1.0))}
-    line = next((h for h in homes(r, channel) if h.frequency_hz is not None), None)
+    line = next((found for found in homes(r, channel) if found.frequency_hz is not None), None)
     if line is not None and line.frequency_hz is not None:
         out[f"share_frequency_hz.{channel}"] = np.array([line.frequency_hz, min(line.share, 1.0)])
     return out

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.binned import score
+from rig.analysis.tracing.rest.binned import Halves, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE, both, turned
 from rig.analysis.tracing.rest.joined import Index, Rest, rest
 from rig.analysis.tracing.rest.readings import Reading, in_bins, in_columns, means, powers, waves
@@ -20,6 +20,7 @@ TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
+MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
 PHASES = 30  # of its period
 
@@ -40,18 +41,16 @@ class Home:
 
 def homes(r: Rest, channel: str) -> list[Home]:
     """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
-    fold = folds(r)
-    total = float(np.mean(r.e**2)) - 1.0
+    line, r = _line(r, channel), r.thinned(MOST)
+    h = Halves(r, folds(r))
     ways = [(name, index) for name, index in INDICES.items()]
     ways += [(name, index) for name, several in JOINT.items() for index in several]
-    out = [Home(name, channel, score(r, fold, of(r)) / max(total, 0.05), read=in_bins(of)) for name, of in ways]
-    late = {name: (in_bins(of), score(r, fold, of(r)) / max(total, 0.05)) for name, of in LATE.items()}
-    out += [Home(name, channel, share, read=read, late=True) for name, (read, share) in late.items()]
-    orders = [_best_order(r, fold, "motor_angle", channel), _best_order(r, fold, "load_angle", channel)]
-    out += [h for h in orders if h is not None]
-    out += [h for h in (_line(r, channel), _wound(r, fold, channel)) if h is not None]
-    out += [_by_the_clock(r, fold, channel, sense) for sense in SENSES]
-    return [replace(h, own_zeros=r.own_zeros) for h in sorted(out, key=lambda h: -h.share)]
+    out = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
+    out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
+    some = [_best_order(h, "motor_angle", channel), _best_order(h, "load_angle", channel), line, _wound(h, channel)]
+    out += [found for found in some if found is not None]
+    out += [_by_the_clock(h, channel, sense) for sense in SENSES]
+    return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
 
 
 def folds(r: Rest) -> Array:
@@ -59,8 +58,9 @@ def folds(r: Rest) -> Array:
     return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
 
 
-def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
+def _best_order(h: Halves, name: str, channel: str) -> Home | None:
     """One harmonic of an angle, order free: its share on the other fold."""
+    r = h.rest
     x = r.at[name]
     good = np.isfinite(x)
     if not good.any():
@@ -74,7 +74,7 @@ def _best_order(r: Rest, fold: Array, name: str, channel: str) -> Home | None:
     if name == "motor_angle":  # orders of the output are whole
         k = _sharpened(x, e, k, step)
     read = in_columns(lambda rest: waves(rest.at[name], k))
-    return Home(name, channel, _share(r, fold, read), order=k, read=read)
+    return Home(name, channel, _share(h, read), order=k, read=read)
 
 
 def _sharpened(x: Array, e: Array, order: float, step: float) -> float:
@@ -83,14 +83,14 @@ def _sharpened(x: Array, e: Array, order: float, step: float) -> float:
     return float(near[int(np.argmax([abs(np.exp(-1j * k * x) @ e) for k in near]))])
 
 
-def _share(r: Rest, fold: Array, read: Reading) -> float:
+def _share(h: Halves, read: Reading) -> float:
     """Of the excess, what each fold foretells of the other beyond what zeros alone do."""
-    gain = 0.0
+    r, gain = h.rest, 0.0
     for test in (0, 1):
-        seen = fold == test
+        seen = h.fold == test
         e = r.e - (means(r, ~seen) if r.own_zeros else 0.0)
         gain += float(np.sum(e[seen] ** 2 - (e - read(r, ~seen))[seen] ** 2))
-    return gain / max(r.e.size, 1) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
+    return gain / max(r.e.size, 1) / h.total
 
 
 def spectrum(x: Array, e: Array, orders: Array) -> Array:
@@ -125,10 +125,11 @@ def _line(r: Rest, channel: str) -> Home | None:
     return Home("time_periodic", channel, share, frequency_hz=float(np.median([f for f, _, _ in best])))
 
 
-def _by_the_clock(r: Rest, fold: Array, channel: str, sense: Callable[[Rest], Array]) -> Home:
+def _by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home:
     """What comes and goes with the time, of any form that all runs share: a pump, or a brake that rubs against the
     `sense` of the motion. Every run has a phase of its own, as clocks that are read to the second leave it.
     """
+    r = h.rest
     t, e = r.at["time"], r.e * sense(r)
     hz = np.arange(SLOWEST, 2 * LOWEST, 0.25 / _longest(r))
     power = sum((np.abs(_beat(t[r.run == run], e[r.run == run], hz)) ** 2 for run in np.unique(r.run)), np.zeros(1))
@@ -141,7 +142,7 @@ def _by_the_clock(r: Rest, fold: Array, channel: str, sense: Callable[[Rest], Ar
             own[mine] = np.angle(_beat(rest.at["time"][mine], signed[mine], np.array([f]))[0])
         return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
 
-    share = score(r, fold, phase(r)) / max(float(np.mean(r.e**2)) - 1.0, 0.05)
+    share = score(h, phase(r)) / h.total
     return Home("time_periodic", channel, share, frequency_hz=f, read=in_bins(phase))
 
 
@@ -165,13 +166,13 @@ def _beat(t: Array, e: Array, hz: Array) -> Array:
     return np.asarray(np.exp(-1j * TURN * np.multiply.outer(hz, at)) @ mean)
 
 
-def _wound(r: Rest, fold: Array, channel: str) -> Home | None:
+def _wound(h: Halves, channel: str) -> Home | None:
     """The output angle gone since the run began, which does not come round: a cable winds up. Said late: in runs of
     constant speed it is the speed and the time as well."""
-    if not np.isfinite(r.at["load_angle"]).all():
+    if not np.isfinite(h.rest.at["load_angle"]).all():
         return None
     read = in_columns(lambda rest: powers(rest.at["load_angle"]))
-    return Home("load_angle", channel, _share(r, fold, read), read=read, late=True)
+    return Home("load_angle", channel, _share(h, read), read=read, late=True)
 
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
@@ -217,6 +218,7 @@ def smooth_term(
         np.concatenate([train.run, test.run]),
         {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
         train.dt,
+        np.concatenate([train.z, test.z]),
         found.own_zeros,
     )
     if found.read is None:

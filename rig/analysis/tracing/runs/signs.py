@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.model import Solution, covariance
+from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Signals

@@ -1,0 +1,49 @@
+"""How well coefficients are known: by what leaving single runs out would change of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rig.analysis.tracing.fit.model import Solution
+from rig.model.effect import Array
+
+FEW = 12  # runs: with fewer their pieces are left out instead, each many correlation times long
+LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be told by the others
+
+
+def covariance(s: Solution) -> Array:
+    """Jackknife (p, p), all channels of a run together      [mackinnon1985]
+
+    Runs differ by what no row shows: gains that drift, small effects that are in no model. Without run r, whose normal
+    matrix is G_r and whose score is u_r, the fit is off by (G − G_r)⁻¹·u_r.
+    """
+    scale = np.where(np.diag(s.gram) > 0, 1 / np.sqrt(np.maximum(np.diag(s.gram), 1e-300)), 0.0)
+    scaled = s.gram * scale * scale[:, None]
+    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    root = np.linalg.inv(np.linalg.cholesky(scaled)) * scale
+    out, count = np.zeros_like(s.gram), 0
+    for gram, score in _clusters(s):
+        share, along = np.linalg.eigh(root @ gram @ root.T)
+        off = root.T @ (along @ ((along.T @ (root @ score)) / (1 - np.minimum(share, LEVERAGE))))
+        out += np.outer(off, off)
+        count += 1
+    return np.asarray(out * (count - 1) / max(count, 1))
+
+
+def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:
+    """Normal matrix (p, p) and score (p,) of each run, or of its pieces."""
+    runs = sorted({run for run, _ in s.keys})
+    pieces = -(-FEW // len(runs))
+    for run in runs:
+        keys = [key for key in s.keys if key[0] == run]
+        blocks = {key: (*s.design.whole(key), s.residual(key)) for key in keys}
+        for i in range(pieces):
+            gram, score = np.zeros_like(s.gram), np.zeros(s.x.size)
+            for key, (z, at, e) in blocks.items():
+                some = np.array_split(np.arange(e.size), pieces)[i]
+                weight = s.design.eq.noise.weight(key[1])
+                gram[np.ix_(at, at)] += weight * (z[some].T @ z[some])
+                score[at] += weight * (z[some].T @ e[some])
+            yield gram, score
