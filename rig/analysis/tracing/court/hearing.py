@@ -6,13 +6,14 @@ the true one was never asked.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.court.judge import Court, Worth, convicted, court, unresolved, unseen
 from rig.analysis.tracing.court.shadows import unmasked
 from rig.analysis.tracing.fit.bank import Bank
+from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced, search
@@ -20,10 +21,14 @@ from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_shares
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
-from rig.model.effect import Parameter, Reach
+from rig.model.effect import Array, Parameter, Reach
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
+
+
+Words = dict[str, tuple[Parameter, ...]]
+"""Parameters by effect."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +39,7 @@ class Heard:
     solution: Solution
     held: Design
     worths: list[Worth]
-    words: dict[str, tuple[Parameter, ...]]
+    words: Words
 
     @property
     def loud(self) -> bool:
@@ -52,14 +57,12 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
         solution, held, worths = _polished(p, solution, (solution, held, worths), runs, covered)
     p, solution = _own_convicted(p, solution)
     solution, held, worths = convicted(unmasked(solution, runs), p.court)
-    words = _in_words(solution, runs)
-    while vague := unresolved(solution, words, covered):
+    while vague := unresolved(solution, _in_words(solution, runs, scatter), covered):
         # one at a time: without it another one's law may be plain
         least = min((w for w in worths if w.name in vague), key=lambda w: min(w.share, 1.0) * w.size).name
         gone = [i for i, term in enumerate(solution.design.terms) if term.name == least]
         solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
-        words = _in_words(solution, runs)
-    return Heard(p, solution, held, worths, words)
+    return Heard(p, solution, held, worths, _in_words(solution, runs, covariance))
 
 
 def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Heard:
@@ -89,8 +92,8 @@ def _polished(p: Prepared, s: Solution, so_far: Convicted, runs: Sequence[int], 
     return again if kept >= {term.name for term in s.design.terms} else so_far
 
 
-def _in_words(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
-    return effects(s, runs) if s.design.terms else {}
+def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
+    return effects(s, runs, spread) if s.design.terms else {}
 
 
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:

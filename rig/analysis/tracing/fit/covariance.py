@@ -1,4 +1,4 @@
-"""How well coefficients are known: by what leaving single runs out would change of them."""
+"""How well coefficients are known: by what leaving single runs out would change of them, and by the noise alone."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.model import Solution, inverse
 from rig.model.effect import Array
 
+PIECES = 4  # of a run and channel: each many correlation times long
 FEW = 12  # runs: with fewer their pieces are left out instead, each many correlation times long
 LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be told by the others
 
@@ -30,6 +31,21 @@ def covariance(s: Solution) -> Array:
         out += np.outer(off, off)
         count += 1
     return np.asarray(out * (count - 1) / max(count, 1))
+
+
+def scatter(s: Solution) -> Array:
+    """Cluster-robust covariance (p, p) of what the rows say by themselves: every run and channel in quarters. Narrower:
+    one run that alone shows something counts in full      [liang1986]"""
+    d = s.design
+    meat, clusters = np.zeros_like(s.gram), 0
+    for key in s.keys:
+        (z, at), e = d.whole(key), s.residual(key)
+        for part in np.array_split(np.arange(e.size), PIECES):
+            u = d.eq.noise.weight(key[1]) * (z[part].T @ e[part])
+            meat[np.ix_(at, at)] += np.outer(u, u)
+            clusters += 1
+    bread = inverse(s.gram)
+    return np.asarray(bread @ meat @ bread * clusters / max(1, clusters - d.size))
 
 
 def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:

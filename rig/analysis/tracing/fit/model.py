@@ -217,3 +217,11 @@ def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
             right[i] += pin * at
             x = solve(gram, right)
     return x, gram, right
+
+
+def inverse(gram: Array) -> Array:
+    """Inverse of a normal matrix, zero where nothing was measured."""
+    scale = np.where(np.diag(gram) > 0, 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300)), 0.0)
+    scaled = gram * scale * scale[:, None]
+    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    return np.asarray(np.linalg.inv(scaled) * scale * scale[:, None])

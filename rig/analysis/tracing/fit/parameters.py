@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -60,8 +60,11 @@ def _of(name: str, value: float, along: Array, c: Array, unit: str) -> Parameter
     return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
 
 
-def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]]:
-    """Parameters of every effect in the model; the shape's uncertainty is in all intervals."""
+def effects(
+    s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array] = covariance
+) -> dict[str, tuple[Parameter, ...]]:
+    """Parameters of every effect in the model; the shape's uncertainty is in all intervals, which are as wide as
+    `spread` says."""
     d, slopes = s.design, []
     for i, term in enumerate(s.design.terms):
         for j, loose in enumerate(term.effect.loose):
@@ -70,7 +73,7 @@ def effects(s: Solution, runs: Sequence[int]) -> dict[str, tuple[Parameter, ...]
                 d = extended(d, nudged(term, j, s.x[s.design.place(i)]), runs)
     wide = fit(d)
     # about the solution itself: the added columns only widen the intervals
-    c = covariance(replace(wide, x=np.concatenate([s.x, np.zeros(len(slopes))])))
+    c = spread(replace(wide, x=np.concatenate([s.x, np.zeros(len(slopes))])))
     out: dict[str, tuple[Parameter, ...]] = {}
     for i, term in enumerate(s.design.terms):
         out[term.name] = joined(out.get(term.name, ()), term.effect.parameters(_fit(s, c, i, slopes)), term.effect.adds)

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
@@ -66,7 +66,7 @@ def _both_ways(run: Recording) -> bool:
 
 def refuse_negative(s: Solution, name: str) -> None:
     """Raises UsageError when a sensor's sign is the other way round than the rest of the campaign `name` says."""
-    spread = np.sqrt(np.maximum(np.diag(covariance(s)), 0.0))
+    spread = np.sqrt(np.maximum(np.diag(scatter(s)), 0.0))
     for sensor, (coefficients, words) in NEGATIVE.items():
         if all(s.value(c) < -SURELY * spread[INDEX[c]] and s.value(c) < 0.0 for c in coefficients):
             raise UsageError(f"{name}: {words}; {sensor} seems to have the other sign than equations 6 and 7 give it")
