@@ -10,6 +10,7 @@ from rig.campaign.changes import ByHand, Deed, Measure, deeds
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
 from rig.campaign.swing import RPM, declared_gear, resonance_speed
+from rig.campaign.unseen import unseen
 from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
@@ -94,6 +95,7 @@ def lines(campaign: Campaign, runs: Sequence[int] | None = None) -> Iterator[str
         yield from _told(campaign, deed)
     yield ""
     yield from totals(campaign, todo)
+    yield from unseen(campaign)
 
 
 def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:

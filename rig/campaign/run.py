@@ -13,6 +13,7 @@ from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
+from rig.campaign.unseen import unseen
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Rigging
 from rig.interrupts import Interrupts
@@ -73,6 +74,9 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     """
     exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
+        for told in unseen(campaign):
+            desk.say(told)
+            journal.tell(told)
         settle(session, journal, desk)
         exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
