@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rig.live.calm import Calm
 from rig.live.view import colours
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
@@ -30,7 +31,7 @@ class Orders(Drawing):
 
     def __init__(self, ratio: float) -> None:
         self._ratio = ratio
-        self._turns = Turns()
+        self._calm, self._turns = Calm(), Turns()
         self._last: deque[Turn] = deque(maxlen=SPAN)
         self._shown: list[Turn] = []
 
@@ -41,7 +42,7 @@ class Orders(Drawing):
 
     def add(self, block: Block, canvas: Canvas) -> None:
         theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
-        here = np.isfinite(theta) & np.isfinite(error)
+        here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         done = self._turns.add(theta[here], error[here])
         for turn in done:
             if self._last and (turn.way != self._last[-1].way or turn.number != self._last[-1].number + turn.way):
