@@ -64,12 +64,14 @@ class Folded(Drawing):
         self._frame = Frame(x, Axis("θ̃ less its mean, at the output", "arcsec", -60.0, 60.0, most=8))
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """Frame, sides and banner as they stand at run time `t` s."""
         if self._banner:
             where = np.array([[WIDTH - 16.0, -10.0]], dtype=np.float32)
             canvas.words(f"{PATH}/banner", None, where, [self._banner], colours.MARK)
         self._draw_done(t, canvas)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run in progress; a whole turn is drawn into its side, a part of one upon it."""
         theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         if not here.any():

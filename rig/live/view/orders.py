@@ -36,11 +36,13 @@ class Orders(Drawing):
         self._shown: list[Turn] = []
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """The bars as they stand at run time `t` s, arcsec over orders of the motor turn; empty before two turns."""
         at = np.arange(0.0, HIGHEST + STEP / 2, STEP)
         at, amplitude = bars(self._shown) if self._shown else (at, np.zeros_like(at))
         canvas.bars(PATH, t, at, amplitude, colours.FORWARD)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run; the bars are drawn anew when a whole turn has come."""
         theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         done = self._turns.add(theta[here], error[here])

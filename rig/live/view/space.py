@@ -36,6 +36,7 @@ class Space(Drawing):
         self._times = DRAWN * about.ratio / CUP  # how much larger than real
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """Everything that keeps its shape: it is drawn once and has no time."""
         _stand(canvas)
         _wave_generator(canvas)
         _flexspline(canvas)
@@ -53,6 +54,7 @@ class Space(Drawing):
             canvas.signs(f"{PATH}/banner", above, [self._about.banner], colours.MARK)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run: angles [rad] turn the bodies, the material marks go with both."""
         shown = _pictures(block)
         theta_m, theta_l = _held(shown["theta_m"]), _held(shown["theta_l"])
         canvas.turn(f"{PATH}/wave_generator", shown.t, theta_m)
