@@ -47,7 +47,7 @@ CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
-TELLS = {0x6077: "torque", 0x6064: "position"}
+TELLS = {0x6061: "mode", 0x6077: "torque", 0x6064: "position"}
 MOTION = (Mapped(0x6064, 0, 32, "i"),)
 CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
 NOTHING = (0, 0)  # for the targets of other modes, in the fixed RPDOs of some drives
@@ -100,7 +100,7 @@ class Cia402(Drive):
         return identity
 
     def _configure(self) -> None:
-        for told in (*STATUS[2:], *MOTION):
+        for told in (*STATUS[1:], *MOTION):
             if self.node.lacks(told.at):  # small nodes take it into a PDO all the same, and tell zeros
                 raise NotReady(f"{self.node.who} does not tell its {TELLS[told.at]} ({told.at:04X}h)")
         self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
