@@ -186,8 +186,8 @@ function field({ name, type, unit, default: value, meaning }, kept) {
 /** How long it takes, what it stores, and which limit it comes nearest to: in sight without opening anything. */
 function summed(sums) {
   if (!sums) return [];
-  const rows = [["stored energy", `at most ${plain(Number(sums.stored_j.toPrecision(2)))} J`], ["duration", `at most ${lasting(sums.duration_s)}`], ["tightest margin", `${sums.nearest}, ${Math.floor(100 * sums.left)} % left`]];
-  return rows.map(([what, value]) => h("li", { className: "sum" }, h("span", { className: "what" }, what), h("span", { className: "value" }, value)));
+  const told = [["stored energy", `≤ ${plain(Number(sums.stored_j.toPrecision(2)))}\u00a0J`], ["duration", `≤ ${lasting(sums.duration_s)}`], ["tightest margin", `${sums.nearest}, ${Math.floor(100 * sums.left)}\u00a0%`]];
+  return [h("li", { className: "sums" }, ...told.map(([what, value]) => h("span", {}, h("small", {}, what), h("b", {}, value))))];
 }
 
 /** How much of a limit the run asks for. */
