@@ -77,8 +77,12 @@ class AsciiTorque(TorqueSensor):
         return self._last
 
     def clear(self) -> None:
-        """Look anew; a port that is gone stays gone until it is connected again."""
-        self.read()
+        """Look anew; a port that is gone stays gone until it is connected again. Raises NotReady: it is silent."""
+        before, until = self.read(), time.monotonic() + PATIENCE
+        while not self.port.dead and self.read() is before:
+            if time.monotonic() > until:
+                raise NotReady(f"{self.port.who} has told no torque for {PATIENCE:g} s")
+            time.sleep(0.005)
 
     def close(self) -> None:
         """Let the port go."""

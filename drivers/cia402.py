@@ -28,6 +28,7 @@ from drivers.profile402 import (
     state_of,
 )
 from drivers.scales402 import compare_scales
+from drivers.silence import UNANSWERED
 from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
@@ -39,13 +40,14 @@ from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 PROFILE = 402
 VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage
 NEVER = -1e9  # s, a latch time older than any
+WATCHDOG = 0.1  # s, where the bench file says none
+LONGER = 1.5  # times what the guard allows: the host stops first and says why
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
-UNANSWERED = 2.5  # periods without an answer: one frame may be lost, two may not
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
-TELLS = {0x6077: "torque", 0x6064: "position"}
+TELLS = {0x6061: "mode", 0x6077: "torque", 0x6064: "position"}
 MOTION = (Mapped(0x6064, 0, 32, "i"),)
 CHOSEN = (Mapped(0x6060, 0, 8, "b"),)  # in the fixed RPDOs of some drives: told what it has already
 NOTHING = (0, 0)  # for the targets of other modes, in the fixed RPDOs of some drives
@@ -98,7 +100,7 @@ class Cia402(Drive):
         return identity
 
     def _configure(self) -> None:
-        for told in (*STATUS[2:], *MOTION):
+        for told in (*STATUS[1:], *MOTION):
             if self.node.lacks(told.at):  # small nodes take it into a PDO all the same, and tell zeros
                 raise NotReady(f"{self.node.who} does not tell its {TELLS[told.at]} ({told.at:04X}h)")
         self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
@@ -123,7 +125,8 @@ class Cia402(Drive):
         self.mode = mode
 
     def _arm(self) -> str:
-        return watchdog402.arm(self.node, round(1000 * self.place.options.get("watchdog", 0.1)))
+        seconds = self.place.options.get("watchdog", max(WATCHDOG, LONGER * self.place.stale))
+        return watchdog402.arm(self.node, round(1000 * seconds))
 
     def _disarm(self) -> None:
         watchdog402.disarm(self.node, self.guarded)
@@ -132,6 +135,11 @@ class Cia402(Drive):
         self.bus.frames.clear()
         self._inputs.first(0.5)
         self.read()
+
+    @property
+    def silent(self) -> str:
+        """Which of its frames, where it tells all there is in several."""
+        return self._inputs.silent
 
     def clear(self) -> None:
         """Nothing: its fault goes by `reset_fault`."""

@@ -14,6 +14,7 @@ from typing import ClassVar
 
 from drivers import cansimple as cs
 from drivers.axis import Axis
+from drivers.silence import UNANSWERED, missing
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.devices import Drive, DriveReading, Identity, torque_only
@@ -26,7 +27,6 @@ STEP_PATIENCE = 2.0  # s for a change of state, seen in a heartbeat
 ANSWER = 0.1  # s for the first readings
 COUNTED = 0.03  # s over which unasked readings are counted
 FEED = 0.01  # s between commands while it changes state: they feed its watchdog
-UNANSWERED = 2.5  # periods without a reading: one frame may be lost, two may not
 CONFIRM = 0.5  # s for a heartbeat that says it is off; the frame that takes the torque off has long been sent
 LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
 SPEED_MARGIN = 1.1  # the axis limits speed by itself a little above the guard's limit: the guard comes first
@@ -112,11 +112,21 @@ class ODrive(Drive):
             self.bus.frames.pop(identifier, None)
         self.bus.latch()
         if not self.bus.wait(ANSWER, lambda: {self._motion, self._effort} <= self.bus.frames.keys()):
-            silent = [f"0x{i & 0x1F:02X}" for i in (self._motion, self._effort) if i not in self.bus.frames]
+            silent = [_message(i) for i in (self._motion, self._effort) if i not in self.bus.frames]
             told = " and ".join(silent)
             raise NotReady(f"{self.axis.who} does not tell {told}, neither unasked nor asked by a remote frame")
         self._turns = NAN
         self.read()
+
+    @property
+    def silent(self) -> str:
+        """Estimates or torques, where only one of them comes."""
+        motion, effort = self.bus.frames.get(self._motion), self.bus.frames.get(self._effort)
+        if motion is None or effort is None:
+            return ""
+        heard = {_message(self._motion): motion.arrived, _message(self._effort): effort.arrived}
+        told = missing(heard, self.place.period)
+        return f"of {self.axis.who} {told}" if told else ""
 
     def clear(self) -> None:
         """Nothing: its fault goes by `reset_fault`."""
@@ -262,3 +272,10 @@ class ODrive(Drive):
             raise NotReady(f"{self.axis.error}, also after a reset")
         self.trouble = ""
         self._first_reading()
+
+
+def _message(identifier: int) -> str:
+    """What a message is, with its number in the maker's document."""
+    command = identifier & 0x1F
+    names = {cs.ESTIMATES: "its position", cs.TORQUES: "its torque", cs.IQ: "its current"}
+    return f"{names[command]} (0x{command:02X})"

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from drivers.bus import Frame
 from drivers.mapping import EVENTS, EXTENDED, INVALID, keep_sending, map_pdo, switch_off_pdo
 from drivers.node import Mapped, Node, Refused
+from drivers.silence import missing
 from rig.core.errors import NotReady
 
 NEVER = -1e9  # s, before all of its frames are there
@@ -138,6 +139,14 @@ class Inputs:
     def there(self) -> bool:
         """True when all of them have come."""
         return all(one.identifier in self.node.bus.frames for one in self._layouts)
+
+    @property
+    def silent(self) -> str:
+        """Which of its frames stays away while others come, in words."""
+        frames = self.node.bus.frames
+        heard = {f"frame 0x{i:03X}": frames[i].arrived for i in self.identifiers if i in frames}
+        told = missing(heard, self.period)
+        return f"of {self.node.who} {told}" if told else ""
 
     def first(self, seconds: float) -> None:
         """Throw away what came before, ask by a SYNC, wait. Raises NotReady when nothing comes."""

@@ -99,8 +99,12 @@ class Qsb(Encoder):
         self._last = AngleReading(self._clock.now() - self._delay, counts * self._step, counts, int(flags))
 
     def clear(self) -> None:
-        """Look anew; a port that is gone stays gone until it is connected again."""
-        self.read()
+        """Look anew; a port that is gone stays gone until it is connected again. Raises NotReady: it is silent."""
+        before, until = self.read(), time.monotonic() + PATIENCE
+        while not self.port.dead and self.read() is before:
+            if time.monotonic() > until:
+                raise NotReady(f"{self.port.who} has told no count for {PATIENCE:g} s")
+            time.sleep(0.005)
 
     def close(self) -> None:
         """Stop the stream, let the port go."""

@@ -28,6 +28,7 @@ class Place:
     following: float = 0.0  # rad that it may lag behind its reference at that speed; 0: nobody has said
     range: float = 0.0  # N·m of a torque sensor, either way
     period: float = 0.001  # s, one tick of the loop
+    stale: float = 0.0  # s after which the guard ends a run for want of news
 
     @property
     def where(self) -> str:

@@ -169,6 +169,7 @@ class Bench:
             following=limits.following + limits.following_time * limits.speed,
             range=f.torque_sensor.range if f.torque_sensor else 0.0,
             period=1.0 / f.loop.rate,
+            stale=limits.stale,
         )
 
     def device(self, role: str) -> Callable[..., Device] | None:
@@ -279,6 +280,13 @@ def _check_together(bench: Bench) -> None:
                 f"{bench.source}: a watchdog of {device.watchdog:g} s is under three periods of the loop "
                 f"({3 / f.loop.rate:g} s at {f.loop.rate:g} Hz)"
             )
+    watchdog, stale = f.devices.drive.watchdog, f.limits.stale_s
+    if watchdog is not None and watchdog <= stale:
+        raise UsageError(
+            f"{bench.source}: devices.drive.watchdog = {watchdog:g} s is no longer than limits.stale_s = {stale:g} s: "
+            "the drive would take the torque off before the guard does and nobody would know why; expected a longer "
+            "watchdog, or a shorter stale_s"
+        )
     if f.loop.latch_lead * f.loop.rate >= 1:
         raise UsageError(
             f"{bench.source}: loop.latch_lead = {f.loop.latch_lead:g} s is no shorter than the period of "

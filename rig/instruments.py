@@ -75,6 +75,10 @@ class Instruments:
         """What is wrong with the devices as of their last readings, the first of it; "" when nothing is."""
         return next((device.trouble for device in self.devices if device.trouble), "")
 
+    def silent(self) -> str:
+        """Which message of which device stays away while its others come, the first of them; "" when none does."""
+        return next((device.silent for device in self.devices if device.silent), "")
+
     def start(self) -> None:
         """From here time counts from zero, and nothing read before is news."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock

@@ -12,7 +12,7 @@ from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
-from rig.guard import Guard
+from rig.guard import Guard, Trip
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
 from rig.realtime import RealTime
@@ -132,6 +132,7 @@ class Loop:
             trip = check(sample, asked)
             if trip is not None:
                 self.instruments.cut()
+                trip = self._explained(trip)
                 self.tripped(trip.sentence)
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
@@ -190,6 +191,11 @@ class Loop:
                 break
             woken = now
         return now
+
+    def _explained(self, trip: Trip) -> Trip:
+        """Data too old to act on: where a device tells one thing and not the other, which it is."""
+        told = self.instruments.silent() if trip.name == "stale" else ""
+        return trip._replace(sentence=f"{trip.sentence}; {told}") if told else trip
 
     def _last_row(self, sample: Sample, asked: Setpoint) -> None:
         """What was seen when the torque had just been taken off."""

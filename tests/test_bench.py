@@ -69,6 +69,8 @@ def test_the_clock_is_the_world_or_the_wall_and_never_virtual_on_real_devices(
         ("devices.load_encoder.node=1", r"two devices are node 1 on bus 'rig'"),
         ("loop.latch_lead=0.6", r"latch_lead = 0.6 s is no shorter than the period of 0.001 s"),
         ("loop.rate=250,devices.drive.watchdog=0.01", r"a watchdog of 0.01 s is under three periods"),
+        ("devices.drive.watchdog=0.05", r"devices.drive.watchdog = 0.05 s is no longer than limits.stale_s = 0.1 s"),
+        ("limits.stale_s=0.15", r"watchdog = 0.15 s is no longer than limits.stale_s = 0.15 s.*expected a longer"),
         ("limits.stale_s=100", r"stale_s = 100.* s: expected less than or equal to 1"),
     ],
 )

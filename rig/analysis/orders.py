@@ -89,6 +89,7 @@ def _sinusoids(turns: Array, orders: Array) -> Callable[[int, int], Array]:
     index = orders[whole].astype(np.int64) - 1
 
     def columns(lo: int, hi: int) -> Array:
+        """(1 + 2·orders, hi − lo): ones, cosines, sines at the rows `lo` to `hi`."""
         k = orders.size
         out = np.empty((1 + 2 * k, hi - lo))
         out[0] = 1.0
@@ -192,6 +193,7 @@ def _clean(turns: Array, values: Array, orders: Array) -> tuple[Array, Array]:
     plain, k, reach = _sinusoids(turns, orders), orders.size, float(np.abs(turns).max())
 
     def columns(lo: int, hi: int) -> Array:
+        """(1 + 4·orders, hi − lo): those of `plain`, then its waves again, growing from −1 to 1 along the span."""
         steady = plain(lo, hi)
         return np.concatenate((steady, steady[1:] * (turns[lo:hi] / reach)))
 

@@ -11,13 +11,10 @@ import numpy.typing as npt
 
 from rig.analysis.angle import ARCSEC, RPM, TURN, is_wrapped, transmission_error, unwrap
 from rig.analysis.result import Array
-from rig.core.channels import Flag
+from rig.core.channels import UNTRUSTED, Flag
 
 FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
 SLOWEST = 60.0  # s between rows: nothing that turns is recorded more slowly
-
-UNTRUSTED = Flag.STALE_M | Flag.STALE_L | Flag.FROZEN_M | Flag.FROZEN_L | Flag.TRIPPED
-"""Rows in which the two angles do not belong together, or the drive had let go."""
 
 
 class Source(Protocol):

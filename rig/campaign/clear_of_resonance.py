@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from rig.bench import Bench
-from rig.campaign.swing import ARCMIN, into_resonance, predicted
+from rig.campaign.swing import ORDER_2, into_resonance, predicted
 from rig.core.errors import NotReady
 from rig.core.procedure import Procedure
-
-ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin peak to peak can hold, as in plans
 
 
 def refuse_resonance(bench: Bench, procedure: Procedure) -> None:

@@ -6,10 +6,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from rig.bench import Bench
 from rig.campaign.changes import ByHand, Deed, Measure, deeds
 from rig.campaign.planner import Campaign
+from rig.campaign.preview import stored_energy
 from rig.campaign.steps import Item
 from rig.campaign.swing import RPM, declared_gear, resonance_speed
+from rig.campaign.unseen import unseen
 from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
@@ -38,15 +41,14 @@ class Figures:
 
 def figures(campaign: Campaign, item: Item) -> Figures:
     """What one run asks for at most."""
-    envelope, bench, gear = campaign.envelope(item), campaign.bench, campaign.bench.file.gear
+    envelope, bench = campaign.envelope(item), campaign.bench
     shaft = campaign.shaft_torque(item)
-    inertia = gear.J_m + (0.0 if item.rigging.output_locked else gear.J_l / gear.N**2)
     return Figures(
         duration=envelope.duration,
         travel=envelope.travel,
         speed=envelope.speed,
         torque=envelope.torque,
-        energy=0.5 * inertia * envelope.speed**2 + 0.5 * shaft**2 / gear.K,
+        energy=stored_energy(bench, item.procedure, shaft),
         swing=campaign.swing(item),
         shaft_torque=shaft,
         bytes=rows_bytes(envelope.duration * bench.file.loop.rate),
@@ -94,6 +96,7 @@ def lines(campaign: Campaign, runs: Sequence[int] | None = None) -> Iterator[str
         yield from _told(campaign, deed)
     yield ""
     yield from totals(campaign, todo)
+    yield from unseen(campaign)
 
 
 def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:
@@ -112,31 +115,21 @@ def _told(campaign: Campaign, deed: Deed) -> Iterator[str]:
 
 def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
     """Sums, the least margins, and what was assumed."""
-    bench, limits = campaign.bench, campaign.bench.limits
+    bench = campaign.bench
     items = [deed.item for deed in todo if isinstance(deed, Measure)]
     found = [figures(campaign, item) for item in items]
-    setting = bench.setting(lambda text: None)
     by_hand = [deed for deed in todo if isinstance(deed, ByHand)]
-    checks = [
-        SignAndScale(),
-        *([Weigh()] if limits.shaft_torque else []),
-        *(check for deed in by_hand for check in checks_of(deed.change)),
-    ]
-    checking = sum(check.envelope(setting).duration for check in checks)
-    duration = sum(f.duration for f in found)
-    hand = CHANGE * len(by_hand) if bench.by_person else 0.0
+    duration, checking, hand = lasting(campaign, todo)
     size = sum(f.bytes for f in found) + rows_bytes(checking * bench.file.loop.rate)
-    yield f"total       {len(found)} runs, {len(by_hand)} changes by hand, {len(checks)} checks"
+    yield f"total       {len(found)} runs, {len(by_hand)} changes by hand, {len(checks_in(bench, by_hand))} checks"
     yield (
         f"duration    {_time(duration + checking + hand)}: {_time(duration)} of runs, {_time(checking)} of checks"
         + (f", about {_time(hand)} by hand" if hand else " of rig time")
     )
     yield f"size        about {size / 1e6:.0f} MB"
-    yield _margin("travel", max(f.travel for f in found) / TURN, limits.travel / TURN, "turns")
-    yield _margin("speed", max(f.speed for f in found) / RPM, limits.speed / RPM, "rpm")
-    yield f"torque      at most {max(f.torque for f in found):g} N·m (clamped), limit {limits.torque:g} N·m"
-    if limits.shaft_torque is not None:
-        yield _margin("shaft", max(f.shaft_torque for f in found), limits.shaft_torque, "N·m")
+    for what, asked, limit, unit in asked_of(bench, found):
+        clamped = f"torque      at most {asked:g} N·m (clamped), limit {limit:g} N·m"
+        yield clamped if what == "torque" else _margin(what, asked, limit, unit)
     yield f"stored      at most {max(f.energy for f in found):.3f} J, in motion and wound up in the gear"
     at = resonance_speed(declared_gear(bench)) / RPM
     yield (
@@ -151,6 +144,33 @@ def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
             f"weights     at most {heaviest:g} N·m, {heaviest / bench.file.gear.N:.2f} N·m at the motor: refused if "
             f"the proof finds a gear that might not hold it; it travels {turns:.2f} turns of the output at most"
         )
+
+
+def checks_in(bench: Bench, by_hand: Sequence[ByHand]) -> list[Procedure]:
+    """Proof, the unloaded weighing, and what shows each change."""
+    tare: list[Procedure] = [Weigh()] if bench.limits.shaft_torque else []
+    return [SignAndScale(), *tare, *(check for deed in by_hand for check in checks_of(deed.change))]
+
+
+def lasting(campaign: Campaign, todo: Sequence[Deed]) -> tuple[float, float, float]:
+    """s of runs, of checks, and that a person takes for the changes."""
+    setting, by_hand = campaign.bench.setting(lambda text: None), [deed for deed in todo if isinstance(deed, ByHand)]
+    checking = sum(check.envelope(setting).duration for check in checks_in(campaign.bench, by_hand))
+    runs = sum(campaign.envelope(deed.item).duration for deed in todo if isinstance(deed, Measure))
+    return runs, checking, CHANGE * len(by_hand) if campaign.bench.by_person else 0.0
+
+
+def asked_of(bench: Bench, found: Sequence[Figures]) -> list[tuple[str, float, float, str]]:
+    """(what, the most that any of the runs asks for, limit, unit); "torque" is where the loop is clamped."""
+    limits = bench.limits
+    asked = [
+        ("travel", max(f.travel for f in found) / TURN, limits.travel / TURN, "turns"),
+        ("speed", max(f.speed for f in found) / RPM, limits.speed / RPM, "rpm"),
+        ("torque", max(f.torque for f in found), limits.torque, "N·m"),
+    ]
+    if limits.shaft_torque is not None:
+        asked.append(("shaft", max(f.shaft_torque for f in found), limits.shaft_torque, "N·m"))
+    return asked
 
 
 def _margin(what: str, asked: float, limit: float, unit: str) -> str:

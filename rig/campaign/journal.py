@@ -100,6 +100,15 @@ class Journal:
         self.book |= {"pending": None, "rigging": rigging.conditions()}
         self._save()
 
+    def note(self, text: str) -> str:
+        """Something for every run from now on; returns what that is: `text`, or where that is empty what was said
+        before.
+        """
+        if text:
+            self.book["note"] = text
+            self._save()
+        return str(self.book.get("note") or "")
+
     def tell(self, text: str) -> None:
         """Something worth keeping: proof, tare, a trip, an end."""
         self.book["notes"].append({"utc": utc_now(), "text": text})

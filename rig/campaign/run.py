@@ -13,6 +13,7 @@ from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
+from rig.campaign.unseen import unseen
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Rigging
 from rig.interrupts import Interrupts
@@ -51,13 +52,16 @@ def open_session(
     hand: Operator | None = None,
     observer: Observer | None = None,
 ) -> Session:
-    """The campaign's runs directly in its folder; proofs and weighings, which are no part of the data, beside them."""
+    """The campaign's runs directly in its folder; proofs and weighings, which are no part of the data, beside them.
+
+    `note` stands in the manifest of each of them.
+    """
     return Session(
         campaign.bench,
         clock,
         journal.folder,
         interrupts,
-        note,
+        journal.note(note),
         hand,
         create=create_in,
         checks="checks",
@@ -73,6 +77,9 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     """
     exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
+        for told in unseen(campaign):
+            desk.say(told)
+            journal.tell(told)
         settle(session, journal, desk)
         exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
@@ -180,7 +187,8 @@ def _shown(session: Session, desk: Desk, change: Change) -> str:
 def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk, index: int) -> Exit:
     """One run, whatever becomes of it written down."""
     item = campaign.items[index]
-    session.note, checks = item.note, session.facts
+    note, checks = session.note, session.facts
+    session.note = "; ".join(part for part in (note, item.note) if part)
     rig_time = journal.begin(index, session.instruments.clock.now())
     session.facts = {"campaign": {
         "uid": journal.book["uid"], "run": index + 1, "kind": item.kind, "repeat": item.repeat, "of": item.of,
@@ -195,7 +203,7 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
         desk.say(f"run {status}: {error}")
         return error.exit
     finally:
-        session.note, session.facts = "", checks
+        session.note, session.facts = note, checks
     return _ended(journal, desk, index, done)
 
 

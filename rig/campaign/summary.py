@@ -14,6 +14,8 @@ def lines(journal: Journal) -> Iterator[str]:
     book = journal.book
     simulated = "SIMULATED " if book["backend"] == "sim" else ""
     yield f"{simulated}campaign {book['name']} {book['status']}: {book['sentence']}"
+    if book.get("note"):
+        yield f"note: {book['note']}"
     yield f"begun {book['started_utc'][:19]} UTC, {len(book['sessions'])} session(s), order seed {book['seed']}"
     yield ""
     for number, entry in enumerate(book["runs"], 1):

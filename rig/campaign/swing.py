@@ -16,6 +16,7 @@ ORDER = 2  # the wave generator is an ellipse: twice a turn is what it does most
 CLEAR = 0.85  # of the resonance's speed: nearer, a run would swing over 3.6 times as far as its spring alone lets it
 ARCMIN = math.pi / 180 / 60
 RPM = math.pi / 30
+ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin peak to peak can hold, as in plans
 
 
 def declared_gear(bench: Bench) -> Gear:

@@ -20,6 +20,7 @@ from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
+from rig.commands.afterwards import afterwards
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.perform import let_be
 from rig.commands.person import Person
@@ -136,40 +137,7 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
     if exit:
         print(f"hdrig campaign --resume {journal.folder} goes on with it", file=sys.stderr)
         return int(exit)
-    return LAST.get(str(journal.book["name"]), nothing)(journal.folder)
-
-
-def nothing(folder: Path) -> int:
-    """What follows most campaigns."""
-    return 0
-
-
-def to_gear_file(folder: Path) -> int:
-    """Parameters with intervals, on stdout and in the campaign's folder."""
-    from rig.commands.identify import identify
-
-    return identify([folder], folder / "gear.toml")
-
-
-def to_load_law(folder: Path) -> int:
-    """Peak to peak against load, on stdout, in the summary and as a report."""
-    from rig.commands.sweep_report import load_sweep_of
-
-    return load_sweep_of(folder)
-
-
-def to_depths(folder: Path) -> int:
-    """Peak to peak by depth with the reproducibility band, on stdout, in the summary and as a report."""
-    from rig.commands.sweep_report import assembly_sweep_of
-
-    return assembly_sweep_of(folder)
-
-
-LAST = {
-    "identify": to_gear_file,
-    "load-sweep": to_load_law,
-    "assembly-sweep": to_depths,
-}  # what follows the last run of a campaign, by the name of its plan
+    return afterwards(journal.folder)
 
 
 def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:

@@ -32,6 +32,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--speed", type=float, nargs="+", metavar="RPM", help="mean motor speeds, default 120 300 500")
     what.add_argument("--torque", type=float, nargs="+", metavar="N·m", help="constant motor torques instead")
+    what.add_argument(
+        "--start", type=float, nargs="+", metavar="N·m", help="motor torques switched on at rest: whether it runs up"
+    )
     parser.add_argument("--load", type=float, default=0.0, metavar="N·m", help="on the output, + drives it forward")
     parser.add_argument("--out", type=Path, metavar="FILE", help="the first one's figure, as .svg or .html")
 
@@ -44,6 +47,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--out {args.out}: expected a name that ends in .svg or .html")
     file = open_gear(args.gear)
     gear = file.gear()
+    if args.start:
+        return starts(file, args)
     if args.torque:
         waves = [steady_state(gear, tau, args.load) for tau in args.torque]
     else:
@@ -53,6 +58,17 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         draw(args.out, waves[0], f"{args.gear}")
         print(f"figure {args.out}")
+    return int(Exit.PASS)
+
+
+def starts(file: GearFile, args: argparse.Namespace) -> int:
+    """One line a torque: does it run up from rest, to which speed, in what time. Raises UsageError: with a figure."""
+    from rig.commands.starts import lines
+
+    if args.out is not None:
+        raise UsageError("--out draws a steady turn: it goes with --speed or --torque, not with --start")
+    print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
+    print("\n".join(lines(file, args.start, args.load)))
     return int(Exit.PASS)
 
 

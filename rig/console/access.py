@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ipaddress
 import secrets
+import socket
 from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 TOKEN_HEADER = "x-hdrig-token"
 PAGE_HEADER = "x-hdrig-page"
+EVERYWHERE = ("0.0.0.0", "::")  # listened at, never opened
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 POLICY = "; ".join((
     "default-src 'none'", "script-src 'self'", "style-src 'self'", "img-src 'self' data:", "connect-src 'self'",
@@ -33,6 +35,11 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return False
+
+
+def called(host: str) -> str:
+    """What a browser opens to reach a server at `host`: of one that listens everywhere this machine's name."""
+    return socket.gethostname().lower() if host in EVERYWHERE else host
 
 
 @dataclass(frozen=True)
@@ -80,8 +87,8 @@ class Access:
             return False
         if is_loopback(self.host):
             return is_loopback(name)
-        # bound to every address: any address of this machine, but no name that somebody else's DNS could make ours
-        return name == self.host or (self.host in ("0.0.0.0", "::") and _is_address(name)) or is_loopback(name)
+        # bound to every address: this machine's name and any address, but no name somebody else's DNS could make ours
+        return name == called(self.host) or (self.host in EVERYWHERE and _is_address(name)) or is_loopback(name)
 
 
 def _is_address(name: str) -> bool:

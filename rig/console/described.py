@@ -10,6 +10,8 @@ from typing import Any
 
 from rig.bench import BENCHES
 from rig.campaign.plan import PLANS, read_plan
+from rig.campaign.sweeps import CATALOGUE as SWEEPS
+from rig.campaign.sweeps import sweep_class
 from rig.parameters_told import Told, told
 from rig.procedures import CATALOGUE, procedure_class
 
@@ -27,13 +29,16 @@ def procedures() -> list[dict[str, Any]]:
 
 def _procedure(name: str) -> dict[str, Any]:
     kind = procedure_class(name)
+    return {**_offered(name, kind, GROUPS.get(name, "measurements")), "needs_lock": kind.output_locked}
+
+
+def _offered(name: str, kind: type[Any], group: str) -> dict[str, Any]:
     first = (kind.__doc__ or "").strip().partition("\n")[0]
     return {
         "name": name,
         "title": name.replace("-", " "),
         "summary": re.split(r" {3,}\[", first)[0],
-        "group": GROUPS.get(name, "measurements"),
-        "needs_lock": kind.output_locked,
+        "group": group,
         "parameters": [_parameter(t) for t in told(kind)],
     }
 
@@ -58,10 +63,10 @@ def _plain(default: Any) -> Any:
 
 @cache
 def plans() -> list[dict[str, Any]]:
-    """Plans that ship."""
-    return [
-        {"name": name, "summary": read_plan(name).file.title} for name in sorted(p.stem for p in PLANS.glob("*.toml"))
-    ]
+    """Plans that ship, then the sweeps that are none of them, with their parameters."""
+    ships = sorted(p.stem for p in PLANS.glob("*.toml"))
+    found: list[dict[str, Any]] = [{"name": name, "summary": read_plan(name).file.title} for name in ships]
+    return [*found, *(_offered(name, sweep_class(name), "sweeps") for name in SWEEPS if name not in ships)]
 
 
 def benches(offered: str) -> list[str]:

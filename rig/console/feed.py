@@ -84,8 +84,9 @@ class Feed:
         rows = tail.read()
         if self.so_far is None or not len(rows):
             return np.empty(0, LAYOUT), tail.skipped
-        self.so_far.add(rows)
+        told = self.so_far.add(rows)
         block = of_run(rows, self.so_far.ratio, self.so_far.zero or 0.0)
+        block["kinematic_error"][~told] = np.nan
         return envelope(block, self._every(rows)), tail.skipped
 
     def _every(self, rows: Rows) -> int:

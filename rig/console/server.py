@@ -12,7 +12,7 @@ from typing import final
 
 import uvicorn
 
-from rig.console.access import Access, is_loopback, new_token
+from rig.console.access import Access, called, is_loopback, new_token
 from rig.console.app import Console
 from rig.core.errors import NotReady
 from rig.live.view.viewer import Viewer
@@ -55,16 +55,18 @@ class Serving:
 
     @property
     def lines(self) -> list[str]:
-        """What a person has to know: the address, with the token that is printed nowhere else."""
-        shown = f"[{self.access.host}]" if ":" in self.access.host else self.access.host
-        found = [f"console http://{shown}:{self.access.port}/#token={self.access.token}"]
-        if not is_loopback(self.access.host):
-            found.append(
-                "this address is reached by others, and the line is not encrypted here: let a reverse proxy end TLS in "
-                f"front of it (--name its.name), or keep to 127.0.0.1 and use ssh -L {self.access.port}:127.0.0.1:"
-                f"{self.access.port}"
-            )
-        return found
+        """What a person has to know: an address that can be opened, with the token that is printed nowhere else."""
+        name, port, token = called(self.access.host), self.access.port, self.access.token
+        found = [f"console http://{f'[{name}]' if ':' in name else name}:{port}/#token={token}"]
+        if is_loopback(self.access.host):
+            return found
+        return [
+            *found,
+            *(f"console https://{proxy}/#token={token} by the proxy that ends TLS" for proxy in self.access.names),
+            "others reach this address, and TLS does not end here: from here to a browser nothing is encrypted, the "
+            "token neither. Let a reverse proxy end TLS in front of it (--name its.name), or keep to 127.0.0.1 and use "
+            f"ssh -L {port}:127.0.0.1:{port}",
+        ]
 
     async def run(self) -> None:
         """Until a signal."""

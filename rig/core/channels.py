@@ -32,6 +32,9 @@ class Flag(IntFlag):
     TRIPPED = 1 << 11  # at or after the sample the guard refused
 
 
+UNTRUSTED = Flag.STALE_M | Flag.STALE_L | Flag.FROZEN_M | Flag.FROZEN_L | Flag.TRIPPED
+"""Rows in which the two angles do not belong together, or the drive had let go."""
+
 CHANNELS: tuple[Channel, ...] = (
     Channel("t", "float64", "s", "monotonic time since the run's start, when the motor angle was latched"),
     Channel("theta_m", "float64", "rad", "motor (wave generator) angle, unwrapped, positive as commanded"),

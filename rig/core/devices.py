@@ -62,6 +62,11 @@ class Device(ABC):
     remarks: Sequence[str] = ()  # what a person should know of it once it is connected, one sentence each
     trouble: str = ""  # what is wrong with the device itself, in words, as of the last reading; a drive says it there
 
+    @property
+    def silent(self) -> str:
+        """Which of its messages stays away while its others come, in words; "" when none does, or it has but one."""
+        return ""
+
     @abstractmethod
     def connect(self) -> Identity:
         """Open and identify. Moves and energises nothing. Raises NotReady with the reason."""

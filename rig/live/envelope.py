@@ -20,22 +20,24 @@ def envelope(block: Rows, every: int) -> Rows:
     """
     if every < 3 or not len(block):
         return block
-    groups = -(-len(block) // every)
-    out = np.empty(2 * groups, block.dtype)
+    out = np.empty(2 * -(-len(block) // every), block.dtype)
     for name in block.dtype.names or ():
-        values = _groups(block[name], groups, every)
-        pairs = _bits(values) if name == "flags" else _extremes(values)
+        values = grouped(block[name], every)
+        pairs = _bits(values) if name == "flags" else extremes(values)
         out[name] = pairs.ravel()
     return out
 
 
-def _groups(values: Rows, groups: int, every: int) -> Rows:
-    """Shape (groups, every); the last group is filled up with its last value, which moves no extreme."""
-    return np.pad(values, (0, groups * every - len(values)), mode="edge").reshape(groups, every)
+def grouped(values: Rows, every: int) -> Rows:
+    """`values` (n, …) as (⌈n/every⌉, every, …); the last group is filled up with its last value, no new extreme."""
+    groups = -(-len(values) // every)
+    return values[np.minimum(np.arange(groups * every), len(values) - 1)].reshape(groups, every, *values.shape[1:])
 
 
-def _extremes(values: Rows) -> Rows:
-    """Smallest and largest of each group in time order, shape (groups, 2). What was not measured is no extreme."""
+def extremes(values: Rows) -> Rows:
+    """Smallest and largest of each group (groups, every, …) in time order, (groups, 2, …). What was not measured is
+    no extreme.
+    """
     missing = np.isnan(values) if values.dtype.kind == "f" else values == NO_COUNTS
     top = np.inf if values.dtype.kind == "f" else np.iinfo(values.dtype).max
     low = np.argmin(np.where(missing, top, values), axis=1)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -120,13 +122,28 @@ def with_numbers(result: Result) -> dict[str, Array]:
 
 
 def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, Any] | None:
-    wide = svg(drawing, curves, Frame(WIDE, mark), prefix=f"{drawing.name}-w-")
-    narrow = svg(drawing, curves, Frame(NARROW, mark), prefix=f"{drawing.name}-n-")
+    with uncollected():
+        wide = svg(drawing, curves, Frame(WIDE, mark), prefix=f"{drawing.name}-w-")
+        narrow = wide and svg(drawing, curves, Frame(NARROW, mark), prefix=f"{drawing.name}-n-")
     if wide is None or narrow is None:
         return None
     title, note = drawing.named(curves) if drawing.named else (drawing.title, drawing.note)
     pictures = {"wide": Markup(wide), "narrow": Markup(narrow)}  # ours, and escaped by the XML writer
     return {"anchor": drawing.name, "title": title, "note": note, "full": drawing.full, **pictures}
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Python looks for no garbage meanwhile. A figure is ten thousand small objects that all live until it is written:
+    to look through them again and again was a sixth of the time of a page.
+    """
+    usual = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if usual:
+            gc.enable()
 
 
 def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[str, Array], run: str) -> list[str]:

@@ -105,8 +105,9 @@ def checksum(batch: pa.RecordBatch, first: int) -> int:
 def as_float(column: pa.ChunkedArray) -> Array:
     """A column as float64, shape (n,), null as NaN; integers exact to 2**53. Raises pa.ArrowException for text.
 
-    Chunk by chunk through DLPack: the column's own to_numpy looks for pandas first.
+    Chunk by chunk through DLPack: the column's own to_numpy looks for pandas first. Nothing is cast that need not be:
+    to cast, Arrow imports all it can compute.
     """
-    numbers = column.cast(pa.float64(), safe=False)
-    whole = numbers.fill_null(np.nan) if numbers.null_count else numbers
+    plain = column.type in _TYPES.values() and not column.null_count
+    whole = column if plain else column.cast(pa.float64(), safe=False).fill_null(np.nan)
     return np.concatenate([np.empty(0), *(np.from_dlpack(chunk) for chunk in whole.chunks)])  # a copy: the caller's own

@@ -10,16 +10,19 @@ from typing import Any, final
 from rig.core.errors import Exit
 from rig.runfile.manifest import parse
 
+ANALYSE = ("rig.cli", "analyse")  # of one run
+AFTERWARDS = ("rig.commands.afterwards",)  # of a campaign that is complete
 TOLD = (Exit.PASS, Exit.OUT_OF_LIMITS, Exit.INCOMPLETE)  # there is a report
 
 
 @final
 class Analysis:
-    """One `hdrig analyse`, begun when made. A loop that runs meanwhile is scheduled before it."""
+    """One process, begun when made. A loop that runs meanwhile is scheduled before it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, what: tuple[str, ...]) -> None:
+        """`what`: ANALYSE a run, or AFTERWARDS for a campaign."""
         self.folder = folder
-        command = [sys.executable, "-m", "rig.cli", "analyse", str(folder)]
+        command = [sys.executable, "-m", *what, str(folder)]
         self._process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
         )
@@ -35,6 +38,8 @@ class Analysis:
         if self._process.returncode not in TOLD:
             why = said.strip().splitlines()[-1] if said.strip() else f"exit code {self._process.returncode}"
             return {"report": None, "verdict": None, "sentence": f"not analysed: {why.removeprefix('hdrig: ')}"}
+        if not (self.folder / "result.json").exists():
+            return {"report": None, "verdict": None, "sentence": ""}  # nothing follows this campaign
         try:
             result = parse((self.folder / "result.json").read_bytes())
         except (OSError, ValueError) as error:

@@ -6,7 +6,7 @@ import contextlib
 import secrets
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 from rig.campaign import summary
 from rig.campaign.journal import Journal, new_journal, read_journal, record_of, refuse_other_campaign
@@ -16,16 +16,15 @@ from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct
 from rig.campaign.steps import Item
+from rig.campaign.sweeps import plan_named
 from rig.changes import wait_for_rest
-from rig.core.errors import DataError, NotReady
+from rig.core.errors import DataError, Exit, NotReady
 from rig.runfile.folder import create, create_in
 from rig.runfile.manifest import told
 from rig.session import Session, Watch
 from rig.session.done import nobody
-from rig.station.analysis import Analysis
-
-if TYPE_CHECKING:
-    from rig.station.station import Station
+from rig.station.analysis import AFTERWARDS, ANALYSE, Analysis
+from rig.station.station import Station, forget
 
 SEEDS = 2**31  # of the order, drawn when none is given
 
@@ -35,25 +34,44 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
     session = station.need()
     resumed = message.get("resume")
     journal, campaign = _resumed(session, Path(str(resumed))) if resumed else _new(station, session, message)
-    if message.get("note"):
-        journal.tell(f"note: {message['note']}")
     station.busy(f"campaign {campaign.plan.file.name}")
     desk = PageDesk(station, campaign, journal)
     session.root, session.create, session.checks = journal.folder, create_in, "checks"
+    session.note = journal.note(str(message.get("note") or ""))
+    station.keep = lambda text: journal.tell(f"note: {text}")
     try:
         with swept(journal):
-            conduct(session, campaign, journal, desk)
+            exit = conduct(session, campaign, journal, desk)
     finally:
         session.root, session.create, session.checks = station.root, create, ""
-        session.facts = {}
+        session.facts, session.note, station.keep = {}, "", forget
     text = "\n".join(summary.lines(journal)) + "\n"
     with told(NotReady, f"the summary cannot be written into {journal.folder}"):
         (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
     station.teller.say("said", f"campaign {journal.book['status']}: {journal.book['sentence']}; {journal.folder}")
+    if exit is Exit.PASS:
+        _afterwards(station, desk, journal)
+
+
+def _afterwards(station: Station, desk: PageDesk, journal: Journal) -> None:
+    """The page of a sweep, or the gear file, as `hdrig campaign` ends with it."""
+    station.busy(f"figures of campaign {journal.book['name']}")
+    found = desk.wait(Analysis(journal.folder, AFTERWARDS))
+    if found["report"] is not None:
+        station.status.last_run = {
+            "uid": journal.book["uid"], "title": f"campaign {journal.book['name']}", "status": "completed",
+            "reason": journal.book["sentence"], "folder": str(journal.folder), **found,
+        }  # fmt: skip
+        station.teller.say("finding", str(found["sentence"]))
+    elif (gear := journal.folder / "gear.toml").exists():
+        station.teller.say("finding", f"gear file {gear}")
+    elif found["sentence"]:
+        raise DataError(str(found["sentence"]))
 
 
 def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tuple[Journal, Campaign]:
-    campaign = planned(read_plan(str(message.get("plan", ""))), session.bench, secrets.randbelow(SEEDS))
+    plan = plan_named(str(message.get("plan", "")), message.get("parameters") or {})
+    campaign = planned(plan, session.bench, secrets.randbelow(SEEDS))
     overrides = (station.status.bench or {}).get("overrides", [])
     journal = new_journal(station.root, campaign, session.clock, overrides)
     journal.book["rigging"] = session.rigging.conditions()  # as it stands: weight and pin come off first
@@ -101,20 +119,22 @@ class PageDesk(Desk):
         return person is not None and person.ask(f"{why}. Do it once more?", "Again")
 
     def figure(self, folder: Path) -> str:
-        """The station goes on attending meanwhile."""
-        analysis = Analysis(folder)
-        while not analysis.done:
-            self.station.attend()
-            if self.station.panel.count > 1 or self.station.channel.closed:
-                analysis.end()
-                raise DataError("left for later: hdrig analyse makes its figures")
-        found = analysis.found()
+        found = self.wait(Analysis(folder, ANALYSE))
         last = self.station.status.last_run
         if last is not None:
             self.station.status.last_run = last | found
         if found["report"] is None:
             raise DataError(str(found["sentence"]))
         return str(found["sentence"])
+
+    def wait(self, analysis: Analysis) -> dict[str, Any]:
+        """What it found; the station goes on attending meanwhile. Raises DataError when somebody ends it."""
+        while not analysis.done:
+            self.station.attend()
+            if self.station.panel.count > 1 or self.station.channel.closed:
+                analysis.end()
+                raise DataError("left for later: hdrig analyse makes its figures")
+        return analysis.found()
 
     def _tell(self, current: str, measuring: bool = False) -> None:
         self._current, left = current, self.journal.open_runs()

@@ -18,7 +18,7 @@ from rig.parameters import make
 from rig.procedures import CATALOGUE, procedure_class
 from rig.procedures.jog import Jog
 from rig.session import Session
-from rig.station.analysis import Analysis
+from rig.station.analysis import ANALYSE, Analysis
 from rig.station.campaigns import conduct_plan
 from rig.station.station import Job, Station
 
@@ -152,7 +152,7 @@ def _run(station: Station, session: Session, procedure: Procedure, note: str) ->
     if done.ending.status == "completed" and procedure.title() not in TOLD:
         if station.analysis is not None:
             station.analysis.end()
-        station.analysis = Analysis(done.folder)
+        station.analysis = Analysis(done.folder, ANALYSE)
 
 
 def reset(station: Station, message: Mapping[str, Any]) -> None:

@@ -41,6 +41,10 @@ WAKES = ("hold", "stop", "halt")  # the switches say what; the packet only wakes
 Job = Callable[["Station", Mapping[str, Any]], None]
 
 
+def forget(text: str) -> None:
+    """There is no campaign whose book it would go into."""
+
+
 @final
 class Station:
     """`serve` until told to close, or the other end of the line is gone and nothing runs any more."""
@@ -55,6 +59,7 @@ class Station:
         self.analysis: Analysis | None = None
         self.chain, self.silence = Chain(), Silence()
         self.closing = False
+        self.keep: Callable[[str], None] = forget  # where a note goes that no run may follow
         self._next_reading = 0.0
         self._halts = switches.pressed.halt
 
@@ -167,9 +172,14 @@ class Station:
             self._look_at_chain(self.session, energised=True)
 
     def note(self, text: str) -> None:
-        """What somebody has to say, into the run's events, or the next one's."""
-        if self.session is not None:
-            self.session.log.event("note", text)
+        """What somebody has to say, into the run's events, or the next one's; said while a hand is waited for it goes
+        into the campaign's book as well: that may have been the last run.
+        """
+        if self.session is None:
+            return
+        self.session.log.event("note", text)
+        if self.status.prompt is not None:
+            self.keep(text)
 
     def _carry_out(self, job: Job, message: Mapping[str, Any]) -> None:
         pressed = message.get("pressed") or self.switches.pressed

@@ -75,6 +75,7 @@ class Teller(Observer):
         p50 = p99 = 0
 
         def watch(sample: Sample) -> None:
+            """Called with every sample of the run; looks at the line every OFTEN s of wall time."""
             nonlocal p50, p99
             now, timing = time.monotonic(), run.timing
             if now - self._told < OFTEN:

@@ -58,6 +58,7 @@ class ServoDrive(Node):
     # ---- objects ----
 
     def furnish(self, objects: Objects) -> None:
+        """Objects of the profile for a new life of the node, as from the factory; torque is off."""
         self.motor = Motor(self.world, self.agenda)
         settings = add_settings(objects, self.motor, self.rating)
         if self._life > 1:
@@ -176,6 +177,7 @@ class ServoDrive(Node):
         self.event(self.statusword)
 
     def on_lost(self, code: int) -> None:
+        """The host is lost, emergency `code`: 6007 says what becomes of a drive under power."""
         option = self.abort_option.number
         if self.drive_state not in POWERED or option not in (1, 2, 3):
             self.errors.report(code, COMMUNICATION)
@@ -187,6 +189,7 @@ class ServoDrive(Node):
         self._go(DriveState.SWITCH_ON_DISABLED if option == 2 else DriveState.QUICK_STOP_ACTIVE)
 
     def on_state(self) -> None:
+        """Leaving OPERATIONAL under power is a lost connection."""
         if self.state is not State.OPERATIONAL and self.drive_state in POWERED:
             self.on_lost(CONNECTION)
 

@@ -42,11 +42,15 @@ class TorqueTransducer(Node):
         super().__init__(bus, node_id, NodeIdentity(0x00020194, "hdrig twin torque transducer", 0x404, world.seed))
 
     def furnish(self, objects: Objects) -> None:
+        """Objects of channel 1 for a new life of the node, as from the factory: N·m, three digits, no zero, no tare."""
+
         def channel(index: int, entry: Entry) -> Entry:
+            """`entry` at sub-index CHANNEL of `index`."""
             objects.record(index, {CHANNEL: entry})
             return entry
 
         def value(index: int, kind: Kind, read: Callable[[], float]) -> None:
+            """A read-only value that can be mapped into a PDO."""
             channel(index, Entry(kind, 0, "r", read=read, mappable=True))
 
         channel(0x6110, Entry(U16, 0x5A, "r"))  # sensor type: strain gauge bridge

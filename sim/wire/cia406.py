@@ -43,6 +43,7 @@ class AbsoluteEncoder(Node):
         self._measure_speed(self._counts())
 
     def furnish(self, objects: Objects) -> None:
+        """Objects of the profile for a new life of the node, as from the factory; the preset alone is kept."""
         o = objects
         total = self.resolution * self.revolutions
         self.operating = o.add(0x6000, Entry(U16, SCALED))

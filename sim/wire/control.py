@@ -59,14 +59,17 @@ class Control(Source):
         reactor.add(self)
 
     def fileno(self) -> int:
+        """Of the listening socket."""
         return self._socket.fileno()
 
     def ready(self) -> None:
+        """Somebody connects: a Line of its own."""
         line = Line(self, self._socket.accept()[0])
         self.lines.append(line)
         self.reactor.add(line)
 
     def close(self) -> None:
+        """All clients are cut off, the path is removed."""
         for line in tuple(self.lines):
             line.close()
         self._socket.close()
@@ -83,9 +86,11 @@ class Line(Source):
         self._text = b""
 
     def fileno(self) -> int:
+        """Of the client's socket."""
         return self._socket.fileno()
 
     def ready(self) -> None:
+        """Every whole line received is performed and answered; a client that is gone, or ends no line, is closed."""
         try:
             got = self._socket.recv(LONGEST_LINE)
         except OSError:
@@ -103,6 +108,7 @@ class Line(Source):
                 return
 
     def close(self) -> None:
+        """Gone. Idempotent."""
         if self in self._control.lines:
             self._control.lines.remove(self)
             self._control.reactor.remove(self)

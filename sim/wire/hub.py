@@ -55,9 +55,11 @@ class Hub(Source):
         reactor.add(self)
 
     def fileno(self) -> int:
+        """Of the listening socket."""
         return self._socket.fileno()
 
     def ready(self) -> None:
+        """Somebody connects: a station on the bus, called host 1, 2, …"""
         connection, _ = self._socket.accept()
         connection.setblocking(False)
         self._made += 1
@@ -66,6 +68,7 @@ class Hub(Source):
         self.reactor.add(client)
 
     def close(self) -> None:
+        """All clients are cut off, the path is removed."""
         for client in tuple(self.clients):
             client.close()
         self._socket.close()
@@ -83,12 +86,15 @@ class Client(Source):
         self.malformed = 0  # packets that were no frames
 
     def fileno(self) -> int:
+        """Of the client's socket."""
         return self._socket.fileno()
 
     def wants(self) -> bool:
+        """Whether its station has room for a frame: else the client waits in its own socket."""
         return self.port.has_room
 
     def ready(self) -> None:
+        """Frames received go to the bus as long as there is room; what is no frame is counted in `malformed`."""
         while self.wants():
             try:
                 packet = self._socket.recv(PACKET.size + 1)
@@ -116,6 +122,7 @@ class Client(Source):
             self._hub.bus.agenda.after(0.0, self.close)
 
     def close(self) -> None:
+        """Gone, and its station with it. Idempotent."""
         if self in self._hub.clients:
             self._hub.clients.remove(self)
             self._hub.reactor.remove(self)

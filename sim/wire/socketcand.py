@@ -34,14 +34,17 @@ class SocketCand(Source):
         reactor.add(self)
 
     def fileno(self) -> int:
+        """Of the listening socket."""
         return self._socket.fileno()
 
     def ready(self) -> None:
+        """Somebody connects: a Guest, greeted."""
         guest = Guest(self, self._socket.accept()[0])
         self.guests.append(guest)
         self.reactor.add(guest)
 
     def close(self) -> None:
+        """All guests are cut off."""
         for guest in tuple(self.guests):
             guest.close()
         self._socket.close()
@@ -62,12 +65,15 @@ class Guest(Source):
         self._say(b"< hi >")
 
     def fileno(self) -> int:
+        """Of the guest's socket."""
         return self._socket.fileno()
 
     def wants(self) -> bool:
+        """Whether its station has room for a frame."""
         return self.station.has_room
 
     def ready(self) -> None:
+        """Every whole message received is performed and answered."""
         try:
             got = self._socket.recv(LONGEST)
         except OSError:
@@ -121,6 +127,7 @@ class Guest(Source):
             self._server.bus.agenda.after(0.0, self.close)
 
     def close(self) -> None:
+        """Gone, and its station with it. Idempotent."""
         if self in self._server.guests:
             self._server.guests.remove(self)
             self._server.reactor.remove(self)

@@ -28,7 +28,7 @@ from tests.blind.kernel import (
     W,
     X,
 )
-from tests.blind.plans import STROKE_SPEED, Plan, RunPlan
+from tests.blind.plans import STAIR_S, STROKE_SPEED, Plan, RunPlan
 from tests.blind.sensors import MOTOR_COUNTS, Context, Noise, coloured, measure
 from tests.blind.taken import Taken
 
@@ -41,10 +41,20 @@ def triangle(n: int, amplitude: float, period: float) -> np.ndarray:
     return amplitude * np.where(x < 0.25, 4 * x, np.where(x < 0.75, 2 - 4 * x, 4 * x - 4))
 
 
+def staircase(speeds_rpm: tuple[float, ...], n: int) -> np.ndarray:
+    """The way of one speed after the other, each reached evenly within a second."""
+    rows, rise = round(STAIR_S / TICK), round(1.0 / TICK)
+    speed = np.repeat(np.asarray(speeds_rpm) * 2 * np.pi / 60, rows)[: n - 1]
+    risen = np.convolve(np.concatenate([np.zeros(rise), speed]), np.ones(rise) / rise, "valid")[: speed.size]
+    return np.concatenate([np.zeros(1), np.cumsum(risen) * TICK, np.zeros(max(n - 1 - speed.size, 0))])[:n]
+
+
 def reference(plan: RunPlan, n: int) -> np.ndarray:
     """Motor angle asked for, rad per tick."""
     if plan.one_way:
         return STROKE_SPEED * np.arange(n) * TICK
+    if plan.stairs_rpm:
+        return staircase(plan.stairs_rpm, n)
     if plan.amplitude == 0.0:
         return np.zeros(n)
     return triangle(n, plan.amplitude, plan.lead_s + plan.duration_s)

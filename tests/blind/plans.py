@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 SLOW_DT, FAST_DT = 4e-3, 1e-3  # s between rows
 STROKE_SPEED = 1.0053  # rad/s = 9.6 rpm, the paper's slow speed
+STAIR_S = 4.0  # s on a stair, a second of it to get there
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class RunPlan:
     speed_rpm: float = 0.0
     one_way: bool = False
     start_s: float = 0.0
+    stairs_rpm: tuple[float, ...] = ()  # speeds held one after the other, STAIR_S each, under the position loop
 
 
 @dataclass(frozen=True)
@@ -58,8 +60,16 @@ def steady(rpm: int, repeat: str) -> RunPlan:
     return RunPlan(f"speed_{sign}{abs(rpm)}rpm_{repeat}", "constant_torque", 10.0, FAST_DT, 4.0, speed_rpm=float(rpm))
 
 
+def stairs(speeds_rpm: tuple[float, ...], repeat: str) -> RunPlan:
+    """Up and down through the speeds, both ways."""
+    up = (*speeds_rpm, *reversed(speeds_rpm))
+    asked = (*up, *(-rpm for rpm in up))
+    return RunPlan(f"stairs_{repeat}", "friction", STAIR_S * len(asked), FAST_DT, 0.0, stairs_rpm=asked)
+
+
 STANDSTILL = RunPlan("standstill", "standstill", 10.0, SLOW_DT, 0.0)
 BOTH = ("1", "2")
+PAPERS = (18.6, 24.5)  # Hz, the paper's speeds: order 2 turns at 16.7 Hz at 500 rpm, order 4 at 20.7 Hz at 310 rpm
 
 
 def started(runs: list[RunPlan], gap_s: float) -> tuple[RunPlan, ...]:
@@ -92,7 +102,24 @@ def paper() -> Plan:
     """Only what the paper took: triangle, 120/300/310/500 rpm at constant torque, one lock test; each twice."""
     runs = [slow(k) for k in BOTH]
     runs += [steady(rpm, k) for rpm in (120, 300, 310, 500) for k in BOTH] + [lock(60, k) for k in BOTH]
-    return Plan("paper", started(runs, 18.0), resonance_hz=(18.6, 24.5))
+    return Plan("paper", started(runs, 18.0), resonance_hz=PAPERS)
+
+
+def paper_once() -> Plan:
+    """The same without any repeat."""
+    return Plan(
+        "paper_once", started([run for run in paper().runs if run.name.endswith("_1")], 18.0), resonance_hz=PAPERS
+    )
+
+
+def paper_one_way() -> Plan:
+    """The same, the slow runs forward only."""
+    runs = [replace(run, one_way=run.procedure == "kinematic_error") for run in paper().runs]
+    return Plan("paper_one_way", tuple(runs), resonance_hz=PAPERS)
+
+
+def paper_no_torque_sensor() -> Plan:
+    return replace(paper(), name="paper_no_torque_sensor", channels=("theta_m", "theta_l", "tau_m"))
 
 
 def noreps() -> Plan:
@@ -115,6 +142,9 @@ def no_torque_sensor() -> Plan:
 PLANS = {
     "complete": complete,
     "paper": paper,
+    "paper_once": paper_once,
+    "paper_one_way": paper_one_way,
+    "paper_no_torque_sensor": paper_no_torque_sensor,
     "noreps": noreps,
     "one_direction": one_direction,
     "no_torque_sensor": no_torque_sensor,

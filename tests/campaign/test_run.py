@@ -179,3 +179,17 @@ def test_a_folder_that_is_no_campaign_is_refused(tmp_path: Path) -> None:
     (tmp_path / "campaign.json").write_text("{")
     with pytest.raises(UsageError, match="is not JSON"):
         read_journal(tmp_path)
+
+
+@pytest.mark.slow
+def test_a_note_of_the_campaign_stands_in_every_run_and_check_also_of_a_later_session(tmp_path: Path) -> None:
+    planned = campaign(*SMALL)
+    journal = new_journal(tmp_path, planned, "virtual", [])
+    assert journal.note("new grease") == "new grease"
+    _, journal, _ = go_on(journal, planned, stop_at=2)
+    take_up(journal)
+    go_on(journal, planned)
+    found = {path.parent.name: json.loads(path.read_text()) for path in journal.folder.rglob("manifest.json")}
+    assert len({about["campaign"]["session"] for about in found.values()}) == 2
+    assert {str(about["conditions"]["note"]).split("; ")[0] for about in found.values()} == {"new grease"}
+    assert "note: new grease" in list(summary.lines(journal))

@@ -24,8 +24,8 @@ FOREVER = {"amplitude_deg": 3600.0, "frequency": 0.001, "cycles": 1.0}  # 1000 s
 class Hand:
     """One page's calls. Use as a context manager: the station lives as long."""
 
-    def __init__(self, root: Path) -> None:
-        self.serving = Serving("127.0.0.1", 0, root, "twin")
+    def __init__(self, root: Path, host: str = "127.0.0.1", names: tuple[str, ...] = ()) -> None:
+        self.serving = Serving(host, 0, root, "twin", names)
         self.token, self.port = self.serving.access.token, self.serving.access.port
         headers = {"x-hdrig-token": self.token, "x-hdrig-page": "first"}
         self.client = httpx.Client(base_url=f"http://127.0.0.1:{self.port}", headers=headers, timeout=PATIENCE)

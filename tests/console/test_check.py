@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -22,6 +23,25 @@ def test_what_is_right_comes_with_its_dry_run_and_margins() -> None:
     speed = next(m for m in found["margins"] if m["what"] == "speed")
     assert (speed["unit"], speed["limit"]) == ("rpm", pytest.approx(600.0))
     assert speed["fraction"] == pytest.approx(9.6 / 600, rel=1e-3)
+
+
+def test_what_a_run_stores_how_long_it_takes_and_its_tightest_margin_are_told_as_numbers() -> None:
+    slow, lock = looked_at({})["sums"], looked_at({}, "stiffness-lock")["sums"]
+    assert slow["duration_s"] == pytest.approx(201.0)
+    assert (slow["nearest"], slow["left"]) == ("motor speed", pytest.approx(1 - 9.6 / 600, rel=1e-3))
+    inertia = 1.1e-3 + 0.32 / 50**2  # kg·m² at the motor, of twin.toml
+    assert slow["stored_j"] == pytest.approx(0.5 * inertia * (9.6 * math.pi / 30) ** 2, rel=0.01)
+    assert (lock["nearest"], lock["left"]) == ("shaft torque", pytest.approx(0.5))
+    assert lock["stored_j"] == pytest.approx(0.5 * 22.5**2 / 7160, rel=0.01)
+
+
+def test_of_a_plan_the_largest_of_its_runs_stand_beside_each_limit() -> None:
+    found = check({"plan": "quick"}, "twin", [])
+    shares = {m["what"]: m["fraction"] for m in found["margins"]}
+    assert set(shares) == {"travel", "speed", "torque", "shaft"}
+    assert 1 - found["sums"]["left"] == pytest.approx(max(s for what, s in shares.items() if what != "torque"))
+    longest = float(next(line.split()[1] for line in found["plan"] if line.startswith("duration")))  # min
+    assert found["sums"]["duration_s"] == pytest.approx(60 * longest, rel=0.02)
 
 
 def test_each_wrong_parameter_is_told_by_its_name() -> None:
@@ -55,7 +75,7 @@ def test_what_no_single_parameter_shows_is_told_of_the_whole_with_its_margins() 
     ],
 )
 def test_nothing_a_page_could_send_breaks_it(parameters: Any) -> None:
-    assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins"}
+    assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins", "sums"}
 
 
 def test_a_run_into_the_resonance_is_refused_as_on_the_command_line() -> None:

@@ -19,7 +19,7 @@ PEAK = 40.0  # arcsec, zero to peak, of order 2
 
 def rows(turns: float = 4.0, n: int = 4000, lag_deg: float = 0.5) -> np.ndarray[Any, Any]:
     """A motor that turns steadily, kinematic error of order 2, following its reference at a constant distance."""
-    made = np.zeros(n, [(name, "f8") for name in FIELDS])
+    made = np.zeros(n, [*((name, "f8") for name in FIELDS), ("flags", "i8")])
     made["t"] = np.arange(n) * 1e-3
     made["theta_m"] = 1.0 + np.linspace(0.0, turns * 2 * math.pi, n)
     made["theta_l"] = made["theta_m"] / RATIO - PEAK * ARCSEC * np.cos(2 * made["theta_m"])

@@ -340,7 +340,7 @@ def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path
     assert "campaign completed: 2 done" in hand.told("said")[-1]
     book = json.loads((Path(campaign["folder"]) / "campaign.json").read_text(encoding="utf-8"))
     assert [run["status"] for run in book["runs"]] == ["done", "done"]
-    assert "note: after lunch" in [note["text"] for note in book["notes"]]
+    assert book["note"] == "after lunch"
     assert hand.client.get("/api/campaigns").json()["campaigns"] == []
 
 

@@ -172,3 +172,11 @@ def test_torque_is_cut_without_waiting_for_the_drive_and_confirmed_after():
     w.wire.wait_until(now + 0.005)
     assert w.twin.drive.drive_state is DriveState.SWITCH_ON_DISABLED
     assert w.instruments.safe()
+
+
+@pytest.mark.parametrize(("stale", "told"), [("0.04", "100 ms"), ("0.3", "450 ms")])
+def test_a_watchdog_nobody_has_set_is_longer_than_what_the_guard_allows(stale: str, told: str):
+    w = wired(f"limits.stale_s={stale}", "devices.drive.watchdog=0.9")
+    del w.instruments.drive.place.options["watchdog"]
+    w.instruments.connect()
+    assert told in w.instruments.drive.guarded

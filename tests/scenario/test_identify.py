@@ -53,6 +53,18 @@ def test_simulate_takes_the_twin_and_a_constant_torque(tmp_path: Path, capsys: p
     assert "<svg" in page.read_text()
 
 
+@pytest.mark.slow
+def test_simulate_says_which_torque_starts_the_gear_from_rest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "twin", "--start", "0.4", "0.6"]) == 0  # it slides at 0.3 N·m and breaks away at 0.5 N·m
+    said = capsys.readouterr().out
+    rows = {line.split()[0]: line.split() for line in said.splitlines()[2:4]}
+    assert rows["0.4"][1:4] == ["no", "it", "stops"]
+    assert rows["0.6"][1] == "yes"
+    assert float(rows["0.6"][2]) == pytest.approx(807, abs=5)
+    assert said.startswith("SIMULATED")
+    assert "breakaway was not measured (tau_s 0.5 N·m declared)" in said
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -60,6 +72,8 @@ def test_simulate_takes_the_twin_and_a_constant_torque(tmp_path: Path, capsys: p
         (["simulate", "twin", "--torque", "0.2"], "do not keep the gear turning"),
         (["simulate", "twin", "--speed", "0"], "is no turning gear"),
         (["simulate", "twin", "--out", "fig.png"], "ends in .svg or .html"),
+        (["simulate", "twin", "--start", "0.6", "--out", "fig.svg"], "not with --start"),
+        (["simulate", "twin", "--start", "nan"], "expected torques in N·m"),
         (["identify", "nowhere"], "does not exist"),
         (["identify", ".", "--terms", "0"], "expected 1 to 40 orders"),
     ],

@@ -186,6 +186,9 @@ def document(outcomes: Sequence[Outcome], plan: str) -> str:
         "100 rigs can tell. Error over its σ (half width/1.96) is 1 where intervals are as wide as they should be, and "
         "100 rigs tell it to ±0.07. The drag is the sum B_sum = B_m + B_ml·(1 + σ/N)².",
         "",
+        "One figure of twenty strays from what it should be by two of these ±, and a table has some eight independent "
+        "ones: what strays in one draw of rigs is looked for in another (`--first`) before anything is mended.",
+        "",
     ]
     tail = ["", "Named as not to be told apart: " + "; ".join(pairs) + ".", ""]
     if failed:

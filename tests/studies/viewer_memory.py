@@ -1,7 +1,7 @@
 """What the bridge of the live view holds after many minutes of run: python -m tests.studies.viewer_memory --minutes 20.
 
-Rows of a 1 kHz run in blocks of 50 ms, as fast as they are taken, into the real proxy: its memory is limited by an
-option, the bridge's own has to stay where it is. Half of the time the proxy is frozen.
+Rows of a 1 kHz run in the bridge's own blocks, as fast as they are taken, into the real proxy: its memory is limited by
+an option, the bridge's own has to stay where it is. Half of the time the proxy is frozen.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,8 @@ WANTED = ("J_m", "J_l", "K", "B_sp", "B_m", "B_l", "tau_c", "F_cl")
 SERIES = "θ̃_p"
 RPM = 9.549296585513721  # in a rad/s
 TAKES = "four stretches at two speeds or more, one twice the other, in both directions (hdrig run friction)"
+NO_MOTOR_SUM = f"tau_c, B_m and B_ml: they take {TAKES}, drive's torque and torque sensor."
+NO_LOAD_SUM = f"F_cl and B_l: they take {TAKES}, with the torque sensor."
 NOTHING = "not determined by these runs, nor declared: the gear file has 0 for it"
 """The note of a number that nobody knows."""
 
@@ -58,34 +60,39 @@ def stand_in(found: dict[str, Parameter], fits: Fits, said: Mapping[str, object]
     for name in ("B_sp", "B_m", "B_l", "B_ml"):
         if name not in found:
             found[name] = Parameter(0.0, origin="assumed", note=NOTHING)
-    return [*_motor_sum(found, fits, sigma), *_load_sum(found, fits)]
-
-
-def _motor_sum(found: dict[str, Parameter], fits: Fits, sigma: int) -> list[str]:
-    """tau_c where at most its sum with the drag is known."""
-    if "tau_c" in found:
-        return []
-    balance = _balance(fits.means, [m.way * m.motor for m in fits.means])
-    if balance is None:
-        found["tau_c"] = Parameter(0.0, origin="assumed", note=NOTHING)
-        return [f"tau_c, B_m and B_ml: they take {TAKES}, drive's torque and torque sensor."]
-    drag = (found["B_m"].value + found["B_ml"].value * (1.0 + sigma / fits.ratio) ** 2) * balance.omega
-    at = f"{balance.torque:.4f} N·m at {balance.omega * RPM:.0f} rpm"
-    found["tau_c"] = _left(balance.torque - drag, f"{_stands(found, 'B_m')} and {_stands(found, 'B_ml')}", at)
+    motor = _balance(fits.means, [m.way * m.motor for m in fits.means])
+    load = _balance(fits.means, [m.way * m.load for m in fits.means])
     return [
-        f"tau_c, B_m and B_ml: only their sum is known, tau_c + [B_m + B_ml·(1 + σ/N)²]·ω_m = {at}; to tell them "
-        f"apart takes {TAKES}."
+        *_friction(found, "tau_c", motor, NO_MOTOR_SUM, lambda b: _motor_sum(found, b, fits.ratio, sigma)),
+        *_friction(found, "F_cl", load, NO_LOAD_SUM, lambda b: _load_sum(found, b, fits)),
     ]
 
 
-def _load_sum(found: dict[str, Parameter], fits: Fits) -> list[str]:
-    """F_cl where at most its sum with the drag is known."""
-    if "F_cl" in found:
+def _friction(
+    found: dict[str, Parameter], name: str, balance: Balance | None, nothing: str, known: Callable[[Balance], str]
+) -> list[str]:
+    """`name` where at most its sum with the drag is `known`; `nothing` is said where not even that is."""
+    if name in found:
         return []
-    balance = _balance(fits.means, [m.way * m.load for m in fits.means])
     if balance is None:
-        found["F_cl"] = Parameter(0.0, origin="assumed", note=NOTHING)
-        return [f"F_cl and B_l: they take {TAKES}, with the torque sensor."]
+        found[name] = Parameter(0.0, origin="assumed", note=NOTHING)
+        return [nothing]
+    return [known(balance)]
+
+
+def _motor_sum(found: dict[str, Parameter], balance: Balance, ratio: float, sigma: int) -> str:
+    """tau_c is what the drag leaves of the sum."""
+    drag = (found["B_m"].value + found["B_ml"].value * (1.0 + sigma / ratio) ** 2) * balance.omega
+    at = f"{balance.torque:.4f} N·m at {balance.omega * RPM:.0f} rpm"
+    found["tau_c"] = _left(balance.torque - drag, f"{_stands(found, 'B_m')} and {_stands(found, 'B_ml')}", at)
+    return (
+        f"tau_c, B_m and B_ml: only their sum is known, tau_c + [B_m + B_ml·(1 + σ/N)²]·ω_m = {at}; to tell them "
+        f"apart takes {TAKES}."
+    )
+
+
+def _load_sum(found: dict[str, Parameter], balance: Balance, fits: Fits) -> str:
+    """F_cl is what the drag leaves of the sum."""
     omega = balance.omega / fits.ratio
     at = f"{balance.torque:.4f} N·m at {omega * RPM:.2f} rpm of the output"
     found["F_cl"] = _left(balance.torque - found["B_l"].value * omega, _stands(found, "B_l"), at)
@@ -93,7 +100,7 @@ def _load_sum(found: dict[str, Parameter], fits: Fits) -> list[str]:
         what, total = "F_cl and B_l", "F_cl + B_l·ω_l"
     else:
         what, total = "F_cl, B_l and the zero of the torque sensor", "F_cl + B_l·ω_l + zero"
-    return [f"{what}: only their sum is known, {total} = {at}; to tell them apart takes {TAKES}."]
+    return f"{what}: only their sum is known, {total} = {at}; to tell them apart takes {TAKES}."
 
 
 def _balance(means: Sequence[Mean], friction: Sequence[float]) -> Balance | None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import importlib
 from abc import ABC, abstractmethod
-from typing import cast
+from collections.abc import Mapping
+from typing import Any, cast
 
-from rig.campaign.plan import StepSection
+from rig.campaign.plan import PLANS, Plan, StepSection, plan_of, read_plan
+from rig.parameters import make
 
 CATALOGUE: dict[str, str] = {
     "load-sweep": "rig.campaign.sweeps.load_sweep:LoadSweep",
@@ -27,3 +29,11 @@ def sweep_class(name: str) -> type[Sweep]:
     """The sweep called `name` on the command line. KeyError when there is none."""
     module, _, member = CATALOGUE[name].partition(":")
     return cast(type[Sweep], getattr(importlib.import_module(module), member))
+
+
+def plan_named(name: str, parameters: Mapping[str, Any]) -> Plan:
+    """A plan by file or by the name of one that ships, or the plan of the sweep called `name`. Raises UsageError."""
+    if name in CATALOGUE and not (PLANS / f"{name}.toml").is_file():
+        make(sweep_class(name), parameters, name)  # what is wrong is said of the sweep, not of a plan nobody wrote
+        return plan_of(name, parameters)
+    return read_plan(name)

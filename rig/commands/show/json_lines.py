@@ -20,6 +20,7 @@ class JsonLines(Screen):
         self._told = -1e9
 
     def take(self, event: dict[str, Any]) -> None:
+        """One event as a line of JSON."""
         if event["event"] == "progress":
             now = time.monotonic()
             if now - self._told < PERIOD:
@@ -28,4 +29,5 @@ class JsonLines(Screen):
         self.write(json.dumps(event) + "\n")
 
     def close(self) -> None:
+        """Nothing is left over."""
         return

@@ -17,6 +17,7 @@ class Lines(Screen):
         self._title, self._duration, self._tenth = "", 0.0, 0
 
     def take(self, event: dict[str, Any]) -> None:
+        """One event as a line or none; of progress ten lines a run."""
         match event["event"]:
             case "bench" if event["simulated"]:
                 self.write(f"SIMULATED: bench '{event['bench']}' is the twin, {event['clock']} clock\n")
@@ -31,6 +32,7 @@ class Lines(Screen):
                 self._progress(event)
 
     def close(self) -> None:
+        """Nothing is left over: every line was written whole."""
         return
 
     def _progress(self, event: dict[str, Any]) -> None:

@@ -49,12 +49,15 @@ class Here(Outlet):
         self._screen = Enriched(screen_for(how, stream))
 
     def put(self, event: Event) -> None:
+        """Drawn before it returns."""
         self._screen.take(dict(event))
 
     def settle(self) -> None:
+        """Nothing to wait for: what was put is seen."""
         return  # it is seen
 
     def close(self) -> None:
+        """The screen's own end."""
         self._screen.close()
 
 
@@ -81,6 +84,7 @@ class Apart(Outlet):
         self._gone = False
 
     def put(self, event: Event) -> None:
+        """Queued for the pipe, in order; progress is dropped while others wait, anything once BACKLOG events do."""
         if self._waiting and (event["event"] == "progress" or len(self._waiting) >= BACKLOG):
             self._pump()
             return
@@ -103,9 +107,11 @@ class Apart(Outlet):
             self._waiting.clear()
 
     def settle(self) -> None:
+        """Waits 50 ms of wall time for the other process."""
         time.sleep(0.05)
 
     def close(self) -> None:
+        """Waits at most PATIENCE s for what is queued to be taken and drawn."""
         if self._gone:
             return
         self._gone = True

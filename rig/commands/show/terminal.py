@@ -28,6 +28,7 @@ class Terminal(Screen):
         self._t, self._first = 0.0, (0.0, 0.0)  # s of the run: now; when it was first seen, and s on the wall
 
     def take(self, event: dict[str, Any]) -> None:
+        """One event: what is said scrolls by, progress redraws the foot."""
         match event["event"]:
             case "bench":
                 self._mark = "SIMULATED " if event["simulated"] else ""
@@ -44,6 +45,7 @@ class Terminal(Screen):
                 self._run = {}
 
     def close(self) -> None:
+        """The foot is wiped away."""
         self._put("", "")
 
     def _say(self, text: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.live.envelope import envelope
+from rig.live.envelope import extremes, grouped
 from rig.live.view import colours
 from rig.live.view.about import About
 from rig.live.view.block import Block
@@ -110,9 +110,14 @@ class Curves:
         lead = self._lead(block, canvas)
         self._last, self._heard_by = float(block.t[-1]), canvas
         late = self._lateness.add(block.t, block["flags"])
-        for path, group in self._groups.items():
-            self._send(path, lead, block, [c.of(block, self._ratio) for c in group], canvas)
-        self._send(TICK, lead, block, [late * 1e3, block["age"] * 1e3], canvas)
+        values = [c.of(block, self._ratio) for group in self._groups.values() for c in group]
+        # all at once: a call for each curve would cost more than the rows of a block
+        t, shown = thinned(block.t, np.stack([*values, late * 1e3, block["age"] * 1e3], axis=1), self._every)
+        t, shown = np.concatenate((lead, t)), np.pad(shown, ((len(lead), 0), (0, 0)), constant_values=np.nan)
+        sizes = {path: len(group) for path, group in self._groups.items()} | {TICK: 2}
+        ends = np.cumsum(list(sizes.values()))[:-1]
+        for path, part in zip(sizes, np.split(shown, ends, axis=1), strict=True):
+            canvas.curves(path, t, part)
 
     def _lead(self, block: Block, canvas: Canvas) -> Array:
         """When a line has to end first: rows before these were sent elsewhere, or never read. Shape (0,) or (1,), s."""
@@ -120,24 +125,17 @@ class Curves:
         broken = elsewhere or block.t[0] - self._last > GAP * self._period
         return block.t[:1] - BEFORE if broken else np.empty(0)
 
-    def _send(self, path: str, lead: Array, block: Block, values: list[Array], canvas: Canvas) -> None:
-        t, shown = thinned(block.t, np.stack(values, axis=1), self._every)
-        nothing = np.full((len(lead), len(values)), np.nan)
-        canvas.curves(path, np.concatenate((lead, t)), np.concatenate((nothing, shown)))
-
 
 def thinned(t: Array, values: Array, every: int) -> tuple[Array, Array]:
     """Times (n,) and values (n, k) of at most two rows for each `every`.
 
     What is derived is derived before it is thinned: the extremes of two angles do not belong to one moment.
     """
-    names = [f"c{i}" for i in range(values.shape[1])]
-    rows = np.empty(len(t), [("t", "f8"), *((name, "f8") for name in names)])
-    rows["t"] = t
-    for i, name in enumerate(names):
-        rows[name] = values[:, i]
-    less = envelope(rows, every)
-    return np.asarray(less["t"]), np.stack([less[name] for name in names], axis=1)
+    if every < 3:
+        return t, values
+    less = extremes(grouped(np.column_stack((t, values)), every))  # those of t, which grows, are its first and last
+    rows = less.reshape(-1, less.shape[-1])
+    return rows[:, 0], rows[:, 1:]
 
 
 def speed(block: Block) -> Array:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import Any
 
 import numpy as np
 
+from rig.live.calm import Calm
 from rig.live.view import colours
 from rig.live.view.axes import HEIGHT, WIDTH, Axis, Frame
 from rig.live.view.block import Block
@@ -55,28 +57,31 @@ class Folded(Drawing):
 
     def __init__(self, ratio: float, banner: str) -> None:
         self._ratio, self._banner = ratio, banner
-        self._turns = Turns()
+        self._calm, self._turns = Calm(), Turns()
         self._sides = {1: Side(), -1: Side()}
         self._peak = ""
         x = Axis("wave-generator angle", "deg", 0.0, 360.0, step=45.0)
         self._frame = Frame(x, Axis("θ̃ less its mean, at the output", "arcsec", -60.0, 60.0, most=8))
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """Frame, sides and banner as they stand at run time `t` s."""
         if self._banner:
             where = np.array([[WIDTH - 16.0, -10.0]], dtype=np.float32)
             canvas.words(f"{PATH}/banner", None, where, [self._banner], colours.MARK)
         self._draw_done(t, canvas)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run in progress; a whole turn is drawn into its side, a part of one upon it."""
         theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
-        here = np.isfinite(theta) & np.isfinite(error)
+        here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         if not here.any():
             return
         t = float(block.t[-1])
         done = self._turns.add(theta[here], error[here])
         for turn in done:
             self._sides[turn.way].add(turn)
-            self._peak = f"last turn {turn.peak_to_peak:.1f} arcsec peak to peak"
+            if not math.isnan(turn.peak_to_peak):
+                self._peak = f"last turn {turn.peak_to_peak:.1f} arcsec peak to peak"
         now = self._present()
         if self._refit(now) or done:
             self._draw_done(t, canvas)

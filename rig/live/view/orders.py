@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rig.live.calm import Calm
 from rig.live.view import colours
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
@@ -30,18 +31,20 @@ class Orders(Drawing):
 
     def __init__(self, ratio: float) -> None:
         self._ratio = ratio
-        self._turns = Turns()
+        self._calm, self._turns = Calm(), Turns()
         self._last: deque[Turn] = deque(maxlen=SPAN)
         self._shown: list[Turn] = []
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """The bars as they stand at run time `t` s, arcsec over orders of the motor turn; empty before two turns."""
         at = np.arange(0.0, HIGHEST + STEP / 2, STEP)
         at, amplitude = bars(self._shown) if self._shown else (at, np.zeros_like(at))
         canvas.bars(PATH, t, at, amplitude, colours.FORWARD)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run; the bars are drawn anew when a whole turn has come."""
         theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
-        here = np.isfinite(theta) & np.isfinite(error)
+        here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         done = self._turns.add(theta[here], error[here])
         for turn in done:
             if self._last and (turn.way != self._last[-1].way or turn.number != self._last[-1].number + turn.way):

@@ -109,6 +109,7 @@ def _handler(folder: Path, proxy_port: int, starts: Callable[[], int]) -> type[B
         """GET of one of FILES, by this machine's name only."""
 
         def do_GET(self) -> None:  # http.server's name
+            """The page, its two files, or how often the proxy was started; 404 for anything else."""
             name = urlsplit(self.path).path.lstrip("/") or "index.html"
             host = (self.headers.get("Host") or "").rpartition(":")[0]
             if host not in (LOOPBACK, "localhost"):  # another name would be another's page

@@ -58,7 +58,7 @@ class RerunCanvas(Canvas):
         return canvas
 
     @classmethod
-    def to_viewer(cls, about: About, url: str, gathered: float = 0.05, turns: int = 1) -> RerunCanvas:
+    def to_viewer(cls, about: About, url: str, gathered: float = 0.1, turns: int = 1) -> RerunCanvas:
         """A recording in the viewer behind `url`, followed as it grows; a run that is over goes in large pieces."""
         canvas = cls(about, gathered, turns)
         canvas._stream.set_sinks(rr.GrpcSink(url))
@@ -88,24 +88,29 @@ class RerunCanvas(Canvas):
     # ---------------------------------------------------------------- what is drawn
 
     def arrange(self, layout: Layout) -> None:
+        """Panes as a blueprint, sent at once."""
         self._stream.send_blueprint(_blueprint(layout))
 
     def name_curves(self, path: str, names: Sequence[str], colours: Sequence[int]) -> None:
+        """Names and 0xRRGGBB colours of the columns that follow on this path; curves are thinned by extremes."""
         style = rr.SeriesLines(
             names=names, colors=_rgba(colours), widths=[1.5] * len(names), aggregation_policy="MinMax"
         )
         self._stream.log(path, style, static=True)
 
     def curves(self, path: str, t: Array, values: Array) -> None:
+        """A column send: t (n,) s, values (n, k)."""
         n, k = values.shape
         column = rr.Scalars.columns(scalars=np.ascontiguousarray(values).ravel()).partition(np.full(n, k))
         self._stream.send_columns(path, indexes=[_times(t)], columns=column)
 
     def lines(self, path: str, t: float | None, lines: Sequence[Array], pen: Pen) -> None:
+        """2D strips, each (n, 2); rerun keeps the last ones for every time."""
         width = -pen.width / 2  # negative: rerun's way to say pixels
         self._log(path, t, rr.LineStrips2D(lines, colors=_rgba([pen.colour]), radii=width, draw_order=pen.order))
 
     def words(self, path: str, t: float | None, where: Array, words: Sequence[str], colour: int) -> None:
+        """Labels without points at (n, 2)."""
         self._log(
             path,
             t,
@@ -113,13 +118,16 @@ class RerunCanvas(Canvas):
         )
 
     def dot(self, path: str, t: float | None, where: Array, colour: int) -> None:
+        """One point at (2,), DOT px."""
         self._log(path, t, rr.Points2D([where], radii=-DOT, colors=_rgba([colour]), draw_order=8.0))
 
     def bars(self, path: str, t: float | None, at: Array, values: Array, colour: int) -> None:
+        """A bar chart, bars four fifths of their distance wide."""
         width = float(at[1] - at[0]) * 0.8 if len(at) > 1 else 0.8
         self._log(path, t, rr.BarChart(values, abscissa=at, widths=[width], color=_rgba([colour])))
 
     def solid(self, path: str, solid: Solid) -> None:
+        """A cylinder along x, mm, without a time."""
         upright = rr.RotationAxisAngle([0.0, 1.0, 0.0], degrees=90.0)  # rerun's stand along z
         body = rr.Cylinders3D(
             lengths=[solid.length],
@@ -132,17 +140,21 @@ class RerunCanvas(Canvas):
         self._stream.log(path, body, static=True)
 
     def disc(self, path: str, half_axes: tuple[float, float, float], colour: int) -> None:
+        """An ellipsoid, half axes in mm, without a time."""
         body = rr.Ellipsoids3D(half_sizes=[half_axes], colors=_rgba([colour]), fill_mode="solid")
         self._stream.log(path, body, static=True)
 
     def wires(self, path: str, t: float | None, wires: Sequence[Array], pen: Pen) -> None:
+        """3D strips, each (n, 3) mm; the pen's width is mm."""
         self._log(path, t, rr.LineStrips3D(wires, colors=_rgba([pen.colour]), radii=pen.width))
 
     def signs(self, path: str, where: Array, words: Sequence[str], colour: int) -> None:
+        """Labels at (n, 3) mm, without a time."""
         points = rr.Points3D(where, labels=words, show_labels=True, radii=0.01, colors=_rgba([colour]))
         self._stream.log(path, points, static=True)
 
     def turn(self, path: str, t: Array, angle: Array) -> None:
+        """Kept until there are as many rows as the canvas gathers, then sent: t (n,) s, angle (n,) rad about x."""
         kept = self._turned.setdefault(path, [])
         kept.append((t, angle))
         if sum(len(piece) for piece, _ in kept) >= self._turns:
@@ -160,9 +172,11 @@ class RerunCanvas(Canvas):
         self._stream.send_columns(path, indexes=[_times(t)], columns=rr.Transform3D.columns(quaternion=quaternions))
 
     def event(self, path: str, t: float, level: str, text: str) -> None:
+        """A line of the log at run time `t` s."""
         self._log(path, t, rr.TextLog(text, level=level))
 
     def page(self, path: str, t: float | None, markdown: str) -> None:
+        """Markdown, as a document."""
         self._log(path, t, rr.TextDocument(markdown, media_type="text/markdown"))
 
     def _log(self, path: str, t: float | None, what: rr.AsComponents) -> None:

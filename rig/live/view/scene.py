@@ -13,7 +13,7 @@ from rig.live.view.nothing import Nothing
 from rig.live.view.picture import Picture
 
 SHOWN = 500.0  # rows of a curve a second at most, two of each group: a screen has fewer columns
-DRAWN = 4  # beats a picture: five a second; a viewer without a GPU falls behind with more
+DRAWN = 2  # beats a picture: five a second; a viewer without a GPU falls behind with more
 MOST = 4096  # rows a beat: a virtual clock makes more, and they are left out
 
 

@@ -36,6 +36,7 @@ class Space(Drawing):
         self._times = DRAWN * about.ratio / CUP  # how much larger than real
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """Everything that keeps its shape: it is drawn once and has no time."""
         _stand(canvas)
         _wave_generator(canvas)
         _flexspline(canvas)
@@ -53,6 +54,7 @@ class Space(Drawing):
             canvas.signs(f"{PATH}/banner", above, [self._about.banner], colours.MARK)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run: angles [rad] turn the bodies, the material marks go with both."""
         shown = _pictures(block)
         theta_m, theta_l = _held(shown["theta_m"]), _held(shown["theta_l"])
         canvas.turn(f"{PATH}/wave_generator", shown.t, theta_m)
@@ -75,8 +77,10 @@ def _held(angle: Array) -> Array:
     return np.nan_to_num(angle[last])
 
 
-def deflection(phi: Array, theta_m: float, x: float) -> Array:
-    """Radius [mm] at angle `phi` (n,), rad: two waves that turn with the generator, less towards the cup's floor."""
+def deflection(phi: Array, theta_m: float, x: Array | float) -> Array:
+    """Radius [mm] at angle `phi` [rad] and depth `x` [mm]: two waves that turn with the generator, less towards the
+    cup's floor; in the shape the two have together.
+    """
     return np.asarray(CUP + DRAWN * (1.0 - x / DEPTH) * np.cos(2 * (phi - theta_m)))
 
 
@@ -90,11 +94,9 @@ def ring(radius: Array | float, x: float, phi: Array) -> Array:
 def material(theta_m: float, turned: float) -> list[Array]:
     """Lines along the cup at angles fixed to its material, which has `turned` [rad]; on the deformed shape."""
     x = np.linspace(0.0, DEPTH, 6)
-    lines = []
-    for phi in turned + np.arange(MARKS) * 2 * np.pi / MARKS:
-        r = np.array([deflection(np.array([phi]), theta_m, at)[0] for at in x])
-        lines.append(np.stack((x, r * np.sin(phi), r * np.cos(phi)), axis=1).astype(np.float32))
-    return lines
+    phi = (turned + np.arange(MARKS) * 2 * np.pi / MARKS)[:, None]
+    r = deflection(phi, theta_m, x)
+    return list(np.stack((np.broadcast_to(x, r.shape), r * np.sin(phi), r * np.cos(phi)), axis=2).astype(np.float32))
 
 
 def _around(n: int = 121) -> Array:

@@ -96,6 +96,7 @@ class Trail(Drawing):
         self._count = 0
 
     def draw(self, t: float, canvas: Canvas) -> None:
+        """Axes and the whole trail as they stand at run time `t` s."""
         draw_frame(self._plane.path, t, self._frame, canvas)
         for number, piece in self._pieces:
             self._draw(t, number, piece, canvas)
@@ -104,6 +105,7 @@ class Trail(Drawing):
             canvas.words(f"{self._plane.path}/banner", None, where, [self._banner], colours.MARK)
 
     def add(self, block: Block, canvas: Canvas) -> None:
+        """Takes the rows of a run: their means lengthen the trail, the last one is the dot."""
         x, y = self._plane.of(block, self._ratio)
         x, y = averaged(block.t, x, y, self._plane.mean)
         if not len(x):

@@ -23,6 +23,7 @@ def drawing(series: Series) -> Drawing:
     days = [spot.row.started_utc[:10] for spot in series.spots]
 
     def draw(curves: Curves, frame: Frame) -> Figure | None:
+        """Value with interval by number of the run; columns as `curves_of` makes them."""
         figure, panels = sheet(frame, [frame.pick(220, 200)])
         panel, x = panels[0], np.arange(1, len(days) + 1, dtype=float)
         value, low, high = curves["value"], curves["low"], curves["high"]
@@ -42,6 +43,7 @@ def drawing(series: Series) -> Drawing:
         return figure
 
     def say(curves: Curves) -> str:
+        """The figure in one sentence, for who does not see it."""
         value = curves["value"]
         return f"{series.label}, {plain(value.min(), 4)} to {plain(value.max(), 4)} {series.unit}: {series.sentence}."
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 
 import matplotlib as mpl
-from matplotlib.figure import Figure
 
 from rig.report.figures import (
     coast_down,
@@ -65,26 +64,21 @@ def svg(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, prefix:
     Without `prefix` it is a file of its own in light colours; with one it is part of a page: ids begin with it, colours
     are the page's variables, width is the page's to set.
     """
-    figure = _draw(drawing, curves, frame or Frame())
-    if figure is None:
-        return None
     text = io.StringIO()
     with mpl.rc_context(STYLE):
+        figure = drawing.draw(curves, frame or Frame())
+        if figure is None:
+            return None
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return dress(text.getvalue(), prefix or "", drawing.say(curves), themed=prefix is not None)
 
 
 def png(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, scale: float = 2.0) -> bytes | None:
     """The figure as PNG on white, `scale` dots per CSS pixel; None when its curves are absent."""
-    figure = _draw(drawing, curves, frame or Frame())
-    if figure is None:
-        return None
     data = io.BytesIO()
     with mpl.rc_context(STYLE):
+        figure = drawing.draw(curves, frame or Frame())
+        if figure is None:
+            return None
         figure.savefig(data, format="png", dpi=72 * scale, facecolor=LIGHT["paper"], metadata={"Software": None})
     return data.getvalue()
-
-
-def _draw(drawing: Drawing, curves: Curves, frame: Frame) -> Figure | None:
-    with mpl.rc_context(STYLE):
-        return drawing.draw(curves, frame)

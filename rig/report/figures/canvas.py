@@ -22,6 +22,7 @@ Curves = Mapping[str, Array]
 
 PX = 1 / 72  # inch; SVG user units are points, which a page takes as pixels
 LEFT, HEAD, KEY, BETWEEN, FOOT = 52.0, 28.0, 19.0, 12.0, 40.0
+NAME_BELOW = 25.5  # px from a panel to the name of its x axis: ticks of 4, their labels, and what parts them
 STYLE: dict[str, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "hdrig",
@@ -35,10 +36,27 @@ STYLE: dict[str, Any] = {
     "text.color": LIGHT["ink"],
     "axes.edgecolor": LIGHT["axis"],
     "axes.labelcolor": LIGHT["muted"],
-    "xtick.color": LIGHT["muted"],
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.spines.left": False,
+    "axes.axisbelow": True,
+    "axes.xmargin": 0.0,
+    "axes.grid": True,
+    "axes.grid.axis": "y",
+    "grid.color": LIGHT["grid"],
+    "grid.linewidth": 1.0,
+    "xtick.color": LIGHT["axis"],
+    "xtick.labelcolor": LIGHT["muted"],
+    "xtick.labelsize": 11.5,
+    "xtick.major.size": 4.0,
+    "xtick.major.pad": 6.0,
     "ytick.color": LIGHT["muted"],
+    "ytick.labelsize": 11.5,
+    "ytick.major.size": 0.0,
+    "ytick.major.pad": 6.0,
     "axes.unicode_minus": True,
 }
+"""What a panel begins with: told beforehand, for each tick that is changed later is made anew."""
 
 
 @dataclass(frozen=True)
@@ -103,14 +121,9 @@ def panel_at(figure: Figure, frame: Frame, box: tuple[float, float, float, float
 
 def _quiet(panel: Axes) -> None:
     panel.patch.set_visible(False)
-    panel.spines[["top", "right"]].set_visible(False)
-    panel.spines["left"].set_visible(False)
-    panel.set_axisbelow(True)
-    panel.grid(axis="y", color=LIGHT["grid"], linewidth=1.0)
-    panel.tick_params(axis="both", length=0, pad=6, labelsize=11.5)
-    panel.tick_params(axis="x", length=4, color=LIGHT["axis"])
     panel.yaxis.set_major_locator(MaxNLocator(5, min_n_ticks=3))
-    panel.margins(x=0)
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.set_label_coords(0.0, 0.0)  # else the ticks are laid out twice, to find a place for a name
 
 
 def _watermark(panel: Axes, word: str, width: float, height: float) -> None:
@@ -174,7 +187,8 @@ def angle_axis(panels: Sequence[Axes], frame: Frame) -> None:
 
 def foot(panel: Axes, text: str) -> None:
     """The name of the x axis."""
-    panel.set_xlabel(text, fontsize=11.5, labelpad=4)
+    panel.set_xlabel(text, fontsize=11.5)
+    panel.xaxis.set_label_coords(0.5, -NAME_BELOW / panel.bbox.height)
 
 
 def log_axis(panel: Axes, low: float, high: float) -> None:

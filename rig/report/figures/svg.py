@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from functools import cache
 
+import numpy as np
+
+from rig.analysis.result import Array
 from rig.report.palette import NAME
 
 SVG = "http://www.w3.org/2000/svg"
 HREF = "{http://www.w3.org/1999/xlink}href"
 COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 NUMBER = re.compile(r"-?\d+\.\d+")
-TOKEN = re.compile(r"[MLz]|-?\d+(?:\.\d+)?(?:e-?\d+)?")
 NO_TURN = re.compile(r"^rotate\(-?0 ")
 DROPPED = ("font-family",)  # left to the page, or to the root of a file of its own
 FONTS = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
@@ -86,27 +89,23 @@ def steps(path: str) -> str:
     """A path of M, L and z in absolute floats as relative steps of tenths; paths with curves stay absolute."""
     if any(c in path for c in "CQ"):
         return " ".join(NUMBER.sub(_short, path).split())
-    out: list[str] = []
-    here = start = (0, 0)
-    tokens = iter(TOKEN.findall(path))
-    last = ""
-    for command in tokens:
-        if command == "z":
-            out.append("z")
-            here, last = start, "z"
-            continue
-        x, y = round(float(next(tokens)) * 10), round(float(next(tokens)) * 10)
-        dx, dy = x - here[0], y - here[1]
-        if command == "M":
-            out.append(f"m{_tenths(dx)}{_joined(dy)}")
-            start, last = (x, y), "m"
-        elif last != "l":
-            out.append(f"l{_tenths(dx)}{_joined(dy)}")
-            last = "l"
-        elif dx or dy:
-            out.append(_joined(dx) + _joined(dy))  # the letter is not said again; after an m it would mean a line
-        here = (x, y)
+    out, here = list[str](), np.zeros(2)
+    for piece in path.split("M")[1:]:
+        points = np.array(piece.replace("L", "").replace("z", "").split(), dtype=np.float64).reshape(-1, 2)
+        tenths = np.rint(10.0 * points)
+        out.extend(_relative(np.diff(tenths, axis=0, prepend=here[None])))
+        closed = "z" in piece
+        out.extend("z" * closed)
+        here = tenths[0 if closed else -1]
     return "".join(out)
+
+
+def _relative(moved: Array) -> Iterator[str]:
+    """One m and what is drawn from there, each step [0.1 px] (n, 2); steps of nothing after the first are left out."""
+    (x, y), *lines = moved[np.append([True, True], moved[2:].any(axis=1))[: len(moved)]].astype(int).tolist()
+    yield f"m{_tenths(x)}{_joined(y)}"
+    for i, (x, y) in enumerate(lines):  # the l is not said again; after an m the numbers alone would mean a line too
+        yield _joined(x) + _joined(y) if i else f"l{_tenths(x)}{_joined(y)}"
 
 
 @cache

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import prepare
 from rig.model.effects import CATALOGUE
-from tests.analysis.tracing.test_few_channels import CASES, reduced
+from tests.analysis.tracing.test_few_channels import reduced
 
 RUNS = ("slow_ke_1", "slow_ke_2", "speed_120rpm_1", "speed_120rpm_2", "speed_300rpm_1", "speed_300rpm_2")
 
@@ -28,9 +28,8 @@ def test_what_the_others_cannot_explain_is_what_is_left_of_a_column_beside_them(
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CASES.is_dir(), reason="the shared campaigns are not here")
-def test_friction_laws_are_told_apart_by_speeds_and_not_by_a_locked_output(tmp_path: Path):
-    p = prepare(read_campaign(reduced(tmp_path, "open-5", RUNS, ())), ())
+def test_friction_laws_are_told_apart_by_speeds_and_not_by_a_locked_output(tmp_path: Path, shared: Path):
+    p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-5", RUNS, ())), ())
     covered = reach([p.eq.runs[i] for i in p.split.fitted])
     falling, drag = (
         Term(CATALOGUE[n], CATALOGUE[n].shapes(covered)[0]) for n in ("stribeck_friction", "quadratic_drag")

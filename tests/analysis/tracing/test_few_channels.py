@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,17 +16,20 @@ from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.trace import prepare, trace
 from rig.core.errors import UsageError
 
-CASES = Path(os.environ.get("HDRIG_SHARED", Path(__file__).resolve().parents[4] / "shared")) / "cases"
 FEW = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "speed_120rpm_1", "speed_300rpm_1", "speed_300rpm_2", "lock_60_1")
 KEYS = ("schema", "runs", "noise_floor", "baseline", "residual", "candidates", "verdict", "effects", "before", "after")
 
-pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="the shared campaigns are not here")
+
+@pytest.fixture(scope="module")
+def open_1(shared: Path) -> Path:
+    """The reference campaign whose gear is what the paper's model says."""
+    return shared / "cases" / "open-1"
 
 
-def reduced(to: Path, case: str, runs: Sequence[str], drop: Sequence[str]) -> Path:
+def reduced(to: Path, campaign: Path, runs: Sequence[str], drop: Sequence[str]) -> Path:
     """Some runs of a campaign without some of their columns."""
     for name in runs:
-        source, target = CASES / case / name, to / name
+        source, target = campaign / name, to / name
         target.mkdir(parents=True)
         table = pq.read_table(source / "samples.parquet")
         pq.write_table(table.drop_columns(list(drop)), target / "samples.parquet")
@@ -56,39 +58,43 @@ def checked(found: Trace) -> Trace:
         (("tau_m", "tau_l"), "No motor torque"),
     ],
 )
-def test_a_missing_channel_is_said_and_the_rest_is_traced(tmp_path: Path, drop: tuple[str, ...], said: str):
-    found = checked(trace(reduced(tmp_path, "open-1", FEW, drop)))
+def test_a_missing_channel_is_said_and_the_rest_is_traced(
+    tmp_path: Path, open_1: Path, drop: tuple[str, ...], said: str
+):
+    found = checked(trace(reduced(tmp_path, open_1, FEW, drop)))
     assert any(sentence.startswith(said) for sentence in found.cannot)
     assert "channel_time_skew" not in found.verdict.effects
 
 
 @pytest.mark.slow
-def test_without_a_load_encoder_the_torque_at_speed_gives_the_kinematic_error(tmp_path: Path):
+def test_without_a_load_encoder_the_torque_at_speed_gives_the_kinematic_error(tmp_path: Path, open_1: Path):
     runs = [*FEW, "speed_200rpm_1", "speed_400rpm_1", "speed_minus400rpm_1"]
-    folder = reduced(tmp_path, "open-1", runs, ("theta_l",))
+    folder = reduced(tmp_path, open_1, runs, ("theta_l",))
     values = prepare(read_campaign(folder), ()).baseline.values
-    truth = json.loads((CASES / "TRUTH.json").read_text())["open-1"]
+    truth = json.loads((open_1.parent / "TRUTH.json").read_text())["open-1"]
     assert values["a2"] == pytest.approx(truth["kinematic_error_a_rad"][2], rel=0.08)
     assert values["b4"] == pytest.approx(truth["kinematic_error_b_rad"][4], rel=0.25)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("runs", [("slow_ke_1",), ("speed_300rpm_1",), ("speed_300rpm_1", "slow_ke_1")])
-def test_one_run_or_two_are_traced_with_turns_of_their_own_held_out(tmp_path: Path, runs: tuple[str, ...]):
-    found = checked(trace(reduced(tmp_path, "open-1", runs, ())))
+def test_one_run_or_two_are_traced_with_turns_of_their_own_held_out(
+    tmp_path: Path, open_1: Path, runs: tuple[str, ...]
+):
+    found = checked(trace(reduced(tmp_path, open_1, runs, ())))
     assert found.verdict.status == "no_missing_effect"
     assert "a third of every run" in found.held_out_how
 
 
-def test_one_way_and_one_speed_are_told_and_what_they_mix_up(tmp_path: Path):
-    runs = read_campaign(reduced(tmp_path, "open-1", ("speed_300rpm_1",), ())).runs
+def test_one_way_and_one_speed_are_told_and_what_they_mix_up(tmp_path: Path, open_1: Path):
+    runs = read_campaign(reduced(tmp_path, open_1, ("speed_300rpm_1",), ())).runs
     said = " ".join(cannot(runs))
     for words in ("One run only", "one way only", "about 3"):
         assert words in said
     assert {("tau_c", "tau_0"), ("tau_c", "B_m")} <= set(together(runs))
 
 
-def test_a_campaign_of_one_angle_and_no_torque_is_refused_in_words(tmp_path: Path):
-    folder = reduced(tmp_path, "open-1", ("slow_ke_1",), ("theta_l", "tau_l", "tau_m"))
+def test_a_campaign_of_one_angle_and_no_torque_is_refused_in_words(tmp_path: Path, open_1: Path):
+    folder = reduced(tmp_path, open_1, ("slow_ke_1",), ("theta_l", "tau_l", "tau_m"))
     with pytest.raises(UsageError, match="two angles or an angle and a torque"):
         trace(folder)

@@ -132,7 +132,9 @@ class Puppet:
         async def check(request: Request) -> Any:
             self.checked.append(await request.json())
             margin = {"what": "travel", "asked": 1440.0, "limit": 144000.0, "unit": "deg", "fraction": 0.01}
-            return {"ok": not self.problems, "problems": self.problems, "plan": ["duration 201 s"], "margins": [margin]}
+            sums = {"duration_s": 201.0, "stored_j": 0.00062, "nearest": "motor speed", "left": 0.984}
+            told = {"plan": ["duration 201 s"], "margins": [margin], "sums": sums}
+            return {"ok": not self.problems, "problems": self.problems, **told}
 
         @app.post("/api/act")
         async def act(request: Request) -> Response:

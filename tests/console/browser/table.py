@@ -56,7 +56,10 @@ SITUATIONS: dict[str, tuple[dict[str, Any], set[str]]] = {
     "stopping": ({"state": "stopping", **MOVING}, URGENT | {"note"}),
     "just tripped": ({"state": "fault", "fault": "no torque sample for 41 ms", **MOVING}, URGENT | {"note"}),
     "fault": ({"state": "fault", "fault": "following error 12.4 deg"}, IN_FAULT),
-    "asked for a change by hand": ({"state": "ready", "job": "campaign quick", "prompt": ASKED}, URGENT | ANSWERS),
+    "asked for a change by hand": (
+        {"state": "ready", "job": "campaign quick", "prompt": ASKED},
+        URGENT | ANSWERS | {"note"},
+    ),
     "output locked": ({"state": "ready", "rigging": {**FREE, "output_locked": True}}, IDLE - TURNS - {"tare"}),
     "a weight hangs": ({"state": "ready", "rigging": {**FREE, "tau_ext": 5.0}}, IDLE - {"tare"}),
     "a change not shown": ({"state": "ready", "unsure": "fit the lock pin"}, IDLE - TURNS - {"tare"}),

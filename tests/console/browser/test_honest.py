@@ -123,7 +123,7 @@ def test_hostile_input_in_every_field_is_sent_as_it_was_typed_and_breaks_nothing
     assert page.evaluate("window.hit") is None
 
 
-def test_a_prompt_stands_over_the_charts_until_it_is_answered_and_leaves_halt_in_reach(
+def test_a_prompt_stands_over_the_charts_until_it_is_answered_and_leaves_halt_and_notes_in_reach(
     page: Page, station: Puppet
 ) -> None:
     asked = {"id": "p1", "text": "hang 5 N·m on the output, pulling forward", "what": "HangWeight"}
@@ -140,9 +140,14 @@ def test_a_prompt_stands_over_the_charts_until_it_is_answered_and_leaves_halt_in
         assert page.evaluate(top, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]) == name
     assert station.acts == []
 
+    page.fill("#note-text", "weight hung on the left arm")
+    page.click("[data-act=note]")
+    until(lambda: len(station.acts) == 1, "a note while it stands there")
+    assert (station.acts[0]["act"], station.acts[0]["text"]) == ("note", "weight hung on the left arm")
+    assert page.locator("#prompt").is_visible()
     page.click("#prompt-done")
-    until(lambda: len(station.acts) == 1, "the answer")
-    assert (station.acts[0]["act"], station.acts[0]["prompt_id"], station.acts[0]["done"]) == ("answer", "p1", True)
+    until(lambda: len(station.acts) == 2, "the answer")
+    assert (station.acts[1]["act"], station.acts[1]["prompt_id"], station.acts[1]["done"]) == ("answer", "p1", True)
 
 
 def test_nothing_is_fetched_from_anywhere_else(open_page: Open, station: Puppet, context: BrowserContext) -> None:

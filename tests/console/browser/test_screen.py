@@ -112,6 +112,24 @@ def test_what_was_not_measured_is_a_dash_and_not_a_zero(page: Page, station: Pup
     assert text(page, "[data-tile=peak] .value") == "—"
 
 
+def test_what_a_run_asks_for_is_in_sight_before_it_starts_without_opening_anything(page: Page, station: Puppet) -> None:
+    station.tell(state="ready", bench=BENCH)
+    in_state(page, "ready")
+    page.wait_for_selector("#margins .sums")
+    for name, (width, height) in SCREENS.items():
+        page.set_viewport_size({"width": width, "height": height})
+        for button in page.locator("button[data-panel=measure]:visible").all():  # a tablet shows one panel at a time
+            button.click()
+        said = [" ".join(row.inner_text().split()) for row in page.locator("#margins li").all()]
+        assert any(re.search(r"travel 1440 of 144000 deg", row) for row in said), said
+        assert said[-1] == ("stored energy ≤ 0.00062 J duration ≤ 3 min 21 s tightest margin motor speed, 98 %")
+        place = page.locator("#margins").evaluate(
+            "box => [box.scrollHeight, box.clientHeight, box.scrollWidth, box.clientWidth]"
+        )
+        assert place[0] <= place[1], f"{name}: cut off"
+        assert place[2] <= place[3], f"{name}: cut off"
+
+
 def test_a_torque_near_its_limit_is_marked(page: Page, station: Puppet) -> None:
     _running(station)
     in_state(page, "running")

@@ -1,7 +1,7 @@
 // What to run, with which parameters: checked by the server as they are typed, with the dry run and its margins.
 
 import { $, h, refill, say, show } from "../dom.js";
-import { plain } from "../numbers.js";
+import { lasting, plain } from "../numbers.js";
 import { get, headers } from "../token.js";
 import { typed, written } from "./fields.js";
 import { permit } from "./buttons.js";
@@ -60,7 +60,7 @@ export class Chooser {
   /** A new campaign by its plan, or one to go on with by its folder. */
   #plan() {
     const chosen = this.#chosen;
-    return chosen?.plan ? { resume: chosen.name } : { plan: $("chosen").value };
+    return chosen?.plan ? { resume: chosen.name } : { plan: $("chosen").value, parameters: this.#values() };
   }
 
   /** A campaign that has ended may be one to go on with. */
@@ -142,7 +142,7 @@ export class Chooser {
     }
     const known = new Set([...$("parameters").querySelectorAll("input")].map((input) => input.name));
     const general = Object.entries(problems).filter(([name]) => !known.has(name)).map(([, sentence]) => sentence);
-    refill($("margins"), [said.margins, general], () => [...general.map((sentence) => h("li", { className: "wrong" }, sentence)), ...(said.margins ?? []).map(bar)]);
+    refill($("margins"), [said.margins, said.sums, general], () => [...general.map((sentence) => h("li", { className: "wrong" }, sentence)), ...(said.margins ?? []).map(bar), ...summed(said.sums)]);
     const list = $("plan").querySelector("ul");
     show($("plan"), (said.plan ?? []).length > 0);
     refill(list, said.plan, () => (said.plan ?? []).map((line) => h("li", {}, line)));
@@ -181,6 +181,13 @@ function field({ name, type, unit, default: value, meaning }, kept) {
   if (kept !== undefined) input.value = kept;
   const shown = name.replace(/_(deg|rpm|s|mm|hz)$/i, "").replace(/_/g, " ");
   return h("div", { className: "parameter" }, h("label", { htmlFor: id, title: meaning ?? "" }, shown), input, h("span", { className: "unit" }, unit === "1" || !unit ? "" : unit), h("p", { className: "wrong", id: `${id}-wrong` }));
+}
+
+/** How long it takes, what it stores, and which limit it comes nearest to: in sight without opening anything. */
+function summed(sums) {
+  if (!sums) return [];
+  const told = [["stored energy", `≤ ${plain(Number(sums.stored_j.toPrecision(2)))}\u00a0J`], ["duration", `≤ ${lasting(sums.duration_s)}`], ["tightest margin", `${sums.nearest}, ${Math.floor(100 * sums.left)}\u00a0%`]];
+  return [h("li", { className: "sums" }, ...told.map(([what, value]) => h("span", {}, h("small", {}, what), h("b", {}, value))))];
 }
 
 /** How much of a limit the run asks for. */

@@ -1,4 +1,4 @@
-// A change by hand that a campaign waits for. It stands over the charts until it is answered; the present values stay in sight, halt in reach.
+// A change by hand that a campaign waits for. It stands over the charts until it is answered; the present values stay in sight, halt in reach, and notes can be made.
 
 import { $, say, show } from "../dom.js";
 
@@ -8,7 +8,7 @@ export function prompt(state) {
   const asked = state.prompt ?? null;
   const box = $("prompt");
   show(box, asked !== null);
-  $("charts").inert = $("log").inert = asked !== null;
+  $("charts").inert = asked !== null;
   if (asked === null) shown = null;
   else say($("prompt-text"), asked.text);
   if (asked === null || asked.id === shown) return;

@@ -1,0 +1,63 @@
+"""What a procedure would do on a bench, for a person. Writes nothing, moves nothing."""
+
+from __future__ import annotations
+
+import math
+
+from rig.bench import Bench
+from rig.campaign.swing import ORDER_2, declared_gear, swing
+from rig.core.channels import CHANNELS
+from rig.core.procedure import Procedure
+from rig.refusals import TOLD, margins
+
+
+def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
+    """What a dry run prints: travel, speed, torque, energy, duration, bytes, and the margins to every limit."""
+    envelope = procedure.envelope(bench.setting(lambda text: None))
+    rows = int(envelope.duration * bench.file.loop.rate)
+    size = rows * 8 * len(CHANNELS) * 1.4 / 1e6  # journal as it is, archive at about 0.4 of it
+    lines = [
+        f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
+        f"duration    at most {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
+        f"stored      at most {stored_energy(bench, procedure, shaft_torque(bench, procedure)):.4f} J in motion and "
+        "wound up in the gear",
+    ]
+    for what, asked, limit, unit, scale in margins(bench, procedure):
+        if what == "torque":  # the loop is clamped there: what it will need is known only once it runs
+            lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
+            continue
+        lines.append(
+            f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
+        )
+    what, left = tightest(bench, procedure)
+    lines.append(f"tightest    {what}: {100 * left:.0f} % of its limit left")
+    return [*lines, *procedure.remarks(bench.setting(lambda text: None))]
+
+
+def shaft_torque(bench: Bench, procedure: Procedure) -> float:
+    """What the torque sensor is expected to carry at most [N·m], nothing hung on the output: what a lock test winds up,
+    or the swing of order 2 at the highest speed.
+    """
+    envelope = procedure.envelope(bench.setting(lambda text: None))
+    if procedure.output_locked:
+        return envelope.shaft_torque if math.isfinite(envelope.shaft_torque) else 0.0
+    return swing(declared_gear(bench), ORDER_2, envelope.speed)
+
+
+def stored_energy(bench: Bench, procedure: Procedure, shaft_torque: float) -> float:
+    """J stored at most: in motion, and wound up in the gear under `shaft_torque` N·m."""
+    gear = bench.file.gear
+    inertia = gear.J_m + (0.0 if procedure.output_locked else gear.J_l / gear.N**2)
+    speed = procedure.envelope(bench.setting(lambda text: None)).speed
+    return float(0.5 * inertia * speed**2 + 0.5 * shaft_torque**2 / gear.K)
+
+
+def tightest(bench: Bench, procedure: Procedure) -> tuple[str, float]:
+    """Which limit the run comes nearest to, and the share of it that is left; below zero it is broken. Motor torque is
+    none of them: the loop is held at its limit, and what it will need is known only once it runs.
+    """
+    left = {what: 1 - asked / limit for what, asked, limit, _, _ in margins(bench, procedure) if what != "torque"}
+    if bench.limits.shaft_torque is not None:
+        left.setdefault("shaft", 1 - shaft_torque(bench, procedure) / bench.limits.shaft_torque)
+    nearest = min(left, key=lambda what: left[what])
+    return TOLD[nearest], left[nearest]

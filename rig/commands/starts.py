@@ -1,0 +1,54 @@
+"""`hdrig simulate --start`: a torque switched on at rest, in lines for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.core.errors import UsageError
+from rig.model.gearfile import GearFile
+from rig.model.simulate.run_up import RunUp, run_up
+from rig.model.simulate.spread import Z95, drawn_gears
+from rig.report.numbers import quantity
+
+SECONDS = 5.0  # what constant-torque lets a run settle: twelve time constants of inertia over drag of the paper's gear
+RPM = np.pi / 30.0  # rad/s
+Array = npt.NDArray[Any]
+
+
+def lines(file: GearFile, torques: Sequence[float], load: float) -> Iterator[str]:
+    """A line a torque, by the gear file's gear and as many drawn from its intervals. Raises UsageError: no numbers."""
+    if not np.isfinite(torques).all():
+        raise UsageError(f"--start {' '.join(f'{x:g}' for x in torques)}: expected torques in N·m")
+    gears = [file.gear(), *drawn_gears(file)]
+    yield f"{'τ, N·m':>10s}{'does it turn':>22s}{'rpm':>20s}{'run up in, s':>20s}"
+    for tau in torques:
+        yield line(tau, run_up(gears, tau, SECONDS, load))
+    drawn = len(gears) - 1
+    how = f"± 95 %: {drawn} gears drawn from the gear file" if drawn else "no intervals: nothing was measured"
+    yield f"  ({how}; rpm: mean from {0.8 * SECONDS:g} to {SECONDS:g} s; run up: 95 % of it)"
+    if (tau_s := file.parameters["tau_s"]).origin != "measured":
+        yield f"  breakaway was not measured (tau_s {tau_s.value:.3g} N·m {tau_s.origin}): what starts hangs on it"
+
+
+def line(tau: float, made: RunUp) -> str:
+    """One torque; the first gear is the file's own."""
+    turning, drawn = made.turning[0], made.turning[1:]
+    share = f" ({drawn.sum()} of {drawn.size})" if drawn.size else ""
+    if not turning:
+        went = f"it stops or sticks after {made.moved[0]:.2g} turns"
+        return f"{tau:10.4g}{('no' + share):>22s}   {went}"
+    speed, time = made.speed / RPM, made.time
+    return (
+        f"{tau:10.4g}{('yes' + share):>22s}{quantity(speed[0], _half(speed[1:], drawn)):>20s}"
+        f"{quantity(time[0], _half(time[1:], drawn)):>20s}"
+    )
+
+
+def _half(values: Array, drawn: Array) -> float:
+    """Half of the 95 % interval over the drawn gears that turn; NaN with fewer than two."""
+    there = values[drawn]
+    return float(Z95 * np.std(there, ddof=1)) if there.size > 1 else float("nan")

@@ -1,0 +1,174 @@
+"""One serial device that falls silent while the others live: which it is, latched until it tells again."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import select
+import threading
+import tty
+from collections.abc import Iterator
+
+import pytest
+
+from drivers.ascii_torque import AsciiTorque
+from drivers.qsb import Qsb
+from drivers.wiring import Place, Wiring
+from rig.control.filter import SpeedFilter
+from rig.core.errors import NotReady
+from rig.core.procedure import Setting
+from rig.guard import Guard
+from rig.instruments import Instruments
+from rig.interrupts import Interrupts
+from rig.loop import Ending, Loop
+from rig.procedures.standstill import Standstill
+from rig.supervisor import Act, State, Supervisor
+from rig.timing import LoopTiming
+from tests.fakes import LIMITS, SETTING, FakeClock, FakeDrive, FakeWorld, ListSink
+
+DELIVERED = 10.0  # s a busy machine may take to hand over what was written to a pseudo terminal
+QSB, TORQUE = b"s0E00000007!\r\n", b"1.25 Nm\r\n"
+
+
+class Peer:
+    """The far end of a serial line: answers a QSB's questions by itself, and tells its reading when asked to."""
+
+    def __init__(self, line: bytes) -> None:
+        self.line, self.mute = line, False
+        self.master, self.slave = os.openpty()
+        tty.setraw(self.slave)
+        self.path = os.ttyname(self.slave)
+
+    def answers(self) -> None:
+        """Until it is told to stream; for a thread."""
+        heard = b""
+        while b"S0E" not in heard:
+            heard += os.read(self.master, 100)
+            while found := re.match(rb"\s*([RW])([0-9A-F]{2})([0-9A-F]{8})?\r\n", heard):
+                heard = heard[found.end() :]
+                os.write(self.master, found[1].lower() + found[2] + (found[3] or b"00000007") + b"!\r\n")
+
+    def says(self) -> None:
+        """One reading."""
+        if not self.mute:
+            os.write(self.master, self.line)
+
+    def tells(self) -> None:
+        """One reading, there for the host when this returns."""
+        self.says()
+        if not self.mute:
+            assert select.select([self.slave], [], [], DELIVERED)[0]
+
+    def close(self) -> None:
+        os.close(self.master)
+        os.close(self.slave)
+
+
+@contextlib.contextmanager
+def saying(*peers: Peer) -> Iterator[None]:
+    """Those that live go on telling meanwhile, a hundred times a second."""
+    over = threading.Event()
+
+    def say() -> None:
+        while not over.wait(0.01):
+            for peer in peers:
+                peer.says()
+
+    thread = threading.Thread(target=say)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
+
+
+class Telling(FakeClock):
+    """Before every tick each line that lives has told its reading."""
+
+    def __init__(self, peers: list[Peer]) -> None:
+        super().__init__()
+        self.peers = peers
+
+    def wait_until(self, t: float) -> float:
+        for peer in self.peers:
+            peer.tells()
+        return super().wait_until(t)
+
+
+class Bench:
+    """A drive that is a few lines of code, encoder and torque sensor on serial lines, virtual time."""
+
+    def __init__(self) -> None:
+        self.encoder, self.torque = Peer(QSB), Peer(TORQUE)
+        self.world = FakeWorld(Telling([self.encoder, self.torque]))
+        wiring = Wiring(self.world.clock)
+        qsb = Qsb(wiring, Place("load_encoder", {"port": self.encoder.path}, 900_000, speed_limit=1.0))
+        sensor = AsciiTorque(wiring, Place("torque_sensor", {"port": self.torque.path, "baud": 115_200}, range=50.0))
+        self.instruments = Instruments(FakeDrive(self.world), qsb, sensor, self.world.clock, SpeedFilter(0.008))
+        self.supervisor = Supervisor(causes=self.instruments.causes)
+        answering = threading.Thread(target=self.encoder.answers, daemon=True)
+        answering.start()
+        with saying(self.torque):
+            self.instruments.connect()
+        answering.join(DELIVERED)
+        for act in (Act.CONNECT, Act.CHECK):
+            self.supervisor.act(act)
+
+    def run(self) -> Ending:
+        procedure = Standstill(duration=0.5)
+        guard = Guard(LIMITS, procedure.envelope(SETTING), SETTING.ratio)
+        timing = LoopTiming(SETTING.period, virtual=True)
+        setting: Setting = SETTING
+        return Loop(self.instruments, self.supervisor, guard, ListSink(), Interrupts(), timing).run(procedure, setting)
+
+    def reset(self) -> None:
+        """As a session does it."""
+        self.instruments.drive.reset_fault()
+        for device in self.instruments.devices:
+            device.clear()
+        self.supervisor.act(Act.RESET)
+
+    def close(self) -> None:
+        self.instruments.close()
+        self.encoder.close()
+        self.torque.close()
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    made.close()
+
+
+def test_with_both_lines_alive_a_run_comes_to_its_end(bench: Bench) -> None:
+    assert bench.run().status == "completed"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("which", "words", "refused"),
+    [
+        ("encoder", "no new load-encoder sample for", "load encoder on .* has told no count for 1 s"),
+        ("torque", "no new torque-sensor sample for", "torque sensor on .* has told no torque for 1 s"),
+    ],
+)
+def test_the_line_that_falls_silent_is_named_and_the_fault_stays_until_it_tells_again(
+    bench: Bench, which: str, words: str, refused: str
+) -> None:
+    peer: Peer = getattr(bench, which)
+    bench.world.clock.at[200] = lambda: setattr(peer, "mute", True)
+    ending = bench.run()
+    assert ending.status == "tripped"
+    assert ending.reason.startswith(words)
+    assert bench.world.history[-1] == "halt"
+    with saying(bench.encoder, bench.torque), pytest.raises(NotReady, match=refused):
+        bench.reset()
+    assert bench.supervisor.state is State.FAULT
+    peer.mute = False
+    assert bench.supervisor.state is State.FAULT, "its coming back is no reset"
+    with saying(bench.encoder, bench.torque):
+        bench.reset()
+    assert bench.supervisor.state is State.CONNECTED
