@@ -102,3 +102,36 @@ def test_noise_lives_nowhere() -> None:
         Rest(rng.normal(0, 1.3, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT, np.zeros((RUNS * ROWS, 0))), "A"
     )
     assert found[0].share < 0.1
+
+
+def test_what_the_baseline_has_taken_on_does_not_hide_the_coordinate() -> None:
+    """An even spring in a lock test: θ̃_p, fitted without it, bends to it and is wrong in the slow runs instead."""
+    rng = np.random.default_rng(8)
+    slow, ramp = np.linspace(-25, 25, ROWS), 1.05 * triangle(np.linspace(0, 4, ROWS))
+    motor = np.concatenate([slow, slow + 1.3, slow + 2.6, slow + 3.9, ramp])
+    load = np.concatenate([rng.normal(0, 0.5, 4 * ROWS), 160 * ramp])
+    made = 0.12 * np.abs(load)
+    z = np.stack([f(k * motor) for k in range(1, 16) for f in (np.cos, np.sin)], 1)
+    for column in (made, *z.T):
+        column -= np.repeat([part.mean() for part in np.split(column, 5)], ROWS)
+    e = made - z @ np.linalg.lstsq(z, made, rcond=None)[0] + rng.normal(0, 1, 5 * ROWS)
+    at = {
+        "motor_angle": motor,
+        "load_angle": np.concatenate([*[slow / 50] * 4, np.zeros(ROWS)]),
+        "speed": np.concatenate([np.full(4 * ROWS, 1.0), np.full(ROWS, 0.1)]),
+        "load": load,
+        "direction": np.concatenate([np.ones(4 * ROWS), np.sign(np.gradient(ramp))]),
+        "time": np.repeat(100.0 * np.arange(5), ROWS) + np.tile(np.arange(ROWS) * DT, 5),
+        "torque_rate": np.gradient(load, DT),
+    } | dict.fromkeys(("motor_torque", "temperature"), np.full(5 * ROWS, np.nan))
+    run = np.repeat(np.arange(5.0), ROWS)
+    found = plainest(homes(Rest(e, run, at, DT, z), "A"))
+    assert found[0].coordinate == "load", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
+    assert found[0].share > 0.8
+    as_it_is = homes(Rest(e, run, at, DT, np.zeros((5 * ROWS, 0))), "A")
+    assert max(h.share for h in as_it_is if h.coordinate == "load") < 0.6
+
+
+def triangle(x: np.ndarray) -> np.ndarray:
+    """Between −1 and 1, period 4."""
+    return np.abs(np.mod(x - 1, 4) - 2) - 1

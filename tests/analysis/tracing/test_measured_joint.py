@@ -1,0 +1,20 @@
+"""One measured run of a robot's joint, whose torque is a model of the arm: much is left, and nothing is made up of it."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.studies.lara8 import imported, spiked, steps, traced
+
+ARM = {"gravity_unbalance"}  # the arm's weight, which the baseline has no term for
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lost_rad", [0.0, 5e-4])
+def test_no_effect_is_named_where_a_channel_it_acts_in_is_not_explained(
+    shared: Path, tmp_path: Path, lost_rad: float
+) -> None:
+    made = spiked(imported(tmp_path), tmp_path / "spiked", steps, lost_rad)
+    verdict = traced(made)["verdict"]
+    assert verdict["status"] == "unknown_effect"
+    assert set(verdict["effects"]) <= ARM
