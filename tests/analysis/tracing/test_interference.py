@@ -6,6 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor import interference
@@ -70,6 +71,13 @@ def test_what_follows_the_speed_is_an_order_and_no_line() -> None:
 
 def test_noise_has_no_line() -> None:
     assert look(residuals(lambda w: 0.0)) is None
+
+
+def test_friction_that_wanders_has_most_of_its_power_at_the_lowest_frequencies_and_no_line() -> None:
+    rng = np.random.default_rng(11)
+    for _ in range(4):
+        red = {(i, "L"): lfilter([0.1], [1, -np.exp(-DT / 0.3)], rng.standard_normal(N)) for i in range(len(SPEEDS))}
+        assert look(red) is None
 
 
 def test_a_faint_line_makes_no_floor_too_high_and_is_left() -> None:

@@ -21,6 +21,7 @@ from rig.model.effect import Array
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside
 PADDED = 4  # finer than a window's own resolution
+AROUND = 3.0  # times a frequency and a third of it: what a line at 1 Hz fills of that is still less than half
 FEWEST = 3  # windows of a run, each half over the next
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
 SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
@@ -106,9 +107,19 @@ def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | Non
     hz = np.fft.rfftfreq(PADDED * n, dt)
     band = hz > LOWEST
     power = _power(even, start, n)[:, band]
-    top = np.argmax(power, axis=1)
-    usual = np.maximum(np.median(power, axis=1), 1e-300)
-    return _Track(hz[band][top], power[np.arange(start.size), top] / usual)
+    over = power / np.maximum(_around(power, hz[band]), 1e-300)
+    top = np.argmax(over, axis=1)
+    return _Track(hz[band][top], over[np.arange(start.size), top])
+
+
+def _around(power: Array, hz: Array) -> Array:
+    """Median power (windows, bins) within an AROUND of each frequency: friction that wanders has most of its power at
+    the lowest of them, and is no line."""
+    low, high = np.searchsorted(hz, hz / AROUND), np.searchsorted(hz, hz * AROUND, side="right")
+    coarse = np.unique(np.round(np.geomspace(1, hz.size, 60)).astype(int)) - 1
+    medians = np.stack([np.median(power[:, low[i] : high[i]], axis=1) for i in coarse], 1)
+    nearest = np.searchsorted(coarse, np.arange(hz.size)).clip(max=coarse.size - 1)
+    return np.asarray(medians[:, nearest])
 
 
 def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:

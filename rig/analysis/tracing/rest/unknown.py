@@ -22,6 +22,7 @@ FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all t
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
 
 
@@ -131,15 +132,18 @@ def _by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Ho
     """
     r = h.rest
     t, e = r.at["time"], r.e * sense(r)
-    hz = np.arange(SLOWEST, 2 * LOWEST, 0.25 / _longest(r))
-    power = sum((np.abs(_beat(t[r.run == run], e[r.run == run], hz)) ** 2 for run in np.unique(r.run)), np.zeros(1))
-    f = float(hz[int(np.argmax(power))])
+    size = int(4 * _longest(r) / STEP)  # to a quarter of what the longest run can tell apart
+    hz = np.fft.rfftfreq(size, STEP)
+    power = np.zeros(hz.size)
+    for run in np.unique(r.run):
+        power += np.abs(np.fft.rfft(_stepped(t[r.run == run], e[r.run == run]), size)) ** 2
+    f = float(hz[int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power, 0.0)))])
 
     def phase(rest: Rest) -> Index:
         own, signed = np.zeros(rest.e.size), rest.e * sense(rest)
         for run in np.unique(rest.run):
             mine = rest.run == run
-            own[mine] = np.angle(_beat(rest.at["time"][mine], signed[mine], np.array([f]))[0])
+            own[mine] = _phase(rest.at["time"][mine], signed[mine], f)
         return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
 
     share = score(h, phase(r)) / h.total
@@ -154,16 +158,19 @@ def _longest(r: Rest) -> float:
     return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt
 
 
-def _beat(t: Array, e: Array, hz: Array) -> Array:
-    """Amplitude of one run at each frequency, complex, its rows counted into steps of a sixteenth of the shortest
-    period; (frequencies,)."""
-    step = 1 / (32 * LOWEST)
-    place = ((t - t[0]) / step).astype(int)
-    count = np.maximum(np.bincount(place), 1)
-    mean = np.bincount(place, e) / count
-    mean = mean - mean.mean()
-    at = t[0] + step * (np.arange(mean.size) + 0.5)
-    return np.asarray(np.exp(-1j * TURN * np.multiply.outer(hz, at)) @ mean)
+def _stepped(t: Array, e: Array) -> Array:
+    """Mean of the rows of one run in each step of time, about their mean; 0 where there are none."""
+    place = ((t - t[0]) / STEP).astype(int)
+    count = np.bincount(place)
+    mean = np.bincount(place, e) / np.maximum(count, 1)
+    return np.where(count > 0, mean - mean[count > 0].mean(), 0.0)
+
+
+def _phase(t: Array, e: Array, f: float) -> float:
+    """Of the wave of `f` Hz in one run, rad at time 0."""
+    mean = _stepped(t, e)
+    at = t[0] + STEP * (np.arange(mean.size) + 0.5)
+    return float(np.angle(np.exp(-1j * TURN * f * at) @ mean))
 
 
 def _wound(h: Halves, channel: str) -> Home | None:
