@@ -41,6 +41,9 @@ PLAIN_ENOUGH: Final = (
 )
 # memories have many bins, and predict a part of whatever differs from run to run
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
+ALONE: Final = (
+    2.0  # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
+)
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
 LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand

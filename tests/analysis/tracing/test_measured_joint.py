@@ -1,4 +1,4 @@
-"""One measured run of a robot's joint, whose torque is a model of the arm: much is left, and nothing is made up of it."""
+"""One measured run of a robot's joint, whose torque is a model of the arm: much is left, and no name is made up."""
 
 from pathlib import Path
 

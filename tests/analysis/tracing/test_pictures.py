@@ -41,7 +41,7 @@ def made(of: str, size: float = 3.0, seed: int = 1) -> Rest:
     }[of]
     e = size * put_in + rng.normal(0, 1, 24000)
     e -= np.array([e[run == i].mean() for i in range(3)])[run]  # as the angle equation's own offset does
-    return Rest(e, run, at, 1 / 125, np.zeros((24000, 0)))
+    return Rest(e, run, at, 1 / 125, np.zeros((24000, 0)), np.zeros((0, 0)))
 
 
 FLOORS = {(i, "A"): 1.0 for i in range(3)}

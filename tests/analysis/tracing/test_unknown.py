@@ -13,6 +13,7 @@ DT = 1 / 125
 ROWS = 6000
 RUNS = 4
 At = dict[str, np.ndarray]
+NO_BASELINE = (np.zeros((RUNS * ROWS, 0)), np.zeros((0, 0)))
 
 
 def coordinates(rng: np.random.Generator) -> At:
@@ -75,7 +76,7 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     made = law(at)
     own_zero = np.concatenate([x - x.mean() for x in np.split(made, RUNS)])
     e = 4.0 * own_zero / own_zero.std() + rng.normal(0, 1, own_zero.size)
-    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, np.zeros((RUNS * ROWS, 0))), "A"))
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
     assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.5
 
@@ -89,7 +90,10 @@ def test_order_and_frequency_are_said_with_it() -> None:
         (1.0 * (np.mod(at["time"], 9.7) < 1.4), lambda h: (h.frequency_hz, 1 / 9.7, 0.002)),
     ):
         found = plainest(
-            homes(Rest(6 * law + rng.normal(0, 1, law.size), run, at, DT, np.zeros((RUNS * ROWS, 0))), "A")
+            homes(
+                Rest(6 * law + rng.normal(0, 1, law.size), run, at, DT, *NO_BASELINE),
+                "A",
+            )
         )
         said, expected, near = of(found[0])
         assert said == pytest.approx(expected, abs=near)
@@ -99,7 +103,15 @@ def test_noise_lives_nowhere() -> None:
     rng = np.random.default_rng(6)
     at = coordinates(rng)
     found = homes(
-        Rest(rng.normal(0, 1.3, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT, np.zeros((RUNS * ROWS, 0))), "A"
+        Rest(
+            rng.normal(0, 1.3, RUNS * ROWS),
+            np.repeat(np.arange(RUNS), ROWS),
+            at,
+            DT,
+            np.zeros((RUNS * ROWS, 0)),
+            np.zeros((0, 0)),
+        ),
+        "A",
     )
     assert found[0].share < 0.1
 
@@ -125,10 +137,10 @@ def test_what_the_baseline_has_taken_on_does_not_hide_the_coordinate() -> None:
         "torque_rate": np.gradient(load, DT),
     } | dict.fromkeys(("motor_torque", "temperature"), np.full(5 * ROWS, np.nan))
     run = np.repeat(np.arange(5.0), ROWS)
-    found = plainest(homes(Rest(e, run, at, DT, z), "A"))
+    found = plainest(homes(Rest(e, run, at, DT, z, np.zeros((30, 30))), "A"))
     assert found[0].coordinate == "load", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.8
-    as_it_is = homes(Rest(e, run, at, DT, np.zeros((5 * ROWS, 0))), "A")
+    as_it_is = homes(Rest(e, run, at, DT, np.zeros((5 * ROWS, 0)), np.zeros((0, 0))), "A")
     assert max(h.share for h in as_it_is if h.coordinate == "load") < 0.6
 
 

@@ -16,7 +16,7 @@ from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.unknown import Home, home
-from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MISSING, MOSTLY
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY
 
@@ -54,7 +54,7 @@ def decide(
     names = tuple(name for name in names if name not in SHADOWS)
     if shadows:
         return _cast(shadows[0], _clean(names, worths))
-    loud = total > EXPLAINED or single > MISSING or line is not None
+    loud = total > EXPLAINED or single > (MISSING if names else ALONE) or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         return _settled(p, names, found, first, total)
@@ -68,10 +68,10 @@ def decide(
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
     # a line in a sensor is in the columns made from it too: beside one nothing is named; where much is left of what an
-    # effect should explain its name would be a guess; and steps and phases that runs have to themselves take on
-    # whatever there is
+    # effect should explain, or no repeats tell what much is, its name would be a guess; and steps and phases that runs
+    # have to themselves take on whatever there is
     shared = [name for name in names if name not in p.own.made]
-    names = _beside(best.coordinate, _clean(shared, worths)) if line is None else ()
+    names = _beside(best.coordinate, _clean(shared, worths)) if line is None and known else ()
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)

@@ -107,7 +107,7 @@ def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | Non
     hz = np.fft.rfftfreq(PADDED * n, dt)
     band = hz > LOWEST
     power = _power(even, start, n)[:, band]
-    over = power / np.maximum(_around(power, hz[band]), 1e-300)
+    over = power / np.maximum(_around(power, np.asarray(hz[band], float)), 1e-300)
     top = np.argmax(over, axis=1)
     return _Track(hz[band][top], over[np.arange(start.size), top])
 

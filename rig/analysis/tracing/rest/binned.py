@@ -87,7 +87,9 @@ def binned(r: Rest, index: Index, rows: Rows) -> Binned:
     own = (run[fitted], runs.size) if r.own_zeros else (np.zeros(0, int), 0)
     s = _sums(np.column_stack([r.z[fitted], r.e[fitted]]), own, np.where(inside, index, size)[fitted], size)
     share = s.by_bin / np.maximum(s.count, 1.0)[:, None]
-    x = _solved(s.normal - share.T @ s.by_bin, s.right - share.T @ s.total)
+    normal = s.normal - share.T @ s.by_bin
+    normal[own[1] :, own[1] :] += r.known * fitted.size
+    x = solved(normal, s.right - share.T @ s.total)
     values = np.where(often, (s.total - s.by_bin @ x) / np.maximum(s.count, 1.0), np.nan)
     zeros = x[: own[1]] if r.own_zeros else np.zeros(runs.size)
     return Binned(values, Beside(runs, zeros, x[own[1] :]))
@@ -126,8 +128,9 @@ def _ones(at: Index, size: int, rows: int) -> csr_matrix:
     return csr_matrix((np.ones(rows), (at, np.arange(rows))), shape=(size, rows))
 
 
-def _solved(normal: Array, right: Array) -> Array:
-    """Columns that the bins leave nothing of stay at zero."""
+def solved(normal: Array, right: Array) -> Array:
+    """Coefficients (k,) from a normal matrix (k, k) and its right side (k,); those of columns that the bins leave
+    nothing of stay at zero."""
     scale = np.sqrt(np.maximum(np.diag(normal), 1e-12))
     held = normal / scale / scale[:, None] + EVEN * np.eye(right.size)
     return np.asarray(np.linalg.solve(held, right / scale) / scale)

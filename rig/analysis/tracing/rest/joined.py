@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,14 +20,16 @@ Index = npt.NDArray[np.int64]
 @dataclass(frozen=True)
 class Rest:
     """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
-    `z` (n, p) are the baseline's columns over the floor, but for those that may only be small. `own_zeros`: whether
-    every run has a zero of its own, as angles and a torque sensor do."""
+    `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
+    the other channels know of its coefficients, for each row of this one. `own_zeros`: whether every run has a zero of
+    its own, as angles and a torque sensor do."""
 
     e: Array
     run: Array
     at: dict[str, Array]
     dt: float
     z: Array
+    known: Array
     own_zeros: bool = True
 
     def thinned(self, most: int) -> Rest:
@@ -52,7 +54,18 @@ def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], cha
     free = sorted(acting & {int(i) for i in np.flatnonzero(prior(len(BASELINE)) == 0)})
     z = np.concatenate([_baseline(eq, k)[:, free] / floors[k] for k in keys])
     left = np.concatenate([e[k] / floors[k] for k in keys])
-    return Rest(left, run, at, smooth.dt * smooth.step, z, channel != "M")
+    known = _elsewhere(eq, [key for key in eq.of(range(len(eq.runs))) if key[1] != channel and (key[0], channel) in e])
+    known = known[np.ix_(free, free)] * eq.noise.kappa[channel] / left.size
+    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
+
+
+def _elsewhere(eq: Equations, keys: Sequence[Key]) -> Array:
+    """What those blocks know of all the baseline's coefficients, (b, b)."""
+    out = np.zeros((len(BASELINE), len(BASELINE)))
+    for key in keys:
+        at, z = list(eq.rows[key].at), eq.bare(key, eq.rows[key].z)
+        out[np.ix_(at, at)] += eq.noise.weight(key[1]) * (z.T @ z)
+    return out
 
 
 def _baseline(eq: Equations, key: Key) -> Array:

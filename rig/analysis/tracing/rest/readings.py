@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial.chebyshev import chebvander
 
-from rig.analysis.tracing.rest.binned import binned
+from rig.analysis.tracing.rest.binned import binned, solved
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.model.effect import Array
 
@@ -16,6 +17,8 @@ Rows = npt.NDArray[np.bool_]
 Reading = Callable[[Rest, Rows], Array]
 """What the rows (n, bool) it is fitted to foretell of every row, (n,)."""
 
+WAVES = 6  # orders of the motor angle: most of the paper's kinematic error
+DRIFT = 8  # degree: half an oscillation a sixteenth of a campaign
 POWERS = 5  # of an angle gone: a cable's spring, its slack, its end
 
 
@@ -41,7 +44,10 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
         e = r.e
         if r.own_zeros:
             z, e = z - means(r, fitted, z), e - means(r, fitted)
-        return np.asarray(z @ np.linalg.lstsq(z[fitted], e[fitted], rcond=None)[0])
+        normal = z[fitted].T @ z[fitted]
+        first = z.shape[1] - r.z.shape[1]
+        normal[first:, first:] += r.known * int(fitted.sum())
+        return np.asarray(z @ solved(normal, z[fitted].T @ e[fitted]))
 
     return read
 
@@ -64,3 +70,16 @@ def powers(x: Array) -> Array:
     """x to x⁵ of an angle over its largest, (n, 5)."""
     top = float(np.nanmax(np.abs(x), initial=1e-9))
     return (x / top)[:, None] ** np.arange(1, POWERS + 1)
+
+
+def swelling(angle: Array, x: Array) -> Array:
+    """The first waves of an angle that grow with `x`, and with its square, (n, 4·WAVES)."""
+    top = float(np.nanmax(np.abs(x), initial=1e-9))
+    shapes = np.hstack([waves(angle, k) for k in range(1, WAVES + 1)])
+    return np.hstack([shapes * (x / top)[:, None] ** power for power in (1, 2)])
+
+
+def drifting(t: Array) -> Array:
+    """Slow changes over a campaign, (n, DRIFT): Chebyshev polynomials of its time."""
+    low, high = float(t.min()), float(t.max())
+    return np.asarray(chebvander(2 * (t - low) / max(high - low, 1e-9) - 1, DRIFT)[:, 1:])

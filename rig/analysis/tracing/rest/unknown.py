@@ -12,13 +12,15 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE, both, turned
 from rig.analysis.tracing.rest.joined import Index, Rest, rest
-from rig.analysis.tracing.rest.readings import Reading, in_bins, in_columns, means, powers, waves
+from rig.analysis.tracing.rest.readings import Reading, drifting, in_bins, in_columns, means, powers, swelling, waves
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
-FINEST = (0.001, 0.02)  # orders apart: two lines within half a cycle over all the motor's turns
+FINEST = {"motor_angle": (0.001, 0.02), "load_angle": (0.02, 1.0)}  # orders apart: half a cycle over all the turns
+HIGHEST = {"motor_angle": 130.0, "load_angle": 400.0}  # order
+AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
@@ -48,9 +50,10 @@ def homes(r: Rest, channel: str) -> list[Home]:
     ways += [(name, index) for name, several in JOINT.items() for index in several]
     out = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
-    some = [_best_order(h, "motor_angle", channel), _best_order(h, "load_angle", channel), line, _wound(h, channel)]
-    out += [found for found in some if found is not None]
-    out += [_by_the_clock(h, channel, sense) for sense in SENSES]
+    out += [Home(name, channel, _share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
+    some = [_best_order(h, name, channel, sense) for name in ("motor_angle", "load_angle") for sense in SENSES]
+    out += [found for found in (*some, line, _wound(h, channel)) if found is not None]
+    out += [_by_the_day(h, channel), *(_by_the_clock(h, channel, sense) for sense in SENSES)]
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
 
 
@@ -59,29 +62,34 @@ def folds(r: Rest) -> Array:
     return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
 
 
-def _best_order(h: Halves, name: str, channel: str) -> Home | None:
-    """One harmonic of an angle, order free: its share on the other fold."""
+def _best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
+    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold."""
     r = h.rest
     x = r.at[name]
     good = np.isfinite(x)
     if not good.any():
         return None
-    x, e = x[good], r.e[good]
+    x, e = x[good], (r.e * sense(r))[good]
     turns = float(np.ptp(x)) / TURN
-    step = float(np.clip(0.5 / max(turns, 1.0), *FINEST)) if name == "motor_angle" else 1.0
-    rough = np.arange(max(0.5, step), 130.0 if name == "motor_angle" else 400.0, step)
+    step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
+    rough = np.arange(max(0.5, step), HIGHEST[name], step)
     power = spectrum(x, e, rough)
-    k = float(rough[int(np.argmax(power))])
-    if name == "motor_angle":  # orders of the output are whole
-        k = _sharpened(x, e, k, step)
-    read = in_columns(lambda rest: waves(rest.at[name], k))
+    fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)
+    near = np.array([fine, max(round(fine), 1)])
+    k = float(near[1] if np.divide(*_height(x, e, near)) < 1 / AS_WELL else fine)
+    read = in_columns(lambda rest: waves(rest.at[name], k) * sense(rest)[:, None])
     return Home(name, channel, _share(h, read), order=k, read=read)
 
 
 def _sharpened(x: Array, e: Array, order: float, step: float) -> float:
     """The order of a line that is known to one step of a grid, whose phase would be lost over all the turns."""
     near = order + step * np.linspace(-1.0, 1.0, NEAR)
-    return float(near[int(np.argmax([abs(np.exp(-1j * k * x) @ e) for k in near]))])
+    return float(near[int(np.argmax(_height(x, e, near)))])
+
+
+def _height(x: Array, e: Array, orders: Array) -> Array:
+    """Of a line at each of a few orders, (orders,)."""
+    return np.abs([np.exp(-1j * k * x) @ e for k in orders])
 
 
 def _share(h: Halves, read: Reading) -> float:
@@ -150,12 +158,29 @@ def _by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Ho
     return Home("time_periodic", channel, share, frequency_hz=f, read=in_bins(phase))
 
 
+SMOOTH: Sequence[tuple[str, Callable[[Rest], Array]]] = (
+    ("speed", lambda r: swelling(r.at["motor_angle"], np.abs(r.at["speed"]))),
+    ("load", lambda r: swelling(r.at["motor_angle"], r.at["load"])),
+    ("time", lambda r: drifting(r.at["time"])),
+)
+"""Smooth laws where bins would tell single runs apart."""
 SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
 
 
 def _longest(r: Rest) -> float:
     """Of the runs, s."""
     return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt
+
+
+def _by_the_day(h: Halves, channel: str) -> Home:
+    """A wave of the campaign's own time, slower than a run shows by itself: a room that warms and cools."""
+    r = h.rest
+    x = TURN * r.at["time"]
+    step = 0.25 * TURN / float(np.ptp(x))
+    rough = np.arange(step, SLOWEST, step)
+    f = _sharpened(x, r.e, float(rough[int(np.argmax(spectrum(x, r.e, rough)))]), step)
+    read = in_columns(lambda rest: waves(TURN * rest.at["time"], f))
+    return Home("time_periodic", channel, _share(h, read), frequency_hz=f, read=read, late=True)
 
 
 def _stepped(t: Array, e: Array) -> Array:
@@ -226,6 +251,7 @@ def smooth_term(
         {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
         train.dt,
         np.concatenate([train.z, test.z]),
+        train.known,
         found.own_zeros,
     )
     if found.read is None:
