@@ -88,7 +88,12 @@ class Followed:
     @property
     def offered(self) -> bool:
         """Whether the truth is among what the first trace left open."""
-        return self.hidden.partition("/")[0] in {*self.first.effects, *self.first.rivals}
+        return self.truth in {*self.first.effects, *self.first.rivals}
+
+    @property
+    def truth(self) -> str:
+        """Name of the hidden effect, without its form."""
+        return self.hidden.partition("/")[0]
 
 
 OUTCOMES = {
@@ -189,7 +194,7 @@ def settle(found: Followed, case: Case, asked: Mapping[str, Any] | None, folder:
     for run in taken[len(case.runs) :]:
         write_run(run, folder / run.plan.name, more.channels, case.stage.rig)
     second, _ = look(folder)
-    return replace(found, second=second, outcome=judged(found.hidden.partition("/")[0], second))
+    return replace(found, second=second, outcome=judged(found.truth, second))
 
 
 def judged(hidden: str, second: Said) -> str:
@@ -229,9 +234,12 @@ def table(followed: Sequence[Followed]) -> list[str]:
     """Markdown: the share settled, then a line for every ambiguous case."""
     asked = [f for f in followed if f.first.status == AMBIGUOUS]
     offered = sum(f.offered for f in asked)
+    others = [judged(f.truth, f.first) for f in followed if f.first.status != AMBIGUOUS]
     lines = [
         f"{len(followed)} campaigns were traced, {len(asked)} were called ambiguous; the hidden effect was among the "
-        f"names offered in {offered} of them.",
+        f"names offered in {offered} of them. Of the other {len(others)}, {others.count('settled')} were explained "
+        f"with the hidden effect first, {others.count('wrong')} by another, {others.count('let go')} were called "
+        "unknown or nothing missing.",
         "",
         "| after the advised run | cases, share (95 % interval) |",
         "|---|---|",

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from rig.analysis.tracing.court.expected import TWICE, Proposal, imagined, proposals, sigmas
 from rig.analysis.tracing.court.judge import unseen
 from rig.analysis.tracing.fit.bank import reach
-from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.fit.refine import nudged, refine
+from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
 SIGMAS: Final = 3.0  # standard deviations, at least
-EDGE: Final = 0.02  # of a bound: a shape that near was pushed there, and cannot give way on
 HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
 
 
@@ -47,84 +43,38 @@ def _as_good(p: Prepared, rival: Scored, best: Scored) -> bool:
     """Whether a rival far behind in the bank's shape explains everything alone once its shape is fitted."""
     if rival.evidence < HALF * best.evidence:
         return False
-    s = _refined(p, rival.term)
-    term, covered = s.design.terms[0], reach([p.eq.runs[i] for i in p.split.fitted])
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    s = refine(p.baseline.design, rival.term, runs, covered)[1]
+    term = s.design.terms[0]
     if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
         return False
     total, single = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
     return total < QUIET and single < STILL_RUN
 
 
-def _refined(p: Prepared, term: Term) -> Solution:
-    """The term alone beside the baseline, in the shape that fits best."""
-    runs = p.split.fitted
-    return refine(p.baseline.design, term, runs, reach([p.eq.runs[i] for i in runs]))[1]
-
-
-@dataclass(frozen=True)
-class Yielding(Effect):
-    """An effect whose shape gives way: its columns, and their change with each shape parameter that is fitted. A rival
-    is not what it was fitted as to the runs there are, but whatever it can become on those and one more.
-    """
-
-    of: Effect
-    slopes: tuple[Effect, ...]
-
-    name: ClassVar[str] = "yielding"
-    in_short: ClassVar[str] = "an effect and its change with its shape"
-    source: ClassVar[str] = "fuller1987"
-
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """None of its own."""
-        return ()
-
-    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """Those of the effect, then one of each slope, at every port of the effect."""
-        made, more = self.of.columns(signals, shape), [slope.columns(signals, shape) for slope in self.slopes]
-        return {port: np.concatenate([own, *(slope[port] for slope in more)], axis=1) for port, own in made.items()}
-
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None."""
-        return ()
-
-
-def _yielding(s: Solution, covered: Reach) -> Term:
-    """The last term of a fit, free in its shape as well but for what was pushed to a bound."""
-    term, c = s.design.terms[-1], s.x[s.design.place(len(s.design.terms) - 1)]
-    slopes = [
-        nudged(term, i, c).effect
-        for i, (low, high) in enumerate(term.effect.bounds(covered))
-        if term.effect.loose[i] and low * (1 + EDGE) < term.shape[i] < high * (1 - EDGE)
-    ]
-    return Term(Yielding(term.effect, tuple(slopes)), term.shape) if slopes else term
-
-
 def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:
-    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; where none is, the
-    one that tells most, and None when that is nothing to speak of.
+    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; None when none is.
 
     A rival is one while it has CLOSE of the best one's evidence: what the run tells, in nats, has to be more than that.
     """
-    dt = p.eq.runs[0].pieces[0].dt
-    proposed = proposals(dt)
+    eq = p.eq
+    proposed = proposals(eq.runs[0].pieces[0].dt)
     need = max(SIGMAS, float(np.sqrt(2 * (1 - CLOSE) * best.evidence)))
     told = np.full(len(proposed), np.inf)
-    one, covered = _refined(p, best.term), reach([p.eq.runs[i] for i in p.split.fitted])
-    for other in (_refined(p, r.term) for r in close):
-        for f, g in ((one, other), (other, one)):
-            apart = sigmas(p.baseline, f.design.terms[-1], _yielding(g, covered), p.split.fitted, proposed)
-            told = np.minimum(told, apart)
+    for other in close:
+        for f, g in ((best.term, other.term), (other.term, best.term)):
+            told = np.minimum(told, sigmas(p.baseline, f, g, p.split.fitted, proposed))
     told = told * np.sqrt([_fitted(p, run) for run in proposed])
-    cost = [run.cost(dt) for run in proposed]
     able = [i for i in range(len(proposed)) if told[i] > need]
-    first = min(able, key=lambda i: (cost[i], -told[i])) if able else int(np.argmax(told))
-    if told[first] < SIGMAS:
+    if not able:
         return None
+    cost = [run.cost(eq.runs[0].pieces[0].dt) for run in proposed]
+    first = min(able, key=lambda i: (cost[i], -told[i]))
     names = " from ".join(sorted({best.term.name, *(r.term.name for r in close)}))
-    how = f"the cheapest of {len(able)} runs that would" if able else "most of all runs, and perhaps not enough"
     because = (
-        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), {how}: "
-        f"{cost[first]:.0f} s of rig time with its repeat"
+        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), the cheapest of "
+        f"{len(able)} runs that would: {cost[first]:.0f} s of rig time with its repeat"
     )
     return NextRun(proposed[first].procedure, dict(proposed[first].conditions), because)
 
