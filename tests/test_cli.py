@@ -131,3 +131,13 @@ def test_the_mapping_shown_by_import_help_works(tmp_path: Path, capsys: pytest.C
     (tmp_path / "own.csv").write_text("\n".join(rows))
     assert main(["import", str(tmp_path / "own.csv"), "--map", str(tmp_path / "map.toml"), "--out", str(tmp_path)]) == 0
     assert "SN0042" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_what_a_proof_on_the_twin_found_says_that_it_is_simulated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "sign-and-scale", "--out", str(tmp_path)]) == 0
+    first, figures, *_ = capsys.readouterr().out.splitlines()
+    assert first.startswith("SIMULATED ")
+    assert figures.startswith("ratio ")

@@ -23,6 +23,7 @@ from rig.procedures.step_test import StepTest
 from rig.procedures.unwind import Unwind
 from rig.procedures.weigh import Weigh
 from rig.report.record import as_json
+from rig.runfile.manifest import read
 from rig.session import Done, Session
 from rig.session.observer import Observer
 from rig.supervisor import State
@@ -64,7 +65,7 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
     if done.ending.exit is Exit.PASS and (told := finding(job.procedure, done)):
         show.tell("figure", folder=str(done.folder), text=told)
         show.leave(Exit.PASS)
-        print(f"{told}\nrun folder {done.folder}")
+        print(f"{simulated_line(done.folder)}{told}\nrun folder {done.folder}")
         return int(Exit.PASS)
     try:
         result, simulated = analyse_folder(done.folder, done.folder)
@@ -97,6 +98,11 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
         for remark in job.procedure.remarks(job.bench.setting(lambda text: None)):
             show.say(remark)
         return session.run(job.procedure)
+
+
+def simulated_line(folder: Path) -> str:
+    """What stands above the figures of a run on the twin, over whatever wire; "" of a real one."""
+    return f"SIMULATED {folder.name}\n" if read(folder).get("backend") == "sim" else ""
 
 
 def finding(procedure: Procedure, done: Done) -> str:

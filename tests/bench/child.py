@@ -23,6 +23,7 @@ class Cost:
     peak_mib: float
 
 
+LOOK = 0.02  # s between looks at a child's memory
 HDRIG = (sys.executable, "-m", "rig.cli")
 
 
@@ -38,10 +39,25 @@ def cost(command: Sequence[str], folder: Path | None = None, allowed: tuple[int,
             cwd=folder,
             env=environment | {"OPENBLAS_NUM_THREADS": "1"},
         )
-        _, status, usage = os.wait4(process.pid, 0)
+        peak = 0.0
+        while not (ended := os.wait4(process.pid, os.WNOHANG))[0]:
+            peak = max(peak, _most(process.pid))
+            time.sleep(LOOK)
+        _, status, usage = ended
         process.returncode = os.waitstatus_to_exitcode(status)  # reaped here: Popen must not look for it again
         if process.returncode not in allowed:
             said.seek(0)
             last = (said.read().decode(errors="replace").strip().splitlines() or ["no word"])[-1]
             raise Unavailable(f"{' '.join(command[-3:])} ended with {process.returncode}: {last}")
-    return Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began, usage.ru_maxrss / 1024)
+    return Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began, peak)
+
+
+def _most(pid: int) -> float:
+    """The most memory a process had so far [MiB]; 0 when it has ended. Not `ru_maxrss`, which begins with what this
+    process has: a child of a large bench would never show less.
+    """
+    try:
+        with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as file:
+            return next((int(line.split()[1]) / 1024 for line in file if line.startswith("VmHWM")), 0.0)
+    except OSError:
+        return 0.0

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from rig.console.columns import COLUMNS, HEADER, MAGIC, frame, of_reading, of_run
+from rig.console.feed import Feed
+from rig.console.link import Link
 from rig.console.sofar import SoFar
+from rig.core.channels import Flag
 
 RATIO, ARCSEC = 50.0, math.pi / 180 / 3600
 FIELDS = ("t", "theta_m", "theta_l", "omega_m", "tau_m", "tau_l", "tau_ask", "tau_applied", "theta_ref", "age")
@@ -111,3 +115,29 @@ def test_without_a_reference_nothing_is_said_of_following() -> None:
     so_far = SoFar(RATIO)
     so_far.add(taken)
     assert so_far.following is None
+
+
+class Rowed:
+    """A ring's tail with these rows."""
+
+    skipped = 0
+
+    def __init__(self, taken: np.ndarray[Any, Any]) -> None:
+        self.taken = taken
+
+    def read(self) -> np.ndarray[Any, Any]:
+        return self.taken
+
+
+def test_a_page_is_sent_no_error_of_rows_whose_angles_are_of_two_moments() -> None:
+    taken = rows(turns=0.01, n=40)
+    taken["theta_l"][20:24] += 300.0 * ARCSEC
+    taken["flags"][20:24] = Flag.STALE_M
+    feed = Feed(Link(Path("/nowhere")))
+    feed.so_far = SoFar(RATIO)
+    sent, _ = feed._of_ring(Rowed(taken))  # type: ignore[arg-type]
+    feed._link.release()
+    errors = sent["kinematic_error"]
+    assert np.nanmax(np.abs(errors - np.nanmedian(errors))) < 20.0
+    assert np.isfinite(sent["motor_angle"]).all()
+    assert np.isfinite(errors).sum() >= len(errors) - 2 * 2  # those four rows, and whatever shares a pair with them

@@ -112,4 +112,5 @@ def test_the_table_counts_ambiguous_cases_alone() -> None:
     text = "\n".join(table(rows))
     assert "3 campaigns were traced, 2 were called ambiguous" in text
     assert "| settled: explained, the hidden effect first | 1 of 2 = 50%" in text
+    assert "Of the other 1, 0 were explained with the hidden effect first, 1 by another" in text
     assert "case-001" not in text

@@ -64,6 +64,15 @@ def test_the_gear_winding_up_the_other_way_at_the_turn_stays_out_of_the_mean(pag
     assert max(abs(x) for x in found["forward"] + found["reverse"] if x is not None) < C_2 + APART / 2 + 3
 
 
+def test_rows_that_tell_nothing_of_the_gear_leave_no_trace_in_the_picture(page: Page) -> None:
+    angle, error = _stroke(0.12)
+    error[5000:5040] = np.nan  # 5° of the fourth turn, as after ticks that were missed
+    found = _sorted(page, angle, error)
+    at = np.radians(np.arange(360) + 0.5)
+    expected = C_2 * np.cos(2 * at - PSI_2)
+    assert np.max(np.abs(np.array(found["forward"]) - expected - APART / 2)) < 2.0
+
+
 def test_a_motor_at_rest_draws_nothing_and_orders_wait_for_a_whole_turn(page: Page) -> None:
     rest = np.full(500, 12.0) + 0.02 * np.sin(np.arange(500))
     found = _sorted(page, rest, np.zeros(500))

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rig.analysis.tracing.court.expected import proposals, sigmas
+from rig.analysis.tracing.court.expected import TWICE, Proposal, imagined, proposals, sigmas
 from rig.analysis.tracing.court.judge import unseen
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
 
 if TYPE_CHECKING:
@@ -63,6 +65,7 @@ def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextR
     for other in close:
         for f, g in ((best.term, other.term), (other.term, best.term)):
             told = np.minimum(told, sigmas(p.baseline, f, g, p.split.fitted, proposed))
+    told = told * np.sqrt([_fitted(p, run) for run in proposed])
     able = [i for i in range(len(proposed)) if told[i] > need]
     if not able:
         return None
@@ -74,6 +77,17 @@ def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextR
         f"{len(able)} runs that would: {cost[first]:.0f} s of rig time with its repeat"
     )
     return NextRun(proposed[first].procedure, dict(proposed[first].conditions), because)
+
+
+def _fitted(p: Prepared, proposal: Proposal) -> float:
+    """Share of the run and its repeat that the next trace would fit: a speed or load between others is held out whole,
+    and of most pairs one of the two.
+    """
+    runs = p.campaign.runs
+    like = next(p.eq.runs[i] for i in p.split.fitted)
+    made = imagined(proposal, like, p.baseline, max(float(run.pieces[-1].t[-1]) for run in runs))
+    again = split((*runs, *(replace(made, name=f"{made.name} {k + 1}") for k in range(TWICE))), ())
+    return sum(len(runs) + k in again.fitted for k in range(TWICE)) / TWICE
 
 
 def _by_table(pair: set[str]) -> NextRun:

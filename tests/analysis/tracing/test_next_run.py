@@ -1,0 +1,34 @@
+"""The run that is asked for takes part in the next fit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rig.analysis.tracing.court.expected import proposals
+from rig.analysis.tracing.court.next_run import _fitted
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.trace import Prepared, prepare
+from tests.analysis.tracing.test_few_channels import reduced
+
+RUNS = [f"{name}_{k}" for name in ("slow_ke", "speed_120rpm", "speed_300rpm", "speed_400rpm") for k in (1, 2)]
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def prepared(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Prepared:
+    folder = reduced(tmp_path_factory.mktemp("few"), shared / "cases" / "open-5", RUNS, ())
+    return prepare(read_campaign(folder), ())
+
+
+def test_a_speed_between_others_would_be_held_out_whole_and_one_beside_them_would_not(prepared: Prepared) -> None:
+    by_speed = {
+        q.conditions["speed_rpm"]: _fitted(prepared, q)
+        for q in proposals(prepared.eq.runs[0].pieces[0].dt)
+        if q.procedure == "constant_torque"
+    }
+    assert by_speed[200.0] == 0.0, "the second of four speeds"
+    assert by_speed[60.0] == 0.5, "the slowest: its repeat tests the fit"
+    assert all(share > 0.0 for rpm, share in by_speed.items() if rpm != 200.0)
