@@ -7,10 +7,10 @@ import pytest
 
 from rig.analysis.tracing.court.suspects import Tried, reason
 from rig.analysis.tracing.outcome.pictures import interval
+from rig.analysis.tracing.rest.binned import folds
 from rig.analysis.tracing.rest.bins import BINNED, rms
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, score_of_orders, shares
-from rig.analysis.tracing.rest.unknown import folds
 
 SLOW, FAST = 0.6, 20.0  # output rad seen in a run
 

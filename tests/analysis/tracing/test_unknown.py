@@ -5,8 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.rest.home import plainest
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.unknown import homes, plainest
+from rig.analysis.tracing.rest.unknown import homes
 from rig.model.memory import play
 
 DT = 1 / 125

@@ -15,7 +15,8 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
-from rig.analysis.tracing.rest.unknown import Home, home
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY

@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.rest.joined import rest
-from rig.analysis.tracing.rest.unknown import spectrum
+from rig.analysis.tracing.rest.lines import spectrum
 from rig.model.effect import Array
 
 if TYPE_CHECKING:

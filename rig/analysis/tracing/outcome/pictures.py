@@ -13,8 +13,8 @@ from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.outcome.errors import UNITS
 from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.rest.joined import rest
+from rig.analysis.tracing.rest.lines import spectrum
 from rig.analysis.tracing.rest.shares import shares
-from rig.analysis.tracing.rest.unknown import spectrum
 from rig.model.effect import Array
 
 if TYPE_CHECKING:

@@ -70,6 +70,11 @@ class Halves:
         return max(float(np.mean(self.rest.e**2)) - 1.0, LEAST)
 
 
+def folds(r: Rest) -> Array:
+    """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
+    return np.asarray((r.at["time"] // 2.0).astype(int) % 2)
+
+
 def beside(r: Rest, rows: Rows) -> Beside:
     """Least squares over `rows` (n,) without any bins."""
     return binned(r, np.full(r.e.size, -1), rows).beside

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.chebyshev import chebvander
 
-from rig.analysis.tracing.rest.binned import binned, solved
+from rig.analysis.tracing.rest.binned import Halves, binned, solved
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.model.effect import Array
 
@@ -83,3 +83,13 @@ def drifting(t: Array) -> Array:
     """Slow changes over a campaign, (n, DRIFT): Chebyshev polynomials of its time."""
     low, high = float(t.min()), float(t.max())
     return np.asarray(chebvander(2 * (t - low) / max(high - low, 1e-9) - 1, DRIFT)[:, 1:])
+
+
+def share(h: Halves, read: Reading) -> float:
+    """Of the excess, what each fold foretells of the other beyond what zeros alone do."""
+    r, gain = h.rest, 0.0
+    for test in (0, 1):
+        seen = h.fold == test
+        e = r.e - (means(r, ~seen) if r.own_zeros else 0.0)
+        gain += float(np.sum(e[seen] ** 2 - (e - read(r, ~seen))[seen] ** 2))
+    return gain / max(r.e.size, 1) / h.total

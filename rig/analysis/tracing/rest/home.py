@@ -1,0 +1,43 @@
+"""A coordinate that a rest lives in, and which of several is said."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from rig.analysis.tracing.rest.readings import Reading
+from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
+
+SIMPLE: Final[Sequence[str]] = (
+    "direction",
+    "time_periodic",
+    "motor_angle",
+    "load_angle",
+    "speed",
+    "load",
+    "memory",
+    "temperature",
+    "time",
+)
+"""Plainest first."""
+
+
+@dataclass(frozen=True)
+class Home:
+    """A coordinate the rest lives in: the share of the excess it predicts in rows it was not fitted to."""
+
+    coordinate: str
+    channel: str
+    share: float
+    order: float | None = None  # cycles per turn
+    frequency_hz: float | None = None
+    read: Reading | None = None  # how it was read; none for a line
+    own_zeros: bool = True  # whether every run had a zero of its own beside it
+    late: bool = False  # said only where no plainer one does nearly as well
+
+
+def plainest(found: Sequence[Home]) -> list[Home]:
+    """The best first, and before it simpler ones that do nearly as well."""
+    best = max(h.share for h in found)
+    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, h.late, SIMPLE.index(h.coordinate), -h.share))

@@ -1,0 +1,144 @@
+"""Orders of an angle and frequencies of the clock that a rest may follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from rig.analysis.tracing.rest.binned import Halves, score
+from rig.analysis.tracing.rest.coordinates import both, turned
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.rest.readings import in_bins, in_columns, share, waves
+from rig.model.effect import Array
+
+TURN = 2 * np.pi
+LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
+FINEST = {"motor_angle": (0.001, 0.02), "load_angle": (0.02, 1.0)}  # orders apart: half a cycle over all the turns
+HIGHEST = {"motor_angle": 130.0, "load_angle": 400.0}  # order
+AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
+NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
+SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
+PHASES = 30  # of its period
+SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
+"""As it is, and as friction shows it: the other way round on the way back."""
+
+
+def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
+    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold."""
+    r = h.rest
+    x = r.at[name]
+    good = np.isfinite(x)
+    if not good.any():
+        return None
+    x, e = x[good], (r.e * sense(r))[good]
+    turns = float(np.ptp(x)) / TURN
+    step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
+    rough = np.arange(max(0.5, step), HIGHEST[name], step)
+    power = spectrum(x, e, rough)
+    fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)
+    near = np.array([fine, max(round(fine), 1)])
+    k = float(near[1] if np.divide(*_height(x, e, near)) < 1 / AS_WELL else fine)
+    read = in_columns(lambda rest: waves(rest.at[name], k) * sense(rest)[:, None])
+    return Home(name, channel, share(h, read), order=k, read=read)
+
+
+def _sharpened(x: Array, e: Array, order: float, step: float) -> float:
+    """The order of a line that is known to one step of a grid, whose phase would be lost over all the turns."""
+    near = order + step * np.linspace(-1.0, 1.0, NEAR)
+    return float(near[int(np.argmax(_height(x, e, near)))])
+
+
+def _height(x: Array, e: Array, orders: Array) -> Array:
+    """Of a line at each of a few orders, (orders,)."""
+    return np.abs([np.exp(-1j * k * x) @ e for k in orders])
+
+
+def spectrum(x: Array, e: Array, orders: Array) -> Array:
+    """|Σ e·exp(−i·k·x)|² for orders on a uniform grid, rows counted into fine bins of x first; (orders,)."""
+    step = float(orders[1] - orders[0])
+    period = TURN / step
+    size = 2 ** int(np.ceil(np.log2(4 * orders[-1] / step)))
+    binned = np.bincount((np.mod(x, period) / period * size).astype(int) % size, e, minlength=size)
+    lines = np.abs(np.fft.rfft(binned)) ** 2
+    return np.asarray(lines[np.round(orders / step).astype(int)])
+
+
+def line(r: Rest, channel: str) -> Home | None:
+    """A frequency that stands out in runs of differing speed; what is slower comes and goes with the motion."""
+    hits: dict[int, list[tuple[float, float, float]]] = {}
+    for run in np.unique(r.run):
+        e, mine = r.e[r.run == run], r.run == run
+        if e.size < 512:
+            continue
+        power = np.abs(np.fft.rfft(e * np.hanning(e.size))) ** 2
+        hz = np.fft.rfftfreq(e.size, r.dt)
+        slow = max(3, int(np.searchsorted(hz, LOWEST)))
+        top = int(np.argmax(power[slow:])) + slow
+        speed = float(np.mean(np.abs(r.at["speed"][mine])))
+        near = slice(max(0, top - 3), top + 4)
+        hits.setdefault(round(hz[top] * 5), []).append((hz[top], speed, float(power[near].sum() / power.sum())))
+    best = max(hits.values(), key=len, default=[])
+    speeds = np.array([s for _, s, _ in best])
+    if len(best) < 3 or speeds.max() < 1.5 * speeds.min():
+        return None
+    part = float(np.mean([s for _, _, s in best])) * len(best) / max(1, np.unique(r.run).size)
+    return Home("time_periodic", channel, part, frequency_hz=float(np.median([f for f, _, _ in best])))
+
+
+def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home:
+    """What comes and goes with the time, of any form that all runs share: a pump, or a brake that rubs against the
+    `sense` of the motion. Every run has a phase of its own, as clocks that are read to the second leave it.
+    """
+    r = h.rest
+    t, e = r.at["time"], r.e * sense(r)
+    size = int(4 * _longest(r) / STEP)  # to a quarter of what the longest run can tell apart
+    hz = np.fft.rfftfreq(size, STEP)
+    power = np.zeros(hz.size)
+    for run in np.unique(r.run):
+        power += np.abs(np.fft.rfft(_stepped(t[r.run == run], e[r.run == run]), size)) ** 2
+    f = float(hz[int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power, 0.0)))])
+
+    def phase(rest: Rest) -> Index:
+        own, signed = np.zeros(rest.e.size), rest.e * sense(rest)
+        for run in np.unique(rest.run):
+            mine = rest.run == run
+            own[mine] = _phase(rest.at["time"][mine], signed[mine], f)
+        return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
+
+    return Home("time_periodic", channel, score(h, phase(r)) / h.total, frequency_hz=f, read=in_bins(phase))
+
+
+def by_the_day(h: Halves, channel: str) -> Home | None:
+    """A wave of the campaign's own time, slower than a run shows by itself: a room that warms and cools."""
+    r = h.rest
+    x = TURN * r.at["time"]
+    step = 0.25 * TURN / float(np.ptp(x))
+    rough = np.arange(step, SLOWEST, step)
+    if rough.size < 2:  # all of it takes no longer than one such wave
+        return None
+    f = _sharpened(x, r.e, float(rough[int(np.argmax(spectrum(x, r.e, rough)))]), step)
+    read = in_columns(lambda rest: waves(TURN * rest.at["time"], f))
+    return Home("time_periodic", channel, share(h, read), frequency_hz=f, read=read, late=True)
+
+
+def _stepped(t: Array, e: Array) -> Array:
+    """Mean of the rows of one run in each step of time, about their mean; 0 where there are none."""
+    place = ((t - t[0]) / STEP).astype(int)
+    count = np.bincount(place)
+    mean = np.bincount(place, e) / np.maximum(count, 1)
+    return np.where(count > 0, mean - mean[count > 0].mean(), 0.0)
+
+
+def _phase(t: Array, e: Array, f: float) -> float:
+    """Of the wave of `f` Hz in one run, rad at time 0."""
+    mean = _stepped(t, e)
+    at = t[0] + STEP * (np.arange(mean.size) + 0.5)
+    return float(np.angle(np.exp(-1j * TURN * f * at) @ mean))
+
+
+def _longest(r: Rest) -> float:
+    """Of the runs, s."""
+    return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt
