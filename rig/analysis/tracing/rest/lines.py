@@ -16,7 +16,8 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = {"motor_angle": (0.001, 0.02), "load_angle": (0.02, 1.0)}  # orders apart: half a cycle over all the turns
-HIGHEST = {"motor_angle": 130.0, "load_angle": 400.0}  # order
+SPAN = {"motor_angle": (0.5, 130.0), "load_angle": (0.9, 400.0)}  # orders; what takes longer than a turn of the output
+# is an angle gone
 AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
@@ -36,7 +37,7 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     x, e = x[good], (r.e * sense(r))[good]
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
-    rough = np.arange(max(0.5, step), HIGHEST[name], step)
+    rough = np.arange(max(SPAN[name][0], step), SPAN[name][1], step)
     power = spectrum(x, e, rough)
     fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)
     near = np.array([fine, max(round(fine), 1)])
