@@ -49,7 +49,7 @@ DRAWN = (
     ("paper_no_torque_sensor", "torsional_mode", "sensor_shaft"),
     ("paper_no_torque_sensor", "channel_time_skew", "motor_late"),
 )
-"""Plan, truth and form, in turn: such were called ambiguous before. Of truths drawn at random four of 37 were."""
+"""Plan, truth and form, in turn: such were called ambiguous before. Of truths drawn at random four of 38 were."""
 WEAKEST, STRONGEST = 2.0, 12.0  # of the floor: large enough to be seen, and still to be told apart
 GAP = 18.0  # s between two runs, as in the blind plans
 AMBIGUOUS = "ambiguous"

@@ -7,6 +7,8 @@ the twin at 1 kHz on the wall clock. Figures are printed; what is asserted are c
 from __future__ import annotations
 
 import argparse
+import contextlib
+import os
 import statistics
 import subprocess
 import tempfile
@@ -16,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rig.bench import read
+from rig.core.errors import NotReady
 from rig.interrupts import Interrupts
 from rig.live.view.viewer import Viewer
 from rig.procedures.standstill import Standstill
@@ -24,6 +27,7 @@ from rig.session import Session
 from rig.session.done import Watch, nobody
 from rig.session.observer import Begun, Observer
 
+STARTS = 4  # of a viewer: its three processes are niced, and a busy machine may leave them nothing for 25 s
 SETTLE = 1.0  # s of the run before anything happens to the viewer
 
 
@@ -52,6 +56,9 @@ class There(Condition):
     name = "there"
 
     def open(self) -> Viewer | None:
+        for _ in range(STARTS - 1):
+            with contextlib.suppress(NotReady):
+                return Viewer("web")
         return Viewer("web")
 
 
@@ -146,7 +153,8 @@ def main() -> None:
         for k in range(args.rounds):
             for condition in CONDITIONS[k % len(CONDITIONS) :] + CONDITIONS[: k % len(CONDITIONS)]:
                 found[condition.name].append(measure(condition, args.seconds, Path(root)))
-    print("\n".join(table(found)))
+    load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
+    print("\n".join([f"twin, 1 kHz, wall clock; load of the machine at the end {load} (1, 5, 15 min)", *table(found)]))
     for runs in found.values():
         assert all(run.rows == run.ticks for run in runs), "a tick without its row"
 
