@@ -58,7 +58,7 @@ class RerunCanvas(Canvas):
         return canvas
 
     @classmethod
-    def to_viewer(cls, about: About, url: str, gathered: float = 0.1, turns: int = 1) -> RerunCanvas:
+    def to_viewer(cls, about: About, url: str, gathered: float = 0.05, turns: int = 1) -> RerunCanvas:
         """A recording in the viewer behind `url`, followed as it grows; a run that is over goes in large pieces."""
         canvas = cls(about, gathered, turns)
         canvas._stream.set_sinks(rr.GrpcSink(url))
