@@ -19,7 +19,7 @@ from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced, search
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
-from rig.analysis.tracing.outcome.report import own_shares
+from rig.analysis.tracing.outcome.report import own_work
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
 from rig.model.effect import Array, Parameter, Reach
 
@@ -118,8 +118,7 @@ def is_loud(at: Court, s: Solution, held: Design) -> bool:
 
 def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
     """Without effects of each run's own that take too little of the held-out excess to be named."""
-    shares = own_shares(p, s)
-    failing = [name for name, share in shares.items() if share < NAMED]
+    failing = [name for name, (share, _) in own_work(p, s).items() if share < NAMED]
     if not failing:
         return p, s
     left = p.own.without(failing)

@@ -71,7 +71,7 @@ class Worth:
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
     the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
-    largest ratio that remains in a channel in which it acts at all."""
+    largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's."""
 
     name: str
     share: float
@@ -83,6 +83,7 @@ class Worth:
     apart: float = 0.0
     harm: float = 1.0
     anywhere: float = 0.0
+    work: float = 0.0
 
     @property
     def named(self) -> bool:
@@ -153,6 +154,7 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
         apart,
         harm(at, bare, whole),
         max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
+        sum(r**2 * whole[key].size for key, r in size.items()),
     )
 
 

@@ -46,13 +46,12 @@ def decide(
     floors: Mapping[Key, float],
     found: Found,
 ) -> Ruling:
-    """From held-out ratios and the effects that may be named, `weighed`; those shared by all runs have `worths`."""
-    order = {r.term.name: i for i, r in enumerate(found.ranking)}
-    names = tuple(sorted(weighed, key=lambda n: order.get(n, 99)))
+    """From held-out ratios and the effects that may be named, `weighed`, the one that does most first; those shared by
+    all runs have `worths`."""
     total, single = p.court.worst(after)
     first, _ = p.court.worst(before)
     line, shadows = p.own.line, cast(s)
-    names = tuple(name for name in names if name not in SHADOWS)
+    names = tuple(name for name in weighed if name not in SHADOWS)
     if shadows:
         return _cast(shadows[0], _clean(names, worths))
     loud = total > EXPLAINED or single > (MISSING if names else ALONE) or line is not None

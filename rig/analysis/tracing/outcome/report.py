@@ -46,8 +46,11 @@ def report(
     empty = p.baseline
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
     floors = p.floors
-    shares = {w.name: w.share for w in worths} | own_shares(p, s)
-    ruling = decide(p, s, tuple(shares), worths, before, after, floors, found)
+    own = own_work(p, s)
+    shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
+    work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
+    weighed = tuple(sorted(shares, key=lambda name: -work[name]))
+    ruling = decide(p, s, weighed, worths, before, after, floors, found)
     final = after
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
@@ -96,8 +99,9 @@ def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
     return {key: baseline.residual(key) for key in baseline.keys}
 
 
-def own_shares(p: Prepared, s: Solution) -> dict[str, float]:
-    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect."""
+def own_work(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
+    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and how
+    much that is, in squares of the floor."""
     out = {}
     after = p.court.residuals(s, unseen(s, p.court))
     for name, mine in p.own.made.items():
@@ -105,7 +109,8 @@ def own_shares(p: Prepared, s: Solution) -> dict[str, float]:
         bare = p.court.residuals(s, design(others, s.design.terms, p.court.runs))
         keys = [k for k in after if k in mine]
         (before, n), (left, _) = p.court.excess(bare, keys), p.court.excess(after, keys)
-        out[name] = float((before - left) / max(before - n, 0.02 * n)) if keys else 0.0  # no held-out run has any
+        # without keys no held-out run has any
+        out[name] = (float((before - left) / max(before - n, 0.02 * n)), before - left) if keys else (0.0, 0.0)
     return out
 
 
