@@ -61,5 +61,6 @@ def test_it_is_said_before_the_proof_and_stays_in_the_summary(tmp_path: Path, mo
     assert "nothing to see in 1 runs" in list(summary.lines(journal))
 
 
+@pytest.mark.slow  # imports the drivers
 def test_a_real_rig_is_told_nothing() -> None:
     assert said("load-sweep", read("twin-can")) == []
