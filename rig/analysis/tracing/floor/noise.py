@@ -66,7 +66,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     how: dict[str, str] = {}
     for channel in CHANNELS:
         found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
-        words = f"{len(found)} pairs of repeats compared at equal motor angle"
+        words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
         if not found:
             found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
             words = (
