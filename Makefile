@@ -29,7 +29,7 @@ bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built 
 long: .venv/ready-dev  ## real time over the wire, whole loops: a quarter of an hour on a quiet machine
 	$(BIN)/python -m pytest -m long
 
-pictures: .venv/ready-dev  ## the README's pictures, from real runs on the twin: a quarter of an hour
+pictures: .venv/ready-dev  ## the README's pictures, from real runs on the twin: six minutes on a quiet machine
 	$(BIN)/python -m tests.pictures
 
 lint: .venv/ready-dev
