@@ -68,10 +68,10 @@ def decide(
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
     # a line in a sensor is in the columns made from it too: beside one nothing is named; where much is left of what an
-    # effect should explain, or no repeats tell what much is, its name would be a guess; and steps and phases that runs
-    # have to themselves take on whatever there is
+    # effect should explain, or much in a channel and no repeats tell what much is, its name would be a guess; and steps
+    # and phases that runs have to themselves take on whatever there is
     shared = [name for name in names if name not in p.own.made]
-    names = _beside(best.coordinate, _clean(shared, worths)) if line is None and known else ()
+    names = _beside(best.coordinate, _clean(shared, worths)) if line is None and (known or total <= EXPLAINED) else ()
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)

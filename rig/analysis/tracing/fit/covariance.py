@@ -23,7 +23,8 @@ def covariance(s: Solution) -> Array:
     scale = np.where(np.diag(s.gram) > 0, 1 / np.sqrt(np.maximum(np.diag(s.gram), 1e-300)), 0.0)
     scaled = s.gram * scale * scale[:, None]
     scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
-    root = np.linalg.inv(np.linalg.cholesky(scaled)) * scale
+    sizes, axes = np.linalg.eigh(scaled)  # sensor noise taken off can leave some below zero
+    root = (axes / np.sqrt(np.maximum(sizes, 1e-11))).T * scale
     out, count = np.zeros_like(s.gram), 0
     for gram, score in _clusters(s):
         share, along = np.linalg.eigh(root @ gram @ root.T)

@@ -21,7 +21,8 @@ from rig.model.effect import Array
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside
 PADDED = 4  # finer than a window's own resolution
-AROUND = 3.0  # times a frequency and a third of it: what a line at 1 Hz fills of that is still less than half
+LEAP = 0.1  # relative: half a window on, a line that wanders by a fifth in a minute has gone a hundredth
+AROUND = 3.0  # times a frequency, and a third of it: its neighbourhood
 FEWEST = 3  # windows of a run, each half over the next
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
 SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
@@ -55,6 +56,11 @@ class _Track:
     hz: Array
     height: Array
 
+    @property
+    def leaps(self) -> float:
+        """How far it usually is from one window to the next, relative: noise of a broad hump has its top anywhere."""
+        return float(np.median(np.abs(np.diff(np.log(self.hz[self.height > LINE])))))
+
 
 def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array]) -> Interference | None:
     """Sought in the fitted residuals `e` alone, then read in `unseen` too. A line in one sensor shows in every equation
@@ -72,7 +78,7 @@ def _in_channel(
 ) -> Interference | None:
     keys = [k for k in e if k[1] == channel and not eq.runs[k[0]].locked]
     tracks = {k: t for k in keys if (t := _track(*_even(eq, k, e[k]))) is not None}
-    hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS}
+    hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS and t.leaps < LEAP}
     if len(hits) < 3 or len(hits) < LINE_RUNS * len(tracks):
         return None
     hz = np.array([np.median(t.hz[t.height > LINE]) for t in hits.values()])
@@ -106,20 +112,24 @@ def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | Non
     start = np.arange(0, even.size - n + 1, n // 2)
     hz = np.fft.rfftfreq(PADDED * n, dt)
     band = hz > LOWEST
-    power = _power(even, start, n)[:, band]
-    over = power / np.maximum(_around(power, np.asarray(hz[band], float)), 1e-300)
+    power = _power(even, start, n)
+    over = power[:, band] / np.maximum(_around(power, hz, np.asarray(hz[band], float), 2 / (n * dt)), 1e-300)
     top = np.argmax(over, axis=1)
     return _Track(hz[band][top], over[np.arange(start.size), top])
 
 
-def _around(power: Array, hz: Array) -> Array:
-    """Median power (windows, bins) within an AROUND of each frequency: friction that wanders has most of its power at
-    the lowest of them, and is no line."""
-    low, high = np.searchsorted(hz, hz / AROUND), np.searchsorted(hz, hz * AROUND, side="right")
-    coarse = np.unique(np.round(np.geomspace(1, hz.size, 60)).astype(int)) - 1
-    medians = np.stack([np.median(power[:, low[i] : high[i]], axis=1) for i in coarse], 1)
-    nearest = np.searchsorted(coarse, np.arange(hz.size)).clip(max=coarse.size - 1)
-    return np.asarray(medians[:, nearest])
+def _around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -> Array:
+    """Median power on that side of each frequency of `at` where there is more (windows, frequencies), from a third of
+    it to `wide` Hz below, from as far above to three times it: friction that wanders has most of its power at the
+    lowest frequencies, a low-pass leaves little at the highest, and neither is a line."""
+    coarse = np.unique(np.round(np.geomspace(1, at.size, 60)).astype(int)) - 1
+    sides = []
+    for f in at[coarse]:
+        below, above = (hz >= f / AROUND) & (hz <= f - wide), (hz >= f + wide) & (hz <= f * AROUND)
+        found = [np.median(power[:, side], axis=1) for side in (below, above) if side.any()]
+        sides.append(np.max(found, axis=0))
+    nearest = np.searchsorted(coarse, np.arange(at.size)).clip(max=coarse.size - 1)
+    return np.asarray(np.stack(sides, 1)[:, nearest])
 
 
 def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:
