@@ -35,7 +35,7 @@ def lives_in(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float])
     alone = dict(zip(COORDINATES, map(float, score), strict=False))
     told = {name: share for name, share in alone.items() if share > SOME}
     line = found.get(f"share_frequency_hz.{channel}")
-    if line is not None and line[1] > SOME:
+    if line is not None and line[1] > max([SOME, *told.values()]):  # an order in runs of one speed is a frequency too
         told["time_periodic"] = float(line[1])
     if len(told) > 1:
         told.pop("time", None)  # every run has a time of its own: it predicts whatever tells runs apart
