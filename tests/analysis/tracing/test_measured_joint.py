@@ -18,3 +18,9 @@ def test_no_effect_is_named_where_a_channel_it_acts_in_is_not_explained(
     verdict = traced(made)["verdict"]
     assert verdict["status"] == "unknown_effect"
     assert set(verdict["effects"]) <= ARM
+
+
+@pytest.mark.slow
+def test_what_is_left_goes_with_the_angle_of_the_joint(shared: Path, tmp_path: Path) -> None:
+    verdict = traced(imported(tmp_path))["verdict"]
+    assert verdict["coordinate"] == "load_angle"

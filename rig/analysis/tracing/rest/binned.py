@@ -6,7 +6,7 @@ test is in the pure kinematic error as well. Left as it is, that share of it is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -60,9 +60,16 @@ class Halves:
 
     @cached_property
     def alone(self) -> tuple[Array, Array]:
-        """What zeros and baseline alone leave of every row, (n,) each, fitted to the rows that are not in the fold."""
-        r = self.rest
-        return r.e - beside(r, self.fold != 0).of(r), r.e - beside(r, self.fold != 1).of(r)
+        """What is left of every row without any coordinate, (n,) each, from the rows that are not in the fold: with
+        zeros and the baseline fitted to them, or with zeros alone where that does better.
+        """
+        return self._alone(0), self._alone(1)
+
+    def _alone(self, test: int) -> Array:
+        r, seen = self.rest, self.fold == test
+        still = replace(r, z=r.z[:, :0], known=r.known[:0, :0])
+        left = [x.e - beside(x, ~seen).of(x) for x in (r, still)]
+        return min(left, key=lambda e: float(e[seen] @ e[seen]))
 
     @cached_property
     def total(self) -> float:

@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import prior
 from rig.model.effect import Array
 
+ALL_OF_IT = 0.02  # of what all rows know: half of a short run leaves some of the baseline to chance
 Index = npt.NDArray[np.int64]
 """The bin each row lies in, (n,); −1 in none."""
 
@@ -21,8 +22,8 @@ Index = npt.NDArray[np.int64]
 class Rest:
     """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
     `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
-    the other channels know of its coefficients, for each row of this one. `own_zeros`: whether every run has a zero of
-    its own, as angles and a torque sensor do."""
+    the other channels, and a little what all of this one, know of its coefficients, for each row. `own_zeros`: whether
+    every run has a zero of its own, as angles and a torque sensor do."""
 
     e: Array
     run: Array
@@ -55,7 +56,7 @@ def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], cha
     z = np.concatenate([_baseline(eq, k)[:, free] / floors[k] for k in keys])
     left = np.concatenate([e[k] / floors[k] for k in keys])
     known = _elsewhere(eq, [key for key in eq.of(range(len(eq.runs))) if key[1] != channel and (key[0], channel) in e])
-    known = known[np.ix_(free, free)] * eq.noise.kappa[channel] / left.size
+    known = (known[np.ix_(free, free)] * eq.noise.kappa[channel] + ALL_OF_IT * z.T @ z) / left.size
     return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
 
 

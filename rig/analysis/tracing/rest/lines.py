@@ -21,6 +21,7 @@ SPAN = {"motor_angle": (0.5, 130.0), "load_angle": (0.9, 400.0)}  # orders; what
 AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
+DAY = 40  # quarter waves of SLOWEST that a campaign must take: in two minutes a slow wave is a trend
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
 SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
@@ -118,7 +119,7 @@ def by_the_day(h: Halves, channel: str) -> Home | None:
     x = TURN * r.at["time"]
     step = 0.25 * TURN / float(np.ptp(x))
     rough = np.arange(step, SLOWEST, step)
-    if rough.size < 2:  # all of it takes no longer than one such wave
+    if rough.size < DAY:
         return None
     f = _sharpened(x, r.e, float(rough[int(np.argmax(spectrum(x, r.e, rough)))]), step)
     read = in_columns(lambda rest: waves(TURN * rest.at["time"], f))
