@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rig.analysis.tracing.fit.model import Solution, inverse
+from rig.analysis.tracing.fit.model import Solution, evened, inverse
 from rig.model.effect import Array
 
 PIECES = 4  # of a run and channel: each many correlation times long
@@ -20,9 +20,7 @@ def covariance(s: Solution) -> Array:
     Runs differ by what no row shows: gains that drift, small effects that are in no model. Without run r, whose normal
     matrix is G_r and whose score is u_r, the fit is off by (G − G_r)⁻¹·u_r.
     """
-    scale = np.where(np.diag(s.gram) > 0, 1 / np.sqrt(np.maximum(np.diag(s.gram), 1e-300)), 0.0)
-    scaled = s.gram * scale * scale[:, None]
-    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    scaled, scale = evened(s.gram)
     sizes, axes = np.linalg.eigh(scaled)  # sensor noise taken off can leave some below zero
     root = (axes / np.sqrt(np.maximum(sizes, 1e-11))).T * scale
     out, count = np.zeros_like(s.gram), 0

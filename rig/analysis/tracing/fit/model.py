@@ -188,10 +188,7 @@ def without(s: Solution, terms: Sequence[int]) -> Solution:
 
 def solve(gram: Array, right: Array) -> Array:
     """Least squares from normal equations, columns nobody measured left at zero."""
-    scale = 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    scale[np.diag(gram) <= 0] = 0.0
-    scaled = gram * scale * scale[:, None]
-    scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
+    scaled, scale = evened(gram)
     return np.asarray(scale * np.linalg.solve(scaled, right * scale))
 
 
@@ -221,7 +218,14 @@ def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
 
 def inverse(gram: Array) -> Array:
     """Inverse of a normal matrix, zero where nothing was measured."""
+    scaled, scale = evened(gram)
+    return np.asarray(np.linalg.inv(scaled) * scale * scale[:, None])
+
+
+def evened(gram: Array) -> tuple[Array, Array]:
+    """A normal matrix with ones on its diagonal (p, p), and what its rows and columns were scaled by (p,), zero where
+    nothing was measured."""
     scale = np.where(np.diag(gram) > 0, 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300)), 0.0)
     scaled = gram * scale * scale[:, None]
     scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
-    return np.asarray(np.linalg.inv(scaled) * scale * scale[:, None])
+    return scaled, scale
