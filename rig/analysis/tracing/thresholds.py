@@ -9,6 +9,7 @@ BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of 
 SLOWEST_TURNING: Final = (
     0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
 )
+LOOSE: Final = 0.01  # s on both sides of a reversal in which the motor may stick: nothing is known of its friction
 SETTLING: Final = 0.05  # s left out of the torque equations on both sides of a reversal: what stuck has come loose
 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
@@ -18,6 +19,9 @@ LAG: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530
 ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
 
 GAIN: Final = 5e-4  # of the torque: a torque sensor of accuracy class 0.05, where no repeats show it
+AT_REVERSALS: Final = (
+    1.5  # of the motor torque's floor: where it turns back channels a tenth of a millisecond apart and single counts tell
+)
 FLOOR_LEAST: Final = 400  # rows that two repeats must share before their difference is believed
 UNCORRELATED: Final = 0.05  # of the autocorrelation: below it rows count as independent
 

@@ -20,9 +20,9 @@ from rig.model.effect import Array
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-SENSORS: Final = {"A": "theta_l", "M": "tau_m", "L": "tau_l"}
+SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": "tau_m_at_reversals", "L": "tau_l"}
 TAKEN: Final = "; what stands in its place explains more"
-IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "L": "shaft torque"}
+IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "R": "motor torque at reversals", "L": "shaft torque"}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, settled
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Effect, Reach
 
@@ -38,7 +38,7 @@ class Bank:
 def reach(runs: Sequence[Recording]) -> Reach:
     """What the runs cover."""
     pieces = [p for run in runs for p in run.pieces]
-    speeds = np.concatenate([np.abs(p.omega_m[p.way != 0]) for p in pieces]) if pieces else np.zeros(0)
+    speeds = np.concatenate([np.abs(p.omega_m[settled(p)]) for p in pieces]) if pieces else np.zeros(0)
     torque = np.concatenate([np.abs(p.torque) for p in pieces])
     turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
     return Reach(

@@ -4,6 +4,7 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
 
     A (rad)  θ̃ = c_0 + θ̃_p(θ_m) + T/K − (B_sp/K²)·Ṫ + (B_sp²/K³)·T̈ + (B_ml/K)·ω_m
     M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
+    R        M where the motor has just turned back, or soon will: friction that builds up with the way shows there alone
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
@@ -29,13 +30,15 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.runs.counts import FREE, LOCKED, one_a_stay, resting
-from rig.analysis.tracing.runs.recording import UNKNOWN, Recording
+from rig.analysis.tracing.runs.recording import UNKNOWN, Recording, settled
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Array, Known, Port, Signals
 from rig.model.fourier import FourierSeries
 
 ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
-CHANNELS: Final = ("A", "M", "L")
+CHANNELS: Final = ("A", "M", "R", "L")
+WHOLE: Final = ("A", "M", "L")
+"""Those that hold all along a run; R is M where the motor has just turned back."""
 SERIES: Final = tuple(f"{c}{n}" for n in range(1, ORDERS + 1) for c in "ab")
 BASELINE: Final = (
     *SERIES,
@@ -77,8 +80,8 @@ class Rows:
 
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel; one angle will do for a torque."""
-    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "L": {"tau_l"}}[channel]
-    return need <= run.knows and not (run.locked and channel == "L") and run.procedure != "standstill"
+    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "R": {"tau_m", "theta_m", "t"}, "L": {"tau_l"}}[channel]
+    return need <= run.knows | (run.has & {"t"}) and not (run.locked and channel in "RL") and run.procedure != "standstill"
 
 
 def rows(run: Recording, channel: str) -> Rows:
@@ -102,12 +105,12 @@ def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDA
 
 def _derived(run: Recording, channel: str) -> bool:
     """Whether this channel stands in for an angle that was not measured."""
-    return (channel == "L" and "theta_l" not in run.knows) or (channel == "M" and not {"theta_m", "tau_l"} <= run.knows)
+    return (channel == "L" and "theta_l" not in run.knows) or (channel in "MR" and not {"theta_m", "tau_l"} <= run.knows)
 
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
-    make = {"A": _angle, "M": _motor, "L": _load}[channel]
+    make = {"A": _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
     y = np.concatenate([m[0] for m in made])
     z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
@@ -115,11 +118,13 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:
-    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L."""
+    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L, those beside them in R."""
     smooth = run.smoother
     inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
     inside[:ENDS] = inside[-ENDS:] = False
-    sliding = smooth((piece.way != 0).astype(float)) > 1 - 1e-9
+    sliding = smooth(settled(piece).astype(float)) > 1 - 1e-9
+    if channel == "R":
+        return np.asarray(inside & ~sliding & (smooth((piece.way != 0).astype(float)) > 1 - 1e-9))
     if channel == "A":
         known = inside & _angle_known(piece, run)
         torque_known = run.locked or "tau_l" in run.knows
@@ -129,7 +134,7 @@ def valid(piece: Signals, run: Recording, channel: str) -> Array:
 
 def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
     """Rows in which the load's friction has a sure sign, and with it the torque that was not measured."""
-    smooth, moving = run.smoother, piece.way != 0
+    smooth, moving = run.smoother, settled(piece)
     usual = float(np.median(np.abs(piece.omega_m[moving]))) / run.ratio if moving.any() else 0.0
     rate = smooth.same(piece.theta_l, 1) * piece.way
     return np.asarray(smooth((moving & (rate > SLIDING * usual)).astype(float)) > 1 - 1e-9)
@@ -271,7 +276,7 @@ def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) ->
             for channel, column, order in _passed_on(first, s, has):
                 made = f(column, order)
                 out[channel] = out[channel] + made if channel in out else made
-    return out
+    return out | ({"R": out["M"]} if "M" in out else {})
 
 
 def _passed_on(first: Mark, s: Signals, has: Has) -> Iterator[Mark]:

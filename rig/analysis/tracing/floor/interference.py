@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
@@ -66,7 +66,7 @@ def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key
     """Sought in the fitted residuals `e` alone, then read in `unseen` too. A line in one sensor shows in every equation
     that uses it: the channel where it is loudest is the one told, all are rid of it.
     """
-    found = [line for c in CHANNELS if (line := _in_channel(eq, e, unseen, c)) is not None]
+    found = [line for c in WHOLE if (line := _in_channel(eq, e, unseen, c)) is not None]
     if not found:
         return None
     loudest = max(found, key=lambda line: line.share)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import nnls
 from scipy.stats import f as fdist
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.repeats import (
@@ -24,7 +24,7 @@ from rig.analysis.tracing.floor.repeats import (
     scatter,
     strokes,
 )
-from rig.analysis.tracing.thresholds import CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, ZERO
+from rig.analysis.tracing.thresholds import AT_REVERSALS, CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -49,11 +49,11 @@ class Measured:
 def guess(eq: Equations) -> Noise:
     """Before anything is fitted: what is rough in the responses."""
     sigma: dict[str, float] = {}
-    for channel in CHANNELS:
+    for channel in WHOLE:
         rough = [np.diff(r.y, 4) for (_, c), r in eq.rows.items() if c == channel]
         spread = float(np.median(np.abs(np.concatenate(rough)))) if rough else 1.0
         sigma[channel] = max(spread / 0.6745 / np.sqrt(70) * 2, 1e-12)  # twice: the low-pass took half of it
-    return Noise(sigma, dict.fromkeys(CHANNELS, 4.0), {"A": np.inf, "M": np.inf, "L": np.inf})
+    return _at_reversals(Noise(sigma, dict.fromkeys(CHANNELS, 4.0), dict.fromkeys(CHANNELS, np.inf)))
 
 
 def measure(solution: Solution, among: Sequence[int]) -> Measured:
@@ -64,7 +64,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     by_run: dict[Key, float] = {}
     free: dict[Key, float] = {}
     how: dict[str, str] = {}
-    for channel in CHANNELS:
+    for channel in WHOLE:
         found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
         words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
         if not found:
@@ -85,7 +85,13 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
-    return Measured(Noise(sigma, kappa, local), by_run, white, how, free)
+    return Measured(_at_reversals(Noise(sigma, kappa, local)), by_run, white, how, free)
+
+
+def _at_reversals(noise: Noise) -> Noise:
+    """With R as noisy as M, and a little more: it has too few rows to compare repeats in."""
+    sigma = noise.sigma | {"R": AT_REVERSALS * noise.sigma["M"]}
+    return Noise(sigma, noise.kappa | {"R": noise.kappa["M"]}, noise.local | {"R": noise.local["M"]})
 
 
 def quieter(one: Measured, other: Measured) -> Measured:

@@ -13,6 +13,7 @@ from rig.analysis.tracing.outcome.result import Before, Errors
 from rig.model.effect import Array
 
 UNITS = {"A": ARCSEC, "M": 1.0, "L": 1.0}
+OF_A_SENSOR = {"A": "A", "M": "MR", "L": "L"}  # R is the motor torque too
 
 
 def errors(eq: Equations, at: Court, e: Mapping[Key, Array]) -> Before:
@@ -25,7 +26,7 @@ def _of(runs: Sequence[int], at: Court, e: Mapping[Key, Array]) -> Errors:
     values: list[float | None] = []
     floors: list[float | None] = []
     for channel, unit in UNITS.items():
-        keys = [(i, channel) for i in runs if (i, channel) in e]
+        keys = [(i, c) for i in runs for c in OF_A_SENSOR[channel] if (i, c) in e]
         n = sum(e[k].size for k in keys)
         values.append(float(np.sqrt(sum(e[k] @ e[k] for k in keys) / n)) * unit if n else None)
         floors.append(float(np.sqrt(sum(at.floors[k] ** 2 * e[k].size for k in keys) / n)) * unit if n else None)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.outcome.errors import UNITS
@@ -49,7 +49,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         95 % of the RMS over all held-out runs, arcsec or N·m: quarters of runs drawn again with replacement
     """
     out: dict[str, Array] = {}
-    for channel in CHANNELS:
+    for channel in WHOLE:
         keys = [key for key in before if key[1] == channel]
         if not keys:
             continue

@@ -13,7 +13,7 @@ from rig.analysis.tracing.court.shadows import cast
 from rig.analysis.tracing.court.suspects import candidates
 from rig.analysis.tracing.court.verdict import decide
 from rig.analysis.tracing.fit import parameters
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.fit.search import Found as Searched
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
+AT_REVERSALS = "tau_m_at_reversals"
 
 
 def report(
@@ -69,7 +70,7 @@ def report(
         held_out_how=p.split.how,
         floors=tuple(
             Floor(SENSORS[c][0], p.measured.noise.sigma[c], SENSORS[c][1], p.measured.how[c])
-            for c in CHANNELS
+            for c in WHOLE
             if c in p.measured.how
         ),
         baseline=parameters.baseline(empty),
@@ -117,17 +118,17 @@ def own_work(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     """RMS over floor, by sensor, on held-out runs."""
     out = {}
-    for c in CHANNELS:
+    for c, name in (*((c, sensor) for c, (sensor, _) in SENSORS.items()), ("R", AT_REVERSALS)):
         keys = [k for k in e if k[1] == c]
         if keys:
-            out[SENSORS[c][0]] = p.court.ratio(e, keys)
+            out[name] = p.court.ratio(e, keys)
     return out
 
 
 def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     """Share of the held-out variance the baseline leaves beyond the floor, by sensor."""
     out = {}
-    for c in CHANNELS:
+    for c in WHOLE:
         keys = [k for k in e if k[1] == c]
         total = sum(float(np.var(p.eq.rows[k].y) * p.eq.rows[k].y.size) for k in keys)
         left = sum(float(e[k] @ e[k]) - p.court.floors[k] ** 2 * e[k].size for k in keys)

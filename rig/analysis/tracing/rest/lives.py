@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, shares
@@ -24,7 +24,7 @@ def lives_in(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float])
 
     Of the channel with the most left. A fixed frequency is `time_periodic`.
     """
-    parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
+    parts = [(c, r) for c in WHOLE if (r := rest(eq, e, floors, c)) is not None]
     if not parts:
         return ()
     channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
@@ -52,7 +52,7 @@ def _wound(h: Halves, channel: str) -> Home | None:
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
     """Best coordinates of the channel with the most left."""
-    parts = [(c, r) for c in CHANNELS if (r := rest(eq, e, floors, c)) is not None]
+    parts = [(c, r) for c in WHOLE if (r := rest(eq, e, floors, c)) is not None]
     channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
     found = homes(most, channel)
     if channel == "L":  # its zero may wander from run to run, or a gain does that only loads of several runs show

@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import minimum_filter1d
 
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.tame import LARGEST, RATIOS, Tame, number
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.thresholds import BANDWIDTH, RATE, SETTLING, SLOWEST_TURNING
+from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
@@ -276,9 +278,15 @@ def rough(x: Array) -> float:
 def direction(omega: Array, dt: float) -> Array:
     """−1 or 1 while it slides, 0 around every reversal and stop; (n,)."""
     sign = np.where(np.abs(omega) > SLOWEST_TURNING, np.sign(omega), 0.0)
-    width = max(1, round(SETTLING / dt))
+    width = max(1, round(LOOSE / dt))
     turns = np.flatnonzero((sign == 0) | (np.diff(sign, prepend=sign[:1]) != 0))
     edges = np.zeros(omega.size + 1)
     np.add.at(edges, np.maximum(turns - width, 0), 1.0)
     np.add.at(edges, np.minimum(turns + width + 1, omega.size), -1.0)
     return np.where(np.cumsum(edges[:-1]) > 0, 0.0, sign)
+
+
+def settled(piece: Signals) -> npt.NDArray[np.bool_]:
+    """Where it has slid, and goes on to slide, for so long that what stuck has come loose; (n,)."""
+    width = max(1, round(SETTLING / piece.dt)) - max(1, round(LOOSE / piece.dt))
+    return np.asarray(minimum_filter1d(piece.way != 0, 2 * width + 1), dtype=np.bool_)
