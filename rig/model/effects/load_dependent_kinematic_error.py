@@ -23,7 +23,8 @@ class LoadDependentKinematicError(Effect):
     the first order, for the mesh settles under a load, it does not jump: |T̄|, or the lagged |T| where the teeth are
     pressed alike whichever way they push. The two differ where the torque swings through zero within the lag.
 
-    The paper's profiles change as they shrink: orders 1, 2 and 4 may each have an A_∞ of their own.
+    The paper's profiles change as they shrink: orders 1, 2 and 4 may each lose a wave of its own, whose size and phase
+    are fitted. As shares of what stays they would have no phase where little stays.
     """
 
     name: ClassVar[str] = "load_dependent_kinematic_error"
@@ -48,53 +49,86 @@ class LoadDependentKinematicError(Effect):
         decay = np.exp(-np.abs(lagged(torque, lag, signals.dt)) / t_c)[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
         if of >= EACH:
-            values, slopes = _by_orders(signals.gear.kinematic_error, signals.theta_m, values, slopes)
+            values, slopes = _by_orders(signals, values, slopes)
         return {Port.KINEMATIC_ERROR: values * decay, Port.LEVER: slopes * decay}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """A_∞ = 1/(1 + c), c the share that goes away over the share that stays, of the largest order and, by orders,
-        of each; T_c; the lag."""
-        c = fit.coefficients
-        unit = np.eye(c.size + 3)
-
-        def left(i: int, name: str) -> Parameter:
-            return parameter(name, 1.0 / (1.0 + c[i]), fit.half_width(unit[i] / (1.0 + c[i]) ** 2), "1")
-
-        largest = self._largest(fit)
-        each = [left(i, f"A_inf_order_{n}") for i, n in enumerate(ORDERS) if i != largest] if c.size > 1 else []
+        """A_∞, the share that stays of the largest order and, by orders, of each; T_c; the lag."""
+        k = fit.coefficients.size
+        unit = np.eye(k + 3)
+        shares = [_stays_of(fit, i) for i in range(len(ORDERS))] if k > 1 else [_stays(fit)]
+        largest = _largest(fit)
+        each = [_left(fit, f"A_inf_order_{n}", shares[i]) for i, n in enumerate(ORDERS[: len(shares)]) if i != largest]
         return (
-            left(largest, "A_inf"),
+            _left(fit, "A_inf", shares[largest]),
             *each,
-            parameter("T_c", fit.shape[1], fit.half_width(unit[c.size + 1]), "N·m"),
-            parameter("lag", fit.shape[2], fit.half_width(unit[c.size + 2]), "s"),
+            parameter("T_c", fit.shape[1], fit.half_width(unit[k + 1]), "N·m"),
+            parameter("lag", fit.shape[2], fit.half_width(unit[k + 2]), "s"),
         )
 
-    def _largest(self, fit: Fit) -> int:
-        """Which of the orders that have a share of their own is the largest in the gear."""
-        amplitude = fit.known.kinematic_error.amplitude
-        own = [float(amplitude[n - 1]) if n <= amplitude.size else 0.0 for n in ORDERS]
-        return int(np.argmax(own)) if fit.coefficients.size > 1 else 0
-
     def plausible(self, fit: Fit) -> bool:
-        """It shrinks, and does not change its sign."""
-        return bool(fit.coefficients[self._largest(fit)] > 0)
+        """It shrinks; as a whole it does not change its sign."""
+        share, _ = _stays_of(fit, _largest(fit)) if fit.coefficients.size > 1 else _stays(fit)
+        return bool(0.0 <= share < 1.0)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of the law (chosen), T_c and the lag."""
         return (TORQUE, SIZE + EACH), (0.3 * self.TORQUES[0], 2.0 * self.TORQUES[-1]), self.LAGS
 
 
-def _by_orders(series: FourierSeries, theta: Array, values: Array, slopes: Array) -> tuple[Array, Array]:
-    """The waves of ORDERS and what is left of the whole, (n, 4), and their slopes by θ_m."""
-    a, b = (np.array([part[n - 1] if n <= len(part) else 0.0 for n in ORDERS]) for part in (series.a, series.b))
+def _by_orders(signals: Signals, values: Array, slopes: Array) -> tuple[Array, Array]:
+    """Cosine and sine of ORDERS, rad each, and what is left of the whole without them, (n, 7), and slopes by θ_m."""
+    series = signals.gear.kinematic_error
     n = np.array(ORDERS, dtype=float)
-    angle = np.multiply.outer(theta, n)
-    waves = a * np.cos(angle) + b * np.sin(angle)
-    steep = n * (b * np.cos(angle) - a * np.sin(angle))
+    angle = np.multiply.outer(signals.theta_m, n)
+    cos, sin = np.cos(angle), np.sin(angle)
+    a, b = np.array([_wave(series, order) for order in ORDERS]).T
     return (
-        np.hstack([waves, values - waves.sum(1, keepdims=True)]),
-        np.hstack([steep, slopes - steep.sum(1, keepdims=True)]),
+        np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None]]),
+        np.hstack([-n * sin, n * cos, slopes - (cos @ (n * b) - sin @ (n * a))[:, None]]),
     )
+
+
+def _wave(series: FourierSeries, order: int) -> tuple[float, float]:
+    """Cosine and sine coefficient of an order, zero where the series does not reach."""
+    return (series.a[order - 1], series.b[order - 1]) if order <= len(series.a) else (0.0, 0.0)
+
+
+def _largest(fit: Fit) -> int:
+    """Which of the orders that lose a wave of their own is the largest without load."""
+    if fit.coefficients.size == 1:
+        return 0
+    return int(np.argmax([np.hypot(*_unloaded(fit, i)) for i in range(len(ORDERS))]))
+
+
+def _unloaded(fit: Fit, i: int) -> Array:
+    """Cosine and sine of the i-th of ORDERS without load: what stays and what goes away, rad, (2,)."""
+    return np.array(_wave(fit.known.kinematic_error, ORDERS[i])) + fit.coefficients[[i, i + len(ORDERS)]]
+
+
+Share = tuple[float, Array]
+"""A share that stays, and its gradient by coefficients and shape (k+3,)."""
+
+
+def _stays(fit: Fit) -> Share:
+    """1/(1 + c), c the share that goes away over the one that stays."""
+    gradient = np.zeros(fit.coefficients.size + 3)
+    gradient[0] = -1.0 / (1.0 + fit.coefficients[0]) ** 2
+    return float(1.0 / (1.0 + fit.coefficients[0])), gradient
+
+
+def _stays_of(fit: Fit, i: int) -> Share:
+    """|p|/|p + g| of the i-th of ORDERS, p what stays of it and g what goes away."""
+    whole = _unloaded(fit, i)
+    size = max(float(np.hypot(*whole)), 1e-300)
+    share = float(np.hypot(*_wave(fit.known.kinematic_error, ORDERS[i]))) / size
+    gradient = np.zeros(fit.coefficients.size + 3)
+    gradient[[i, i + len(ORDERS)]] = -share * whole / size**2
+    return share, gradient
+
+
+def _left(fit: Fit, name: str, share: Share) -> Parameter:
+    return parameter(name, share[0], fit.half_width(share[1]), "1")
 
 
 def lagged(x: Array, lag: float, dt: float) -> Array:

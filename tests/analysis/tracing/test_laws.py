@@ -12,10 +12,11 @@ from rig.model.effect import Fit, Moved, Port
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
-from rig.model.effects.load_dependent_kinematic_error import EACH, TORQUE, LoadDependentKinematicError
+from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, NonlinearStiffness
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, TorsionalMode
+from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, N, motion
 
 RAW, FACTOR = 1e-3, 4
@@ -82,9 +83,24 @@ def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> Non
 def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
     s, effect = motion(), LoadDependentKinematicError()
     whole, apart = (effect.columns(s, (of, 3.0, 3e-3)) for of in (TORQUE, TORQUE + EACH))
+    series = s.gear.kinematic_error
+    a, b = ((*part, *4 * (0.0,)) for part in (series.a, series.b))
+    alike = np.array([*(a[n - 1] for n in ORDERS), *(b[n - 1] for n in ORDERS), 1.0])
     for port in (Port.KINEMATIC_ERROR, Port.LEVER):
-        np.testing.assert_allclose(apart[port].sum(1), whole[port][:, 0], atol=1e-12)
-        assert apart[port].shape[1] == 4
+        np.testing.assert_allclose(apart[port] @ alike, whole[port][:, 0], atol=1e-12)
+
+
+def test_the_share_of_an_order_that_stays_is_told_with_its_interval_whatever_the_phase_of_what_goes() -> None:
+    series = FourierSeries((0.0, 3e-5, 0.0, 1e-5), (0.0, 4e-5, 0.0, 0.0))
+    known = dataclasses.replace(KNOWN, kinematic_error=series)
+    gone = np.array([0.0, 12e-5, 0.0, 0.0, 16e-5, 0.0, 0.0])  # of orders 1, 2, 4: four times what stays of the second
+    fit = Fit(gone, (TORQUE + EACH, 2.0, 3e-3), np.diag([1e-12] * 7 + [0.0] * 3), known, N)
+    found = {p.name: p for p in LoadDependentKinematicError().parameters(fit)}
+    assert found["A_inf"].value == pytest.approx(0.2)
+    assert found["A_inf"].ci95[1] - found["A_inf"].value == pytest.approx(1.96 * 0.2 * 1e-6 / 25e-5)
+    assert found["A_inf_order_4"].value == pytest.approx(1.0)
+    assert LoadDependentKinematicError().plausible(fit)
+    assert not LoadDependentKinematicError().plausible(dataclasses.replace(fit, coefficients=-0.5 * gone / 4))
 
 
 def test_a_cubic_spring_is_solved_exactly_and_is_its_cube_where_that_is_small() -> None:
