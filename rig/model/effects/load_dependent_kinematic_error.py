@@ -13,6 +13,7 @@ from rig.model.fourier import FourierSeries
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
 EACH = 2.0  # added to it where the large orders shrink each by its own share
+NONE = 1e-12  # rad: a wave so small is none
 ORDERS = (1, 2, 4)  # the large ones of a strain-wave gear, two lobes and what they lack; the others go together
 
 
@@ -120,7 +121,7 @@ def _stays(fit: Fit) -> Share:
 def _stays_of(fit: Fit, i: int) -> Share:
     """|p|/|p + g| of the i-th of ORDERS, p what stays of it and g what goes away."""
     whole = _unloaded(fit, i)
-    size = max(float(np.hypot(*whole)), 1e-300)
+    size = max(float(np.hypot(*whole)), NONE)
     share = float(np.hypot(*_wave(fit.known.kinematic_error, ORDERS[i]))) / size
     gradient = np.zeros(fit.coefficients.size + 3)
     gradient[[i, i + len(ORDERS)]] = -share * whole / size**2
