@@ -242,6 +242,10 @@ class Effect(ABC):
             return ()
         return tuple((float(low), float(high)) for low, high in zip(grid.min(0) / 3, grid.max(0) * 3, strict=True))
 
+    def moved_by_noise(self) -> bool:
+        """True when noise of a reading moves a state of its own, and does not add to its columns."""
+        return False
+
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
         return False

@@ -28,6 +28,10 @@ class PreslidingFriction(Effect):
         """Ways longer than the motor goes between two samples of the slowest run."""
         return tuple((x,) for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate)
 
+    def moved_by_noise(self) -> bool:
+        """The friction of a motor that rests builds up with the way its encoder seems to go."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         way = np.sign(signals.omega_m)

@@ -33,7 +33,7 @@ class TorsionalMode(Effect):
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta")
     loose: ClassVar[tuple[bool, ...]] = (False, True, True)
-    LOWEST: Final = 20.0  # Hz
+    LOWEST: Final = 10.0  # Hz
     STEP: Final = 1.08  # neighbouring frequencies within a half width of a 4 % damped peak
     ZETA: Final = 0.04
     EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz

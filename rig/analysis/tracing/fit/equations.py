@@ -109,7 +109,13 @@ class Equations:
         return out
 
     def spoilt_term(self, run: int, term: Term, clean: dict[str, Array]) -> dict[str, Array]:
-        """What the same noise does to the columns of a term, whose `clean` ones are given, bare."""
+        """What the same noise does to the columns of a term, whose `clean` ones are given, bare.
+
+        Nothing where it moves a state: taken off as if it added to them, it would outweigh the columns of a motor that
+        hardly moves.
+        """
+        if term.effect.moved_by_noise():
+            return {c: np.zeros_like(z) for c, z in clean.items()}
         noisy = columns(self.noisy[run], term, self.kept(run))
         return {c: self.bare((run, c), noisy[c] - clean[c]) for c in clean}
 

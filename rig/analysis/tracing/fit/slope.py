@@ -28,6 +28,10 @@ class Slope(Effect):
         """None of its own."""
         return ()
 
+    def moved_by_noise(self) -> bool:
+        """As the effect."""
+        return self.of.moved_by_noise()
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """(n, 1) at every port of the effect."""
         up, down = (
