@@ -161,6 +161,8 @@ class Reach:
     counts_m: float  # encoder counts per turn; 0 when not said
     counts_l: float
     has: frozenset[str] = MEASURED  # channels that any run measured
+    lines_m: tuple[int, ...] = ()  # line counts that the residual shows, whatever is said of the encoders
+    lines_l: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

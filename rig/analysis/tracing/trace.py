@@ -12,6 +12,7 @@ from rig.analysis.tracing.court.judge import Court, court
 from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
 from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found, relawed, search, still
@@ -57,6 +58,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     found = Found(start, ())
     bank: Bank | None = None
     if not still(start, p.floors):
+        covered = with_lines(covered, start, runs)
         suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
         bank = fill(p.eq, suspects, runs, covered)
         found = search(start.design, bank, runs, start.keys, covered, p.floors)

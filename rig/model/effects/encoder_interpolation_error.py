@@ -25,19 +25,22 @@ class EncoderInterpolationError(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     LEAST: Final = (16, 900)  # lines of motor and load encoder: fewer are orders of the gear
     MULTIPLES: Final = (1, 3)  # an error that is large against a line is read through itself, and then has a third wave
-    TURN: Final = 2.0 * np.pi
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Divisors of the counts that the slowest run samples at least three times a line."""
+        """Divisors of the counts, and line counts that the residual shows, which the slowest run samples at least three
+        times a line."""
         out: list[Shape] = []
-        for side, counts, speed in (
-            (MOTOR, reach.counts_m, reach.slowest),
-            (LOAD, reach.counts_l, reach.slowest / reach.ratio),
-        ):
-            highest = min(reach.rate / 3.0 / (speed / self.TURN), counts / 4) if speed > 0 else 0.0
-            lines = {m * n for n in divisors(int(counts)) if n >= self.LEAST[int(side)] for m in self.MULTIPLES}
-            out += [(side, float(n)) for n in sorted(lines) if n <= highest]
+        for side, counts, seen in ((MOTOR, reach.counts_m, reach.lines_m), (LOAD, reach.counts_l, reach.lines_l)):
+            highest, least = self.highest(reach, side == LOAD), self.LEAST[int(side)]
+            said = {m * n for n in divisors(int(counts)) if n >= least for m in self.MULTIPLES if 4 * m * n <= counts}
+            out += [(side, float(n)) for n in sorted({*said, *seen}) if n <= highest]
         return tuple(out)
+
+    @staticmethod
+    def highest(reach: Reach, of_load: bool) -> float:
+        """Most lines per turn of an encoder that the slowest run samples three times each."""
+        speed = reach.slowest / (reach.ratio if of_load else 1.0)
+        return reach.rate / 3.0 / (speed / (2.0 * np.pi)) if speed > 0 else 0.0
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the line angle."""

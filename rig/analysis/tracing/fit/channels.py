@@ -4,7 +4,7 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
 
     A (rad)  θ̃ = c_0 + θ̃_p(θ_m) + T/K − (B_sp/K²)·Ṫ + (B_sp²/K³)·T̈ + (B_ml/K)·ω_m
     M (N·m)  τ_m − T/N = τ_0 − T·θ̃_p′(θ_m) + J_m·ω̇_m + B_m·ω_m + τ_c·sgn ω_m
-    R        M where the motor has just turned back, or soon will: friction that builds up with the way shows there alone
+    R        M where the motor has just turned back, or soon will: friction that builds up over milliradians
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
@@ -81,7 +81,8 @@ class Rows:
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel; one angle will do for a torque."""
     need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "R": {"tau_m", "theta_m", "t"}, "L": {"tau_l"}}[channel]
-    return need <= run.knows | (run.has & {"t"}) and not (run.locked and channel in "RL") and run.procedure != "standstill"
+    turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
+    return turns and need <= run.knows
 
 
 def rows(run: Recording, channel: str) -> Rows:
@@ -105,7 +106,8 @@ def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDA
 
 def _derived(run: Recording, channel: str) -> bool:
     """Whether this channel stands in for an angle that was not measured."""
-    return (channel == "L" and "theta_l" not in run.knows) or (channel in "MR" and not {"theta_m", "tau_l"} <= run.knows)
+    needs = {"A": frozenset[str](), "L": {"theta_l"}}.get(channel, {"theta_m", "tau_l"})
+    return not needs <= run.knows
 
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
@@ -118,7 +120,8 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:
-    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L, those beside them in R."""
+    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L, those
+    beside them in R."""
     smooth = run.smoother
     inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
     inside[:ENDS] = inside[-ENDS:] = False
