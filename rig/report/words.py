@@ -171,6 +171,7 @@ DEFINITIONS = (  # by the beginning of the estimate's name, first match
 
 
 HEADLINES = (
+    "speed_limit",
     "transmission_accuracy",
     "kinematic_error_peak_to_peak",
     "torsional_stiffness",
