@@ -18,7 +18,7 @@ from rig.core.devices import Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
 
-LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*(N.?m|Nm)\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
+LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*N(?:[ .*-]|\xb7|\xc2\xb7)?m\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
 LONGEST = 48  # bytes of a line
 NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for the first good line
@@ -29,7 +29,7 @@ def decode_line(line: bytes) -> float | None:
     found = LINE.fullmatch(line)
     if found is None:
         return None
-    if found[3] is not None and reduce(lambda a, b: a ^ b, line[: line.index(b"*")], 0) != int(found[3], 16):
+    if found[2] is not None and reduce(lambda a, b: a ^ b, line[: line.rindex(b"*")], 0) != int(found[2], 16):
         return None
     return float(found[1])
 
