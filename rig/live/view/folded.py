@@ -91,8 +91,8 @@ class Folded(Drawing):
         """Where it came to rest the gear unwound: that is no error of a turn."""
         now = self._present(self._turns.stopped)
         there = MIDDLES[np.isfinite(now)]
-        if len(there):
-            self._draw_now(t, now, float(there[-1] if self._turns.way > 0 else there[0]), canvas)
+        end = float(there[-1 if self._turns.way > 0 else 0]) if len(there) else 0.0
+        self._draw_now(t, now, end, canvas)
 
     def _present(self, now: Array) -> Array:
         """The present turn, laid upon the mean of its side as far as it goes."""
@@ -129,8 +129,7 @@ class Folded(Drawing):
         canvas.lines(f"{PATH}/now/line", t, [line] if len(line) > 1 else [], Pen(colours.NOW, 1.5, 4.0))
         value = now[min(int(angle * BINS / 360.0), BINS - 1)]
         place = self._frame.place(np.array([angle]), np.array([value]))
-        if len(place):
-            canvas.dot(f"{PATH}/now/dot", t, place[0], colours.NOW)
+        canvas.dot(f"{PATH}/now/dot", t, place, colours.NOW)
 
     def _legend(self, t: float, canvas: Canvas) -> None:
         for x, side, (name, colour, _, _) in zip((30.0, 96.0), self._sides.values(), SIDES.values(), strict=True):

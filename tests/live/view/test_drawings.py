@@ -208,4 +208,14 @@ def test_a_turn_in_which_the_motor_came_to_rest_ends_before_the_gear_unwinds() -
     angle = np.radians(line[:, 0] / WIDTH * 360.0)
     assert heights(line, numbers) == pytest.approx(40.0 * np.cos(2 * angle), abs=3.0)
     assert math.degrees(angle[-1]) == pytest.approx(180.0 - 20.0, abs=1.5)
-    assert canvas.shown["/folded/now/dot"] == pytest.approx(line[-1])
+    assert canvas.shown["/folded/now/dot"] == pytest.approx(line[-1:])
+
+
+def test_a_motor_that_came_to_rest_soon_after_a_turn_leaves_no_piece_of_one() -> None:
+    canvas, drawing = Kept(), Folded(50.0, "")
+    rows = turning(5.03, 40.0)
+    drawing.add(rows, canvas)
+    assert canvas.shown["/folded/now/line"]
+    drawing.over(float(rows.t[-1]), canvas)
+    assert canvas.shown["/folded/now/line"] == []
+    assert canvas.shown["/folded/now/dot"].shape == (0, 2)
