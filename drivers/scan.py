@@ -8,10 +8,13 @@ from serial.tools import list_ports
 
 from drivers.bus import Bus
 from drivers.node import Node
+from drivers.scales402 import MILLI
 from rig.core.devices import Identity
 from rig.core.errors import NotReady
 
 NODES = range(1, 128)
+STRONGEST = 100.0  # N·m of an ampere: no motor makes as much; who says so counts 6076h in µN·m
+MICRO = 1e-6  # N·m
 PATIENCE = 0.03  # s for an answer; a node that is there takes 1 to 10 ms
 
 
@@ -52,12 +55,16 @@ def scan(bus: Bus) -> list[Found]:
 
 
 def plate_of(node: Node, profile: int) -> dict[str, float]:
-    """Rated torque [N·m] and counts per turn, where the profile has them and the device says them."""
+    """Rated torque [N·m] and counts per turn, where the profile has them and the device says them; `rated_step` [N·m]
+    where what it says of its current shows that 6076h is not in mN·m.
+    """
     if profile == 402:
-        rated = node.read_uint(0x6076, default=0) / 1000.0
+        told, current = (node.read_uint(index, default=0) for index in (0x6076, 0x6075))  # mN·m, mA
+        micro = current > 0 and told / current > STRONGEST
         increments, turns = (node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
         counts = increments / turns if increments > 1 and turns else 0.0
-        return {"torque_rated": rated, "counts_per_turn": counts}
+        plate = {"torque_rated": told * (MICRO if micro else MILLI), "counts_per_turn": counts}
+        return plate | ({"rated_step": MICRO} if micro else {})
     if profile == 406:
         scaled = node.read_uint(0x6000, default=0) & 1 << 2
         return {"counts_per_turn": float(node.read_uint(0x6001 if scaled else 0x6501, default=0))}

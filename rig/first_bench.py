@@ -67,7 +67,10 @@ def first_bench(interface: str, channel: str, bitrate: int, nodes: Sequence[Foun
         device.update({"type": kind, "bus": "rig", "node": node.number})
         device.comment(" ".join(part for part in node.identity if part))
         bench["devices"][role] = device
-        for key, told in node.plate.items():
+        plate = dict(node.plate)
+        if step := plate.pop("rated_step", 0.0):
+            device["rated_step"] = step
+        for key, told in plate.items():
             quantity = bench[SECTIONS[role]][key]
             if told:
                 quantity.update(

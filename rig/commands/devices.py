@@ -51,5 +51,5 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _plate(node: Found) -> str:
-    units = {"torque_rated": "N·m", "counts_per_turn": "counts/turn"}
+    units = {"torque_rated": "N·m", "counts_per_turn": "counts/turn", "rated_step": "N·m a digit of 6076h"}
     return "".join(f", {value:g} {units[key]}" for key, value in node.plate.items() if value)

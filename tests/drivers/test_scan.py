@@ -29,6 +29,19 @@ def test_every_node_is_found_with_profile_identity_and_plate(nodes: list[Found])
     assert nodes[1].plate == {"counts_per_turn": 900_000.0}
 
 
+def test_a_rated_torque_that_no_motor_has_of_its_current_is_in_another_unit():
+    w = wired()
+    w.twin.drive.rated_torque.value = 3_000_000  # µN·m, beside 6 A
+    bus = Bus("scan", "", "", w.wire, {}, w.wire.connect)
+    bus.open()
+    found = scan(bus)
+    bus.close()
+    assert found[0].plate["torque_rated"] == pytest.approx(3.0)
+    bench = read_bench(first_bench("socketcan", "can0", 1_000_000, found), "first.toml")
+    assert bench.devices.drive.rated_step == 1e-6
+    assert bench.motor.torque_rated == pytest.approx(3.0)
+
+
 def test_the_first_bench_file_can_be_read_and_holds_what_was_found(nodes: list[Found]):
     bench = read_bench(first_bench("socketcan", "can0", 500_000, nodes), "first.toml")
     assert bench.bus["rig"].interface == "socketcan"
