@@ -91,7 +91,7 @@ def test_the_report_of_a_run_is_in_sight_when_it_is_there(page: Page, station: P
 
 
 def test_what_is_wrong_and_what_to_do_is_read_whole_and_from_afar(page: Page, station: Puppet) -> None:
-    fault = "the drive reports a fault: CAN bus 'rig' is lost (cannot receive, Connection reset by peer [Error 104]); "
+    fault = "a device reports a fault: CAN bus 'rig' is lost (cannot receive, Connection reset by peer [Error 104]); "
     station.tell(state="fault", bench=BENCH, fault=fault + "the drive did not confirm that its torque is off")
     in_state(page, "fault")
     for width, height in ((1280, 800), (1920, 1080)):
