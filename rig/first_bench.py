@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from drivers.scan import Found, SerialPort
 
 TEMPLATE = "twin-canopen"
+NO_SYNC = "twin-odrive"  # nothing latches together: other gains of time
 SLOW = {"slcan": "twin-slcan"}  # 22 characters a frame: 250 Hz, with the gains and the latch lead of that rate
 HEAD = (
     ' A first bench file, written from what answered on the bus. Numbers the devices told say from = "measured";',
@@ -45,8 +46,10 @@ def first_bench(interface: str, channel: str, bitrate: int, nodes: Sequence[Foun
     import tomlkit
 
     from drivers import PROFILES
+    from drivers.scan import NO_PROFILE
 
-    document: Any = tomlkit.parse((BENCHES / f"{SLOW.get(interface, TEMPLATE)}.toml").read_text(encoding="utf-8"))
+    own = NO_SYNC if any(node.profile == NO_PROFILE for node in nodes) else SLOW.get(interface, TEMPLATE)
+    document: Any = tomlkit.parse((BENCHES / f"{own}.toml").read_text(encoding="utf-8"))
     bench: Any = tomlkit.document()
     for line in HEAD:
         bench.add(tomlkit.comment(line.strip()))

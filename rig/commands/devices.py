@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     nodes = scan_bus(args.interface, args.channel, args.bitrate)
     for node in nodes:
         who = " ".join(part for part in node.identity if part)
-        print(f"node {node.number:<3d} CiA {node.profile}: {who}{_plate(node)}")
+        print(f"node {node.number:<3d} {node.speaks}: {who}{_plate(node)}")
     if not nodes:
         where = f"{args.interface} {args.channel} at {args.bitrate} bit/s"
         raise NotReady(f"nobody answers on {where}: wrong bitrate, no termination, no power?")
