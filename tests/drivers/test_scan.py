@@ -8,7 +8,8 @@ from drivers.bus import Bus
 from drivers.scan import Found, listen, scan
 from rig.config import read_bench
 from rig.core.devices import Identity
-from rig.first_bench import first_bench
+from rig.core.errors import UsageError
+from rig.first_bench import adapter_options, first_bench
 from sim.wire.bus import Bus as WireBus
 from sim.wire.frame import Frame
 from sim.wire.odrive import Axis, Settings
@@ -104,3 +105,11 @@ def test_a_heartbeat_of_canopen_says_that_what_looks_like_an_axis_is_none():
     bus.open()
     assert listen(bus) == []
     bus.close()
+
+
+def test_options_an_adapter_needs_are_in_the_first_bench_file(nodes: list[Found]):
+    options = adapter_options(["host=10.0.0.5", "port=29536", "tcp_tune=true"])
+    bench = read_bench(first_bench("socketcand", "can0", 1_000_000, nodes, options), "first.toml")
+    assert bench.bus["rig"].options == {"host": "10.0.0.5", "port": 29536, "tcp_tune": True}
+    with pytest.raises(UsageError, match="expected name=value"):
+        adapter_options(["29536"])
