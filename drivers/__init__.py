@@ -9,7 +9,8 @@ CATALOGUE: dict[str, str] = {
     "serial.ascii_torque": "drivers.ascii_torque:AsciiTorque",
 }
 
-PROFILES: dict[int, tuple[str, str]] = {  # CiA profile → (role on a bench, device type)
+PROFILES: dict[int, tuple[str, str]] = {  # CiA profile, -1: CANSimple → (role on a bench, device type)
+    -1: ("drive", "can.odrive"),
     402: ("drive", "can.cia402"),
     406: ("load_encoder", "can.cia406"),
     404: ("torque_sensor", "can.cia404"),

@@ -18,7 +18,7 @@ from rig.core.devices import Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
 
-LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*(N.?m|Nm)\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
+LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*N(?:[ .*-]|\xb7|\xc2\xb7)?m\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
 LONGEST = 48  # bytes of a line
 NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for the first good line
@@ -29,7 +29,7 @@ def decode_line(line: bytes) -> float | None:
     found = LINE.fullmatch(line)
     if found is None:
         return None
-    if found[3] is not None and reduce(lambda a, b: a ^ b, line[: line.index(b"*")], 0) != int(found[3], 16):
+    if found[2] is not None and reduce(lambda a, b: a ^ b, line[: line.rindex(b"*")], 0) != int(found[2], 16):
         return None
     return float(found[1])
 
@@ -43,6 +43,7 @@ class AsciiTorque(TorqueSensor):
         self.place = place
         self.port = Port(place.need("port"), place.need("baud"), "torque sensor")
         self.garbled = 0  # lines that said no torque
+        self._useless = 0  # bytes since the last line that said one
         self._clock = wiring.clock
         self._direction = place.options.get("direction", 1)
         self._delay = place.options.get("delay", 0.0)
@@ -66,15 +67,23 @@ class AsciiTorque(TorqueSensor):
         self.trouble = self.port.dead
         if not data:
             return self._last
+        self._useless += len(data)
         for line in reversed(self._lines.feed(data)):
             tau = decode_line(line)
             if tau is not None:
+                self._useless = 0
                 over = abs(tau) >= 0.999 * self.place.range
                 t = self._clock.now() - self._delay
                 self._last = TorqueReading(t, self._direction * tau, int(Flag.SATURATED_TAU) if over else 0)
                 break
             self.garbled += 1
         return self._last
+
+    @property
+    def silent(self) -> str:
+        """That bytes come which say nothing: another unit, another baud rate, a disturbed line."""
+        told = f"{self.port.who} sent {self._useless} bytes meanwhile, and no line that says a torque"
+        return told if self._useless > LONGEST else ""
 
     def clear(self) -> None:
         """Look anew; a port that is gone stays gone until it is connected again. Raises NotReady: it is silent."""

@@ -6,13 +6,13 @@ import contextlib
 import math
 import select
 import struct
-import time
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import can
 
 from drivers.claim import connect_alone
+from drivers.queueing import Queueing
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
 
@@ -23,7 +23,6 @@ MOST = 500  # frames taken in one go: a babbling node must not hold the loop for
 NEVER = -1e9  # s, before any SYNC
 LATE_ANSWER = 0.002  # s before the newest SYNC: who answered then answered an older one, and was held up on the way
 SETTLE, OTHERS = 0.01, 0.12  # s listened before anything is sent: a host that only reads beats every 50 ms
-OLDEST = 0.1  # s: a time stamp farther back is on another clock than ours
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line
 GONE = (can.CanError, OSError)
 
@@ -52,13 +51,12 @@ class Bus:
         clock: Clock,
         options: Mapping[str, Any],
         connect: Callable[..., Any] = connect_alone,
-        stamps: Callable[[], float] = time.time,
     ) -> None:
         self.name = name
         self.protocol = CANOPEN  # what its devices speak
         self.requests: list[int] = []  # identifiers asked for at every latch, where there is no SYNC
         self._connect = connect
-        self._stamps = stamps  # what the adapter's time stamps count on
+        self._queueing = Queueing()
         self.clock = clock
         self.frames: dict[int, Frame] = {}
         self.listeners: dict[int, Callable[[bytes, float], None]] = {}
@@ -206,13 +204,13 @@ class Bus:
         return self._can.recv(timeout if self._poll is None else 0.0)  # type: ignore[no-any-return]
 
     def _keep(self, identifier: int, data: bytes, stamp: float) -> None:
-        now = self.clock.now()
-        waited = self._stamps() - stamp
-        if 0.0 < waited < OLDEST:
-            now -= waited  # it lay in a queue for that long
+        taken = self.clock.now()
+        now = taken - self._queueing.waited(taken, stamp)
         latched = self.synced if self.synced - now < LATE_ANSWER else now
-        last = self.frames.get(identifier)
-        self.frames[identifier] = Frame(now, latched, data, last.number + 1 if last else 1)
+        last, number = self.frames.get(identifier), 1
+        if last is not None:  # none passes the one before it, however roughly they are stamped
+            now, latched, number = max(now, last.arrived), max(latched, last.latched), last.number + 1
+        self.frames[identifier] = Frame(now, latched, data, number)
         listener = self.listeners.get(identifier)
         if listener is not None:
             listener(data, now)

@@ -19,7 +19,7 @@ from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import (
     DISABLE,
     ENABLE,
-    ENERGISED,
+    OPERATES,
     RESET,
     SHUTDOWN,
     SWITCH_ON,
@@ -293,19 +293,21 @@ class Cia402(Drive):
         while self.bus.clock.now() < until and not self.bus.dead:
             with contextlib.suppress(NotReady):
                 self._inputs.first(CONFIRM / 10)
-            if self._inputs.take() != NEVER and state_of(int(self._inputs.values[0])) not in ENERGISED:
+            if self._inputs.take() != NEVER and not int(self._inputs.values[0]) & OPERATES:
                 return True
             self._hold(DISABLE)
         return self._off_by_sdo()
 
     def _off_by_sdo(self) -> bool:
-        """Who lives and is not operational takes no PDOs: somebody else has stopped it, enabled as it may be."""
-        if self.bus.dead or not self.node.aside(self.bus.clock.now()):
+        """Who lives and is not operational takes no PDOs: it has rebooted, or somebody else has stopped it, enabled as
+        it may be.
+        """
+        if self.bus.dead or not (self.node.rebooted or self.node.aside(self.bus.clock.now())):
             return False
         with contextlib.suppress(NotReady):
             self.node.pause()  # one that is stopped answers nothing
             self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
-            return state_of(self.node.read_uint(0x6041)) not in ENERGISED
+            return not self.node.read_uint(0x6041) & OPERATES
         return False
 
     def reset_fault(self) -> None:

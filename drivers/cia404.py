@@ -53,7 +53,9 @@ class Cia404(TorqueSensor):
                 f"{self.node.who} measures in a unit that is no torque (6131h = {unit:08X}h), expected N·m, 00560000h; "
                 f"where its manual says that this is N·m: {self.place.where}.unit_code = 0x{unit:08X}"
             )
-        whole = self.node.read(0x9130, 1, b"") != b""
+        whole = self.node.read(WHOLE.at, WHOLE.sub, b"") != b""
+        if not whole and self.node.read(REAL.at, REAL.sub, b"") == b"":  # some take it into a PDO, and tell zeros
+            raise NotReady(f"{self.node.who} tells its torque neither as 9130h:1 nor as 6130h:1")
         digits = self.node.read_uint(0x6132, 1) if whole else 0
         self._scale = prefix * 10.0**-digits
         self._inputs.arrange(((WHOLE if whole else REAL,),))

@@ -18,6 +18,7 @@ PROFILE = 406
 TURN = 2 * math.pi
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 SCALING = 1 << 2  # of 6000h: 6001h and 6002h are in use
+WHOLE = 1 << 32  # values of 6004h: a total range of so many does not fit into 6002h, which is then 0
 POSITION = (Mapped(0x6004, 0, 32, "I"),)  # it wraps at the total range 6002h, not at 2^32
 
 
@@ -35,7 +36,7 @@ class Cia406(Encoder):
         self._inputs = Inputs(self.node, place.period)
         self._direction = place.options.get("direction", 1)
         self._step = TURN / place.counts_per_turn
-        self._angle = Unwrapped(1 << 32, 1)
+        self._angle = Unwrapped(WHOLE, 1)
         self._last = AngleReading(NEVER, NAN, 0)
 
     def connect(self) -> Identity:
@@ -64,7 +65,7 @@ class Cia406(Encoder):
     def _scale(self) -> tuple[int, int]:
         """Counts per turn, and at how many the position wraps."""
         if self.node.read_uint(0x6000, default=0) & SCALING:
-            return self.node.read_uint(0x6001), self.node.read_uint(0x6002)
+            return self.node.read_uint(0x6001), self.node.read_uint(0x6002, default=0) or WHOLE
         per_turn = self.node.read_uint(0x6501)
         return per_turn, per_turn * max(self.node.read_uint(0x6502, default=1), 1)
 

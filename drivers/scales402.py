@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from drivers.node import Node
 from drivers.profile402 import counts_position
 from drivers.wiring import Place
 from rig.core.errors import NotReady
 
+MILLI = 1e-3  # N·m, one digit of 6076h by the standard; some makers count in µN·m
 TOLERANCE = 0.02  # what differs by more is another scale, not rounding
 
 
@@ -28,26 +31,36 @@ def compare_scales(node: Node, place: Place) -> None:
 
 
 def _torque(node: Node, place: Place) -> None:
-    told, trusted = node.read_uint(0x6076, default=0), place.torque_rated  # mN·m
+    told, trusted = node.read_uint(0x6076, default=0), place.torque_rated
     if not told:
         node.remarks.append(f"{node.who} tells no rated torque (6076h): {trusted:g} N·m is trusted")
         return
-    rated = told / 1000
+    rated = told * place.options.get("rated_step", MILLI)
     if abs(rated / trusted - 1) > TOLERANCE:
         raise NotReady(
             f"{node.who} says its rated torque is {rated:g} N·m (6076h), motor.torque_rated in the bench file is "
             f"{trusted:g} N·m: every torque would be off by a factor of {rated / trusted:.4g}"
+            + _other_step(trusted / told, place)
         )
-    current = node.read_uint(0x6075, default=0)  # mA
+    current = 1e-3 * node.read_uint(0x6075, default=0)  # A
     declared = place.options.get("torque_constant")
-    if current and declared and abs(told / current / declared - 1) > TOLERANCE:
+    if current and declared and abs(rated / current / declared - 1) > TOLERANCE:
         raise NotReady(
-            f"{node.who} makes {told / current:.4g} N·m of an ampere (6076h over 6075h), devices.drive.torque_constant "
-            f"in the bench file is {declared:g} N·m/A: off by a factor of {told / current / declared:.3g}, "
+            f"{node.who} makes {rated / current:.4g} N·m of an ampere (6076h over 6075h), "
+            f"devices.drive.torque_constant in the bench file is {declared:g} N·m/A: off by a factor of "
+            f"{rated / current / declared:.3g}, "
             "which is 1.41 where peak and effective values are mixed up"
         )
-    if current == told:
+    if round(1e3 * current) == told:
         node.remarks.append(
             f"{node.who} holds {told} both as rated torque (6076h, mN·m) and as rated current (6075h, mA): has anybody "
             "entered the motor's data? Its torques are per mille of that"
         )
+
+
+def _other_step(step: float, place: Place) -> str:
+    """What to write where the two differ by a power of ten, as milli and micro do."""
+    tens = round(math.log10(step))
+    if abs(step / 10.0**tens - 1) > TOLERANCE:
+        return ""
+    return f"; where its manual says that 6076h counts in steps of 1e{tens} N·m: {place.where}.rated_step = 1e{tens}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -50,7 +49,6 @@ class Wiring:
     clock: Clock
     sections: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     connect: Callable[..., Any] = connect_alone  # what opens a bus
-    stamps: Callable[[], float] = time.time  # what its time stamps count on
     _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
     def bus(self, place: Place, protocol: str = CANOPEN) -> Bus:
@@ -66,9 +64,7 @@ class Wiring:
             options = {**UNASKED.get(section["interface"], {}), **section.get("options", {})}
             if section.get("bitrate"):
                 options["bitrate"] = section["bitrate"]
-            made = Bus(
-                name, section["interface"], str(section["channel"]), self.clock, options, self.connect, self.stamps
-            )
+            made = Bus(name, section["interface"], str(section["channel"]), self.clock, options, self.connect)
             made.protocol = protocol
             made.host_node = section.get("host_node", 0)
             self._buses[name] = made

@@ -53,6 +53,7 @@ class DeviceSection(Strict):
     direction: Literal[1, -1] = 1  # -1 turns the sign of its readings (and commands) over
     watchdog: Annotated[float | None, quantity("s", ge=0.01, le=10)] = None  # the drive stops this long after its host
     torque_constant: Annotated[float | None, quantity("N·m/A", **Positive)] = None  # where a drive tells current only
+    rated_step: Annotated[float | None, quantity("N·m", gt=0, le=1)] = None  # of 6076h, where that is not mN·m
     unit_code: int | None = Field(default=None, ge=0, lt=2**32)  # what 6131h holds when it means N·m, by its manual
     delay: Annotated[float, quantity("s", ge=0, le=1)] = 0.0  # from latching to arrival, where the device cannot say
 

@@ -107,8 +107,8 @@ TORQUE_MARGIN = 1.1  # the drive's torque reading overshoots and is noisy; the c
 
 
 def drive_fault(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
-    """The drive's own protection."""
-    return Trip("drive", f"the drive reports a fault: {sample.fault}") if sample.fault else None
+    """The drive's own protection, or what is wrong with another device or a bus: the words say whose."""
+    return Trip("drive", f"a device reports a fault: {sample.fault}") if sample.fault else None
 
 
 def stale(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
@@ -142,6 +142,8 @@ def shaft_torque(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     limit = guard.shaft_torque
     if limit is None or -limit <= sample.tau_l <= limit:
         return None
+    if sample.tau_l != sample.tau_l:
+        return Trip("shaft_torque", f"shaft torque is no number, limit ±{limit:.2f} N·m: is the sensor's cable whole?")
     full = " (sensor at the end of its range)" if sample.flags & Flag.SATURATED_TAU else ""
     return Trip("shaft_torque", f"shaft torque {sample.tau_l:.2f} N·m{full}, limit ±{limit:.2f} N·m")
 

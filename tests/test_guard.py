@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rig.core.channels import Flag
 from rig.core.procedure import Envelope
 from rig.core.sample import Sample, Torque
 from rig.guard import RULES, Guard
@@ -46,6 +47,12 @@ def test_each_limit_trips_with_its_number(name: str, change: dict[str, float], a
 @pytest.mark.parametrize("channel", ["theta_m", "theta_l", "omega_m", "tau_m", "tau_l", "age"])
 def test_a_missing_number_trips(channel: str) -> None:
     assert guard().check(GOOD._replace(**{channel: NAN}), Torque(0.0)) is not None
+
+
+def test_a_torque_sensor_that_tells_no_number_is_not_said_to_be_at_the_end_of_its_range() -> None:
+    trip = guard().check(GOOD._replace(tau_l=NAN, flags=int(Flag.SATURATED_TAU)), Torque(0.0))
+    assert trip is not None
+    assert "shaft torque is no number" in trip.sentence
 
 
 def test_every_command_is_clipped_to_bench_and_procedure_and_nan_becomes_zero_and_trips() -> None:

@@ -101,7 +101,7 @@ def test_a_trip_is_told_once_the_torque_is_off_and_before_the_drive_confirmed_it
         lambda: setattr(bench.world, "fault", "over-current"),
         tripped=lambda why: told.append((why, bench.torque_free(), bench.world.history.count("halt"))),
     )
-    assert told == [("the drive reports a fault: over-current", True, 1)]
+    assert told == [("a device reports a fault: over-current", True, 1)]
     assert bench.world.history.count("halt") > 1
     assert "did not confirm" in ending.reason
 

@@ -79,7 +79,8 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
     """A procedure with no analysis of its own: what its motion allows."""
     turns = float(np.ptp(motion.theta_m)) / TURN
     found.cannot.append(
-        f"There is no analysis for {run.procedure} yet: these figures are what any run of this motion gives."
+        f"There is no analysis for {run.manifest.get('label') or run.procedure} by itself: these figures are what any "
+        "run of this motion gives."
     )
     if turns >= 1.0:
         _at_speed(found, run, motion, speed)

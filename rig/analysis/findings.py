@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.intervals import against_limit
-from rig.analysis.result import Array, Check, Estimate, Result, Verdict
+from rig.analysis.limits import judge
+from rig.analysis.result import Array, Check, Estimate, Part, Result, Verdict
 
 WHY_REJECTED = ("stuck_share", "speed_scatter", "hunting_frequency")  # they describe the run and do count
 
@@ -47,9 +47,9 @@ class Findings:
         """The figures added from here on are shown and do not count."""
         self.rejected, self.believed = why, len(self.estimates)
 
-    def figure(self, name: str, label: str, value: float, unit: str, half: float, how: str) -> None:
-        """Add an estimate given as value ± half width of its 95 % interval."""
-        self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how))
+    def figure(self, name: str, label: str, value: float, unit: str, half: float, how: str, *parts: Part) -> None:
+        """Add an estimate given as value ± half width of its 95 % interval, and what that is made of."""
+        self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how, parts))
 
     def exact(self, name: str, label: str, value: float, unit: str, how: str) -> None:
         """Add a figure without an interval: a count is exact, anything else has none that this run could show."""
@@ -63,45 +63,15 @@ class Findings:
                 self.curves[key.replace("__", ".", 1)] = np.asarray(array, dtype=np.float64)
 
 
-def _judged(estimates: list[Estimate], limits: Mapping[str, Any]) -> list[tuple[Estimate, Verdict, str]]:
-    """Every estimate that has a limit, with its verdict and the limit in words."""
-    out = []
-    for e in estimates:
-        limit = limits.get(e.name)
-        if limit is None:
-            continue
-        bounds = limit if isinstance(limit, Mapping) else {"upper": limit}
-        lower, upper = bounds.get("lower"), bounds.get("upper")
-        words = " and ".join(
-            f"{w} {float(b):g} {e.unit}" for w, b in (("at least", lower), ("at most", upper)) if b is not None
-        )
-        verdict = against_limit(
-            e.ci95, None if lower is None else float(lower), None if upper is None else float(upper)
-        )
-        out.append((e, verdict, words))
-    return out
-
-
 def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Result:
     """The verdict and its sentence.
 
-    `manifest["limits"]`, optional: {estimate name: {"lower": x, "upper": y}} or {estimate name: upper}, in the unit of
-    the estimate. A rejected run is FAIL whatever its figures. A run that did not end as planned cannot PASS.
+    `manifest["limits"]`, optional: as `rig.analysis.limits.judge` takes them. A rejected run is FAIL whatever its
+    figures. A run that did not end as planned cannot PASS.
     """
-    judged = _judged(found.estimates, manifest.get("limits") or {})
-    for e, v, words in judged:
-        low, high = e.ci95
-        where = {
-            Verdict.PASS: "the whole interval is inside",
-            Verdict.FAIL: "the whole interval is outside",
-            Verdict.INCONCLUSIVE: "the limit lies within the interval",
-        }[v]
-        text = f"{e.label} {e.value:.4g} {e.unit} ({low:.4g} to {high:.4g}), limit {words}: {where}."
-        found.checks.append(Check(f"limit_{e.name}", v is Verdict.PASS, text))
-    verdicts = {v for _, v, _ in judged}
-    verdict = next((v for v in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS) if v in verdicts), Verdict.MEASURED)
-    sentence = found.sentence
-    estimates = found.estimates
+    judged = judge(found.estimates, manifest.get("limits") or {})
+    found.checks += judged.checks
+    verdict, sentence, estimates = judged.verdict, f"{found.sentence} {judged.unsettled}".strip(), found.estimates
     status = str(manifest.get("status", "completed"))
     if status not in ("completed", "imported"):
         reason = manifest.get("exit_reason")

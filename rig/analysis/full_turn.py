@@ -9,7 +9,7 @@ from rig.analysis.findings import Findings
 from rig.analysis.in_step import in_step
 from rig.analysis.intervals import Z95, amplitude_interval
 from rig.analysis.orders import Line, fit_lines
-from rig.analysis.result import Array, Estimate
+from rig.analysis.result import Array, Estimate, Part
 from rig.analysis.revolutions import TERMS
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
@@ -63,7 +63,12 @@ def _accuracy(found: Findings, result: Accuracy, stroke: Stroke, turns: int) -> 
     )
     ci95 = (result.low, result.high)
     label = f"Transmission accuracy over one output turn, {way}"
-    found.estimates.append(Estimate("transmission_accuracy", label, result.value, "arcsec", ci95, how))
+    noise = Part(
+        "noise of the pieces of a turn",
+        (result.high - result.low) / 2,
+        "take more turns of the output (--with turns=3)",
+    )
+    found.estimates.append(Estimate("transmission_accuracy", label, result.value, "arcsec", ci95, how, (noise,)))
     found.curve(
         turn__theta_l_deg=result.theta_l_deg,
         turn__error=result.curve,

@@ -9,7 +9,7 @@ from rig.analysis.findings import Findings
 from rig.analysis.intervals import amplitude_interval
 from rig.analysis.kinematic_error import KinematicError
 from rig.analysis.profile import SMALL, Profile, chosen_terms, truncation
-from rig.analysis.result import Array, Estimate
+from rig.analysis.result import Array, Estimate, Part
 from rig.analysis.revolutions import GRID
 
 SHOWN_ORDERS = (1, 2, 4, 6, 8, 10)  # figures of their own when resolved; all orders stand in the table
@@ -35,8 +35,11 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
         share = 100 * float(ke.added[min(1, p.terms - 1)])
         how += f"; what inertia adds ({share:.2g} % of order 2) is taken off, half of it is in the interval"
     found.estimates.append(
-        Estimate("kinematic_error_peak_to_peak", f"{what}, peak to peak", value, "arcsec", (low, high), how + ".")
-    )
+        Estimate(
+            "kinematic_error_peak_to_peak", f"{what}, peak to peak", value, "arcsec", (low, high), how + ".",
+            parts_of(p, (high - low) / 2, p.system_half),
+        )
+    )  # fmt: skip
     found.tables["coefficients"] = rows = coefficients(p, ke.u_zero)
     for row in rows:
         n, resolved = int(row["order"]), float(row["C_lo"]) > 0
@@ -46,8 +49,9 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
             how = f"{state}{basis}; least squares over exact turns, interval from the scatter of the revolutions."
             ci95 = (float(row["C_lo"]), float(row["C_hi"]))
             label = f"{what}, amplitude of order {n}"
+            made_of = parts_of(p, (ci95[1] - ci95[0]) / 2, p.factor * float(p.u_system[n - 1]))
             found.estimates.append(
-                Estimate(f"fourier_amplitude_{n}", label, float(row["C_arcsec"]), "arcsec", ci95, how)
+                Estimate(f"fourier_amplitude_{n}", label, float(row["C_arcsec"]), "arcsec", ci95, how, made_of)
             )
     how = "Whole motor turns used; half a turn is cut at each reversal and where the run began or ended at rest."
     found.exact("revolutions_forward", "Revolutions forward", p.forward, "1", how)
@@ -58,6 +62,20 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
         speeds = np.abs(np.concatenate([s.speed_rpm for s in ke.strokes]))
         half = 1.96 * float(speeds.std()) / np.sqrt(speeds.size)
         found.figure("mean_speed", "Mean motor speed", ke.speed_rpm, "rpm", half, "Mean over the revolutions used.")
+
+
+def parts_of(p: Profile, half: float, system: float) -> tuple[Part, ...]:
+    """What an interval of `half` [arcsec] is made of, `system` of it by what does not scatter."""
+    if not np.isfinite(half):
+        return ()
+    scatter = float(np.sqrt(max(half**2 - system**2, 0.0)))
+    number = p.forward + p.reverse
+    return (
+        Part(
+            f"the scatter of {number} revolutions", scatter, "take more of them, it falls with the root of their number"
+        ),
+        Part("what inertia adds at this speed", system, "run slower, or declare J_l and K better"),
+    )
 
 
 def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:

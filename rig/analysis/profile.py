@@ -76,6 +76,11 @@ class Profile:
         """Σ a_n cos nθ + b_n sin nθ on the grid, shape (G,)      [ghorbel2001, Eq. 8]"""
         return np.asarray(_basis(self.terms) @ np.concatenate((self.cosine, self.sine)))
 
+    @property
+    def system_half(self) -> float:
+        """Half width (95 %) that the systematic parts leave on a peak to peak, as if all their peaks met, arcsec."""
+        return float(2.0 * 1.96 * np.sqrt(np.sum(self.u_system**2)))
+
     def peak_to_peak(self) -> tuple[float, tuple[float, float]]:
         """Peak to peak of the fitted series with its 95 % interval, arcsec.
 
@@ -91,7 +96,7 @@ class Profile:
         sizes = np.ptp(draws @ basis.T, axis=1)
         plain = float(np.ptp(basis @ best))
         value = max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0)
-        half = float(np.hypot(self.factor * sizes.std(), 2.0 * 1.96 * np.sqrt(np.sum(self.u_system**2))))
+        half = float(np.hypot(self.factor * sizes.std(), self.system_half))
         return value, (max(value - half, 0.0), value + half)
 
 

@@ -21,6 +21,15 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True)
+class Part:
+    """A contribution to the interval of an estimate      [gum]"""
+
+    what: str  # a noun: "the scatter of 27 revolutions"
+    half: float  # of the 95 % interval by this contribution alone, in the estimate's unit
+    remedy: str  # what makes it smaller
+
+
+@dataclass(frozen=True)
 class Estimate:
     """A figure shown to a person: value, unit, uncertainty and how both were found      [gum]"""
 
@@ -30,6 +39,7 @@ class Estimate:
     unit: str  # as shown: arcsec, rpm, N·m …
     ci95: tuple[float, float]  # 95 % interval, same unit; NaN where the run could not show one
     how: str  # one sentence: from what, over how many, by which estimator
+    parts: tuple[Part, ...] = ()  # of the interval, where they are known one by one
 
 
 @dataclass(frozen=True)

@@ -117,11 +117,19 @@ def chosen(steps: list[SpeedStep], tolerance: float) -> int | None:
     return best
 
 
+def agreement(omega_m: float, law: Law, tolerance: float) -> str:
+    """What the fastest speed [rad/s] that agrees with its neighbour is worth: close neighbours agree long before."""
+    early = law.resolved and omega_m > law.speed_at(tolerance)
+    return f"{omega_m * RPM:.3g} rpm is the fastest of the speeds run that agrees with the next slower one" + (
+        f", though speed adds more than {100 * tolerance:g} % there" if early else ""
+    )
+
+
 def _conclude(found: Findings, run: Source, steps: list[SpeedStep]) -> None:
     tolerance, law = tolerance_of(run.conditions), fit_law(steps)
     best = chosen(steps, tolerance)
     basis = f"{len(steps)} speeds, {steps[0].omega_m * RPM:.3g} to {steps[-1].omega_m * RPM:.3g} rpm"
-    words = []
+    words = [_limit(found, law, steps, tolerance, basis)]
     if best is not None:
         speed = steps[best].omega_m * RPM
         how = (
@@ -129,14 +137,14 @@ def _conclude(found: Findings, run: Source, steps: list[SpeedStep]) -> None:
             f"{100 * tolerance:g} % of its rms (or twice the noise) and 1 % of order 2, as do all slower ones."
         )
         found.exact("chosen_speed", "Fastest speed of the grid that agrees", speed, "rpm", how)
-        words.append(f"{speed:.3g} rpm is the fastest of the speeds run at which the waveform no longer changes")
+        words.append(agreement(steps[best].omega_m, law, tolerance))
     else:
         found.inconclusive = "The waveform still changes between the two slowest speeds: run slower."
-        words.append(found.inconclusive.rstrip("."))
-    words.append(_limit(found, law, steps, tolerance, basis))
+        words.insert(0, found.inconclusive.rstrip("."))
     _prediction(found, run, law, steps, best, tolerance)
     _table(found, law, steps, tolerance)
-    found.sentence = f"{'; '.join(words)}. {found.sentence}"
+    told = "; ".join(words)
+    found.sentence = f"{told[:1].upper()}{told[1:]}. {found.sentence}"
 
 
 def _limit(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float, basis: str) -> str:

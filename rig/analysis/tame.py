@@ -72,17 +72,17 @@ class Tame:
                     self.notes.append(f"The manifest's {key} is not a table; it was not used.")
                 out[key] = {}
         out["encoders"] = {k: v for k, v in out["encoders"].items() if 0 < number(v) < LARGEST}
-        out["limits"] = {k: v for k, v in out["limits"].items() if self._is_limit(k, v)}
+        out["limits"] = {k: v if v is None or self._is_limit(k, v) else {} for k, v in out["limits"].items()}
         return out
 
     def _is_limit(self, name: Any, limit: Any) -> bool:
         if isinstance(limit, Mapping):
             bounds = [limit[k] for k in ("lower", "upper") if limit.get(k) is not None]
-            good = bool(bounds) and all(np.isfinite(number(b)) for b in bounds)
+            good = bool(bounds) and all(np.isfinite(number(b)) for b in bounds) and bounds == sorted(bounds)
         else:
             good = bool(np.isfinite(number(limit)))
-        if not good and limit is not None:
-            self.notes.append(f"The limit of {name} is not a number; it was not used.")
+        if not good:
+            self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
         return good
 
 

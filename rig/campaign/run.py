@@ -93,6 +93,17 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     return exit
 
 
+def nothing_left(journal: Journal) -> bool:
+    """Whether every run is settled and the rig is known to be bare: then there is nothing to move for."""
+    return not journal.open_runs() and not to_bare(journal.rigging, journal.pending)
+
+
+def close_settled(journal: Journal) -> Exit:
+    """Close a campaign that was taken up with nothing left to make."""
+    journal.close("completed", _closing(journal))
+    return Exit.PASS
+
+
 def check_facts(journal: Journal) -> dict[str, Any]:
     """What the manifests of proofs and weighings say: they tell later whether the encoders kept their zero."""
     return {"campaign": {"uid": journal.book["uid"], "kind": "check", "session": len(journal.book["sessions"])}}

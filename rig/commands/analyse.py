@@ -6,9 +6,11 @@ import argparse
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
+from rig.commands.limits import limit_argument, limits_of
 from rig.commands.reference import reference_beside, reference_named, reference_of_one_zero
 from rig.commands.targets import writing
 from rig.core.errors import DataError, Exit
@@ -16,6 +18,8 @@ from rig.core.errors import DataError, Exit
 if TYPE_CHECKING:
     from rig.analysis.result import Result
     from rig.runfile.run import Run
+
+NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +35,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="slow run (kinematic-error) to split runs at speed with and to take off the wind-up of lock tests; "
         "without it the one beside them is taken",
     )
+    limit_argument(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -38,9 +43,10 @@ def run(args: argparse.Namespace) -> int:
     folders = expand(args.runs)
     places = dict(zip(folders, targets(folders, args.out), strict=True))
     reference = reference_named(args.reference) if args.reference else None
+    limits = limits_of(args.limits)
 
     def analyse_one(folder: Path) -> Exit:
-        result, simulated = analyse_folder(folder, places[folder], reference)
+        result, simulated = analyse_folder(folder, places[folder], reference, limits)
         print_result(result, places[folder], folder, simulated)
         return exit_of(result)
 
@@ -55,11 +61,14 @@ def targets(folders: list[Path], out: Path | None) -> list[Path]:
     return [out / folder.resolve().relative_to(base) for folder in folders]
 
 
-def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> tuple[Result, bool]:
+def analyse_folder(
+    folder: Path, target: Path, reference: Run | None = None, limits: Mapping[str, Any] = NO_LIMITS
+) -> tuple[Result, bool]:
     """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself.
 
     `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
-    in the same folder is taken. Returns the result, and whether the run is simulated.
+    in the same folder is taken. `limits` join those of the run's manifest and go before them. Returns the result, and
+    whether the run is simulated.
     """
     from rig.analysis.analyse import analyse
     from rig.report.page import write
@@ -68,7 +77,7 @@ def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> 
     from rig.runfile.finalise import add_derived
     from rig.runfile.run import Run
 
-    run = Run.open(folder)
+    run = judged_by(Run.open(folder), limits)
     refuse_changed(folder, run.manifest)
     if reference is None:
         reference = BESIDE.get(run.procedure, without)(run)
@@ -82,6 +91,15 @@ def analyse_folder(folder: Path, target: Path, reference: Run | None = None) -> 
     if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
         add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
     return result, run.simulated
+
+
+def judged_by(run: Run, limits: Mapping[str, Any]) -> Run:
+    """The run with `limits` before those its manifest has; the manifest on disk stays as it is."""
+    if not limits:
+        return run
+    own = run.manifest.get("limits")
+    both = {**(own if isinstance(own, Mapping) else {}), **limits}
+    return type(run)(run.path, {**run.manifest, "limits": both}, run.samples)
 
 
 def without(run: Run) -> None:

@@ -18,7 +18,7 @@ from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, Plan, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
-from rig.campaign.run import Desk, conduct, open_session
+from rig.campaign.run import Desk, close_settled, conduct, nothing_left, open_session
 from rig.campaign.steps import Item
 from rig.commands.afterwards import afterwards
 from rig.commands.options import bench_arguments, show_argument
@@ -29,7 +29,7 @@ from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
 from rig.commands.viewing import view, view_argument
-from rig.core.errors import DataError, NotReady, UsageError
+from rig.core.errors import DataError, Exit, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.runfile.manifest import told
 from rig.session.done import Watch, nobody
@@ -113,6 +113,9 @@ def _resume(args: argparse.Namespace) -> int:
         if number - 1 in journal.open_runs():
             journal.skip(number - 1, operator() or "the operator")
     with showing(args.json) as show:
+        if nothing_left(journal):
+            show.say("every run of this campaign is settled: nothing is moved")
+            return _told(journal, close_settled(journal), show)
         return make(campaign, journal, args.clock or book["clock"], args, show)
 
 
@@ -128,6 +131,11 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
         show.say(f"campaign folder {journal.folder}")
         args.before(session, show)
         exit = conduct(session, campaign, journal, Terminal(campaign.bench, person, show))
+    return _told(journal, exit, show)
+
+
+def _told(journal: Journal, exit: Exit, show: Show) -> int:
+    """The summary on stdout and in the folder, and what follows the last run; the exit code."""
     text = "\n".join(summary.lines(journal)) + "\n"
     with told(DataError, f"the runs are kept in {journal.folder}, its summary cannot be written"):
         (journal.folder / "summary.txt").write_text(text, encoding="utf-8")

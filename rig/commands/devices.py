@@ -17,12 +17,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--interface", default="socketcan", metavar="NAME", help="python-can's name of the CAN adapter")
     parser.add_argument("--channel", default="", metavar="CHANNEL", help="its channel, can0 for example; none: no CAN")
     parser.add_argument("--bitrate", type=int, default=1_000_000, metavar="BIT/S", help="of the bus (1000000)")
+    parser.add_argument(
+        "--option",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="one more that the adapter needs, for example --option host=10.0.0.5 --option port=29536 of socketcand",
+    )
     parser.add_argument("--write", type=Path, metavar="FILE", help="a bench file with what was found, to edit")
 
 
 def run(args: argparse.Namespace) -> int:
     """Nodes, ports, and the file; exit 3 when a bus was asked for and nobody is on it."""
-    from rig.first_bench import scan_bus, scan_ports
+    from rig.first_bench import adapter_options, scan_bus, scan_ports
 
     ports = scan_ports()
     for port in ports:
@@ -33,10 +40,11 @@ def run(args: argparse.Namespace) -> int:
         if args.write:
             raise UsageError("--write needs --channel: the drive is found on a CAN bus")
         return Exit.PASS
-    nodes = scan_bus(args.interface, args.channel, args.bitrate)
+    options = adapter_options(args.option)
+    nodes = scan_bus(args.interface, args.channel, args.bitrate, options)
     for node in nodes:
         who = " ".join(part for part in node.identity if part)
-        print(f"node {node.number:<3d} CiA {node.profile}: {who}{_plate(node)}")
+        print(f"node {node.number:<3d} {node.speaks}: {who}{_plate(node)}")
     if not nodes:
         where = f"{args.interface} {args.channel} at {args.bitrate} bit/s"
         raise NotReady(f"nobody answers on {where}: wrong bitrate, no termination, no power?")
@@ -45,11 +53,11 @@ def run(args: argparse.Namespace) -> int:
 
         if args.write.exists():
             raise UsageError(f"{args.write} exists; nothing is overwritten")
-        args.write.write_text(first_bench(args.interface, args.channel, args.bitrate, nodes), encoding="utf-8")
+        args.write.write_text(first_bench(args.interface, args.channel, args.bitrate, nodes, options), encoding="utf-8")
         print(f"wrote {args.write}: replace every number that is assumed, then hdrig doctor --bench {args.write}")
     return Exit.PASS
 
 
 def _plate(node: Found) -> str:
-    units = {"torque_rated": "N·m", "counts_per_turn": "counts/turn"}
+    units = {"torque_rated": "N·m", "counts_per_turn": "counts/turn", "rated_step": "N·m a digit of 6076h"}
     return "".join(f", {value:g} {units[key]}" for key, value in node.plate.items() if value)

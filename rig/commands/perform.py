@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rig.bench import Bench, ClockName
 from rig.commands.analyse import analyse_folder, exit_of, print_result
@@ -54,6 +54,9 @@ class Job:
     root: Path
     note: str
     before: Callable[[Session, Show], None] = let_be  # what is done once connected, before anything moves
+    limits: Mapping[str, Any] = field(
+        default_factory=dict
+    )  # what the figures are judged against; kept in the run's manifest
 
 
 def perform(job: Job, show: Show, looking_on: Observer) -> int:
@@ -97,6 +100,8 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
             show.say(session.change(LockOutput()))
         for remark in job.procedure.remarks(job.bench.setting(lambda text: None)):
             show.say(remark)
+        if job.limits:
+            session.facts["limits"] = dict(job.limits)
         return session.run(job.procedure)
 
 

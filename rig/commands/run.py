@@ -10,6 +10,7 @@ from rig.campaign.plan import plan_of
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
 from rig.commands.campaign import begin
+from rig.commands.limits import limit_argument, limits_of
 from rig.commands.options import (
     bench_arguments,
     make_procedure,
@@ -35,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("procedure", metavar="PROCEDURE", help=", ".join([*CATALOGUE, *SWEEPS]))
     bench_arguments(parser)
     procedure_arguments(parser)
+    limit_argument(parser)
     view_argument(parser)
     show_argument(parser)
     parser.add_argument(
@@ -70,7 +72,12 @@ def parameters_text() -> str:
 def run(args: argparse.Namespace) -> int:
     """Dry run, or proof, run, analysis, report."""
     name = args.procedure.replace("_", "-")  # manifests write it with underscores
+    limits = limits_of(args.limits)
     if name in SWEEPS:  # many runs, with changes by hand between them
+        if limits:
+            raise UsageError(
+                f"--limit judges one run, and {name} makes many: hdrig analyse --limit judges each of them"
+            )
         return begin(plan_of(name, parameters_of(args.parameters)), args)
     if name not in CATALOGUE:
         raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, [*CATALOGUE, *SWEEPS])}")
@@ -86,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
     with showing(args.json) as show, view(args.view) as looking_on:
         refuse_beyond_limits(bench, procedure)
         args.resonance(bench, procedure)
-        return perform(Job(bench, clock, procedure, args.out, note, args.before), show, looking_on)
+        return perform(Job(bench, clock, procedure, args.out, note, args.before, limits), show, looking_on)
 
 
 def into_it(bench: Bench, procedure: Procedure) -> None:

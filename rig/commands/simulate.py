@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
@@ -45,6 +46,8 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out is not None and args.out.suffix not in (".svg", ".html"):
         raise UsageError(f"--out {args.out}: expected a name that ends in .svg or .html")
+    if not math.isfinite(args.load):
+        raise UsageError(f"--load {args.load:g}: expected a torque in N·m")
     file = open_gear(args.gear)
     gear = file.gear()
     if args.start:
@@ -67,8 +70,9 @@ def starts(file: GearFile, args: argparse.Namespace) -> int:
 
     if args.out is not None:
         raise UsageError("--out draws a steady turn: it goes with --speed or --torque, not with --start")
+    found = "\n".join(lines(file, args.start, args.load))
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
-    print("\n".join(lines(file, args.start, args.load)))
+    print(found)
     return int(Exit.PASS)
 
 

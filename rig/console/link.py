@@ -112,15 +112,15 @@ class Link:
             return f"the control process did not answer within {REPLY:g} s, and will not do it later: try again"
 
     async def press(self, name: str) -> float | None:
-        """Hold, stop or halt; ms until the loop had seen it, None when no loop looked."""
-        began = time.monotonic()
+        """Hold, stop or halt; ms until the loop had seen it, None when no loop looked: none ran."""
+        began, runs = time.monotonic(), self.picture["run"] is not None
         {"hold": self.switches.hold, "stop": self.switches.stop, "halt": self.switches.halt}[name]()
         if self._channel is not None:
             self._channel.offer({"act": name})  # wakes a station that waits; the switch is what counts
         pressed = self.switches.pressed
         while (now := time.monotonic()) - began < SEEN:
             if self.switches.seen == pressed:
-                return round(1e3 * (now - began), 3)
+                return round(1e3 * (now - began), 3) if runs else None
             await asyncio.sleep(LOOK)
         return None
 

@@ -74,7 +74,7 @@ class DrillRig(ABC):
             **plant_verbs(self.assembly, Reactor(self.assembly.agenda)),
             **fault_verbs(self.assembly, Reactor(self.assembly.agenda), {}, {}),
         }
-        self.instruments = self.bench.wired(self.wire, connect=self.connect, stamps=self.wire.now)
+        self.instruments = self.bench.wired(self.wire, connect=self.connect)
         self.supervisor, self.interrupts, self.rows = Supervisor(), Interrupts(), Rows()
         self.instruments.connect()
         self.supervisor.act(Act.CONNECT)

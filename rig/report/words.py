@@ -165,12 +165,13 @@ DEFINITIONS = (  # by the beginning of the estimate's name, first match
         "torsional_stiffness",
         "Of the whole path between the two encoders: gear, torque sensor, couplings and fixture together.",
     ),
-    ("hysteresis", "Torsion between the two branches of the loop at zero torque."),
+    ("hysteresis_loss", "Torsion between the two branches of the loop at zero torque."),
     ("lost_motion", "Torsion at ±4 % of rated torque, as makers define it."),
 )
 
 
 HEADLINES = (
+    "speed_limit",
     "transmission_accuracy",
     "kinematic_error_peak_to_peak",
     "torsional_stiffness",

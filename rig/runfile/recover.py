@@ -14,6 +14,7 @@ from rig.runfile.events import EventLog, mend_events
 from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed, refuse_stranger
 from rig.runfile.journal import journal_files
 from rig.runfile.process import Process, lives
+from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.run import ratio_of
 
 
@@ -30,11 +31,16 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     """Close the run in `folder` with all that is there: whole batches of the journal, then rows still in shared memory.
 
     Can be interrupted and called again. Raises NotReady while the program that makes the run, or its recorder, lives;
-    UsageError when it is no run folder; DataError when it cannot be written.
+    UsageError when it is no run folder; DataError when it cannot be written, or when the samples of a closed run are
+    gone or changed and the journal cannot stand in for them.
     """
     about = manifest.read(folder)
     rows, seconds = about.get("rows", 0), about.get("duration", 0.0)
     if is_closed(about):
+        if not samples_as_closed(folder, about):
+            made = restore(folder, about)
+            told = f"{folder.name}: {archive.NAME} was gone and is made anew from the journal, {made} rows"
+            return Recovery(made, seconds, True, told)
         done = f"{folder.name} is closed already, as {about.get('status')}, with {rows} rows: nothing to recover"
         return Recovery(rows, seconds, False, done)
     if _is_whole(folder, about):

@@ -116,7 +116,7 @@ class PageDesk(Desk):
 
     def again(self, why: str) -> bool:
         person = self.station.person
-        return person is not None and person.ask(f"{why}. Do it once more?", "Again")
+        return person is not None and person.ask(f"{why}: do it once more", "Again")
 
     def figure(self, folder: Path) -> str:
         found = self.wait(Analysis(folder, ANALYSE))

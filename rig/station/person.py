@@ -54,9 +54,9 @@ class PagePerson(Operator):
         while self._answer is None:
             self._attend()
             if self._panel.count:
-                raise NotMade(f"stopped {self._panel.who}, asked to {text}", self._panel.exit)
+                raise NotMade(f"stopped {self._panel.who}; asked was: {text}", self._panel.exit)
             if self._teller.channel.closed:
-                raise NotReady(f"nobody can be asked to {text}: the page's server is gone")
+                raise NotReady(f"the page's server is gone, nobody can be asked: {text}")
 
     def answer(self, prompt_id: str, done: bool) -> str:
         """What a page said; why it is not taken, or ""."""

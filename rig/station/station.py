@@ -112,9 +112,12 @@ class Station:
         if pressed.halt == self._halts:
             return
         self._halts = pressed.halt
-        if self.session is not None:
-            confirmed = "confirmed by the drive" if self.session.instruments.safe() else "not confirmed by the drive"
-            self.teller.say("operator", f"halted while nothing ran: torque off, {confirmed}")
+        if self.session is None:
+            return
+        if self.session.instruments.safe():
+            self.teller.say("operator", "halted while nothing ran: torque off, confirmed by the drive")
+        else:
+            self.teller.say("error", "halted while nothing ran: TORQUE OFF NOT CONFIRMED by the drive: hard-wired stop")
 
     def _analysed(self) -> None:
         done, last = self.analysis, self.status.last_run

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rig.analysis.convergence_law import SpeedStep, deviation, fit_law, gains, speed_at
-from rig.analysis.speed_convergence import changes, chosen
+from rig.analysis.speed_convergence import agreement, changes, chosen
 from tests.analysis.synthetic import ARCSEC, PROFILE, TURN, Array
 
 RPM = np.pi / 30
@@ -72,3 +72,15 @@ def test_a_waveform_that_changes_to_the_last_has_no_speed_that_agrees() -> None:
         step.phasor[1] *= 1.05**i
     assert chosen(made, 0.02) is None
     assert changes(made)[1][2] == pytest.approx(0.05, abs=0.002)
+
+
+def test_a_speed_that_agrees_with_its_neighbour_is_not_called_slow_enough_where_the_law_says_otherwise() -> None:
+    measured = steps(14.0, 0.03)
+    best = chosen(measured, 0.02)
+    assert best is not None
+    law, omega = fit_law(measured), measured[best].omega_m
+    assert omega > law.speed_at(0.02)  # 40 and 30 rpm differ by less than 2 %, and 40 rpm from standstill by more
+    assert "though speed adds more than 2 % there" in agreement(omega, law, 0.02)
+    assert "though" not in agreement(0.5 * law.speed_at(0.02), law, 0.02)
+    stiff = fit_law(steps(400.0, 0.05))
+    assert "though" not in agreement(omega, stiff, 0.02)  # nothing grows: there is no speed to hold against it

@@ -10,8 +10,10 @@ import pytest
 from rig.bench import BENCHES, read
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.leaving import came_to_something, swept
+from rig.campaign.run import nothing_left
 from rig.cli import main
 from rig.core.errors import NotReady
+from rig.core.operator import HangWeight, Rigging
 from rig.runfile.folder import create_in
 from tests.campaign.plans import REST, campaign, plan
 
@@ -86,3 +88,27 @@ def test_a_campaign_that_cannot_be_taken_up_is_not_left_running(no_bus: Path, tm
     book = read_journal(journal.folder).book
     assert (book["status"], book["process"]) == ("failed", None)
     assert "no CAN bus at" in book["sentence"]
+
+
+def test_a_campaign_with_nothing_left_to_make_is_closed_without_touching_the_rig(
+    no_bus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    journal = new_journal(tmp_path, campaign(REST, bench=read(str(no_bus))), "wall", [])
+    (journal.folder / "plan.toml").write_text(plan(REST).text, encoding="utf-8")
+    for index in journal.open_runs():
+        journal.skip(index, "the operator")
+    journal.close("stopped", "by the operator")
+    assert main(["campaign", "--resume", str(journal.folder)]) == 0  # there is no bus: it was not opened
+    assert read_journal(journal.folder).book["status"] == "completed"
+    assert "nothing is moved" in "".join(capsys.readouterr())
+
+
+def test_a_campaign_whose_runs_are_all_made_and_whose_weight_still_hangs_has_something_left(tmp_path: Path) -> None:
+    journal = new_journal(tmp_path, campaign(REST), "virtual", [])
+    for index in journal.open_runs():
+        journal.skip(index, "the operator")
+    assert nothing_left(journal)
+    journal.show(HangWeight(3.0), Rigging(tau_ext=3.0), "+3.00 N·m on the output")
+    assert not nothing_left(journal)
+    journal.ask(HangWeight(0.0))  # asked for, and nobody knows whether it was taken off
+    assert not nothing_left(journal)

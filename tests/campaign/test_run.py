@@ -141,7 +141,7 @@ def test_where_the_plan_says_so_a_person_clears_the_fault_and_the_campaign_goes_
     exit, journal, _ = make(tmp_path, campaign(REST, REST, head=GO_ON), trip_at=1)
     assert (exit, journal.book["status"]) == (Exit.TRIPPED, "failed")
     assert statuses(journal) == ["failed", "done"]
-    assert any(note["text"].startswith("fault cleared by hand: the drive reports") for note in journal.book["notes"])
+    assert any(note["text"].startswith("fault cleared by hand: a device reports") for note in journal.book["notes"])
 
 
 @pytest.mark.slow

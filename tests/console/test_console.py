@@ -268,7 +268,8 @@ def test_hold_stop_and_halt_are_accepted_in_every_state_and_twice(hand: Hand) ->
         hand.do(act)
     hand.connect()
     for act in ("halt", "stop", "hold", "halt"):
-        hand.do(act)
+        status, said = hand.ask(act)
+        assert (status, said["seen_by_loop_ms"]) == (200, None), "no loop runs"
     hand.until(lambda s: any("halted while nothing ran" in e["text"] for e in s["events"]))
     hand.prove()  # what was pressed before is over and done
     hand.finish("disconnect")

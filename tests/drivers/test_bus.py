@@ -38,7 +38,7 @@ class Adapter:
 @pytest.fixture
 def made() -> tuple[Bus, Adapter, FakeClock]:
     clock, adapter = FakeClock(), Adapter()
-    bus = Bus("rig", "", "", clock, {}, lambda **_: adapter, lambda: EPOCH + clock.t)
+    bus = Bus("rig", "", "", clock, {}, lambda **_: adapter)
     bus.open()
     return bus, adapter, clock
 
@@ -47,8 +47,19 @@ def answer(adapter: Adapter, stamp: float) -> None:
     adapter.waiting.append(can.Message(arbitration_id=0x181, data=b"\0" * 5, timestamp=stamp, is_extended_id=False))
 
 
+def prompt(bus: Bus, adapter: Adapter, clock: FakeClock, apart: float) -> float:
+    """One SYNC answered at once by an adapter whose clock is `apart` s from ours; when the answer was latched."""
+    bus.sync()
+    sent, clock.t = clock.t, clock.t + 0.0004
+    answer(adapter, clock.t + apart)
+    bus.drain()
+    return bus.frames[0x181].latched - sent
+
+
 def test_an_answer_belongs_to_the_sync_before_it(made: tuple[Bus, Any, FakeClock]):
     bus, adapter, clock = made
+    clock.t = 0.9
+    prompt(bus, adapter, clock, EPOCH)
     clock.t = 1.0
     bus.sync()
     clock.t = 1.0006
@@ -60,6 +71,8 @@ def test_an_answer_belongs_to_the_sync_before_it(made: tuple[Bus, Any, FakeClock
 
 def test_an_answer_held_up_on_its_way_does_not_pass_for_one_to_the_sync_that_came_after(made):
     bus, adapter, clock = made
+    clock.t = 0.9
+    prompt(bus, adapter, clock, EPOCH)
     clock.t = 1.0
     bus.sync()
     clock.t = 1.022  # both sides stalled
@@ -67,6 +80,37 @@ def test_an_answer_held_up_on_its_way_does_not_pass_for_one_to_the_sync_that_cam
     answer(adapter, EPOCH + 1.0004)
     bus.drain()
     assert bus.frames[0x181].latched == pytest.approx(1.0004, abs=1e-6)
+
+
+@pytest.mark.parametrize("ppm", [-200.0, -50.0, 50.0, 200.0])  # crystals of adapters, and worse
+def test_an_adapter_whose_crystal_drifts_from_the_host_s_makes_no_reading_old(made, ppm: float):
+    bus, adapter, clock = made
+    late = []
+    for k in range(5000):  # 20 minutes, a SYNC every 240 ms
+        clock.t = 1.0 + 0.24 * k
+        late.append(prompt(bus, adapter, clock, EPOCH + 1e-6 * ppm * clock.t))
+    assert set(late) == {0.0}
+
+
+@pytest.mark.parametrize("step", [-3600.0, -0.4, 0.4, 3600.0])
+def test_a_clock_that_is_set_in_a_run_makes_no_reading_old_and_none_older_than_the_one_before(made, step: float):
+    bus, adapter, clock = made
+    late = []
+    for k in range(3000):
+        clock.t = 1.0 + 0.001 * k
+        late.append(prompt(bus, adapter, clock, EPOCH + step * (k > 1500)))
+    assert set(late) == {0.0}
+
+
+def test_a_frame_is_never_older_than_the_one_before_it_however_roughly_they_are_stamped(made):
+    bus, adapter, clock = made
+    arrived = []
+    for k in range(500):
+        clock.t = 1.0 + 0.001 * k
+        answer(adapter, EPOCH + round(clock.t, 2))  # in steps of 10 ms: by the stamps, the later may be the older
+        bus.drain()
+        arrived.append(bus.frames[0x181].arrived)
+    assert arrived == sorted(arrived)
 
 
 @pytest.mark.parametrize("stamp", [0.0, 12.5, EPOCH + 5000.0])
@@ -121,7 +165,7 @@ def test_heartbeats_an_adapter_kept_from_before_keep_nobody_off():
         gone.send(Frame(0x77F, b"\x05"))  # waits before anybody looks
         return made
 
-    again = w.bench.wired(w.wire, connect=connect, stamps=w.wire.now)
+    again = w.bench.wired(w.wire, connect=connect)
     assert again.connect()
     again.close()
 
@@ -156,7 +200,7 @@ class Confirming(Adapter):
 
 def test_answers_behind_the_words_of_a_serial_adapter_are_taken_at_once():
     adapter = Confirming()
-    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter)
     bus.open()
     answers = [can.Message(arbitration_id=number, data=b"\0", is_extended_id=False) for number in (0x181, 0x281)]
     adapter.arrive(None, answers[0], None, None, answers[1])
@@ -166,7 +210,7 @@ def test_answers_behind_the_words_of_a_serial_adapter_are_taken_at_once():
 
 def test_a_serial_adapter_that_is_gone_does_not_keep_the_loop():
     adapter = Confirming()
-    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter, lambda: EPOCH)
+    bus = Bus("rig", "", "", FakeClock(), {}, lambda **_: adapter)
     bus.open()
     os.close(adapter.bytes)  # there is always something to be read: its end
     looks: list[float] = []

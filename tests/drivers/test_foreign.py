@@ -59,7 +59,7 @@ PLUGGED: list[Wiring] = []  # closed when the test ends
 
 def wiring(wire: VirtualWire) -> Wiring:
     sections = {"rig": {"interface": "", "channel": "", "host_node": 127}}
-    PLUGGED.append(Wiring(wire, sections, wire.connect, wire.now))
+    PLUGGED.append(Wiring(wire, sections, wire.connect))
     return PLUGGED[-1]
 
 
@@ -90,6 +90,27 @@ def test_an_encoder_whose_tpdo_3_is_fixed_is_decoded_by_what_is_in_it(wire: Virt
     foreign.objects[0x6004, 0] = struct.pack("<I", 1024)
     assert tick(wire, encoder).counts == 1024
     assert any("keeps its own PDOs" in remark for remark in encoder.remarks)
+
+
+@pytest.mark.parametrize("total", [{(0x6002, 0): bytes(4)}, {}])
+def test_a_total_range_of_all_32_bits_that_6002h_cannot_hold_wraps_there(wire: VirtualWire, total: dict[Any, bytes]):
+    scaled = {(0x6000, 0): b"\x04\0", (0x6001, 0): struct.pack("<I", 4096), **total}
+    sent = [Tpdo(0, 0x180 + NODE, 1, [(0x6004, 0, 32)])]
+    foreign = peer(wire, {**ENCODER, **scaled, (0x6004, 0): b"\xff\xff\xff\xff"}, tpdos=sent)
+    encoder = Cia406(wiring(wire), place("load_encoder"))
+    encoder.connect()
+    before = encoder.read()
+    foreign.objects[0x6004, 0] = struct.pack("<I", 1)
+    after = tick(wire, encoder)
+    assert after.counts - before.counts == 2
+    assert after.flags == 0
+
+
+def test_a_transducer_that_would_map_a_value_it_has_not_is_refused_by_name(wire: VirtualWire):
+    silent = {where: value for where, value in TORQUE.items() if where[0] != 0x9130}
+    peer(wire, silent, tpdos=[Tpdo(0, 0x180 + NODE, 1, [(0x6130, 1, 32)])])
+    with pytest.raises(NotReady, match=r"torque neither as 9130h:1 nor as 6130h:1"):
+        Cia404(wiring(wire), place("torque_sensor")).connect()
 
 
 def test_a_node_without_a_heartbeat_is_told_by_the_age_of_its_pdos_alone(wire: VirtualWire):

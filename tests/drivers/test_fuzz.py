@@ -74,7 +74,7 @@ class WireThatLies(RuleBasedStateMachine):
         self.clock = PuppetClock(self.wire)
         self.changes: list[tuple[State, State, Act]] = []
         self.wrong: list[str] = []
-        self.instruments = BENCH.wired(self.clock, connect=self._connect, stamps=self.wire.now)
+        self.instruments = BENCH.wired(self.clock, connect=self._connect)
         self.supervisor = Supervisor(self._announce, self.instruments.causes)
         self.before = self.supervisor.state
         self.interrupts = Interrupts()

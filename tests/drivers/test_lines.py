@@ -45,14 +45,22 @@ def test_any_bytes_give_lines_no_longer_than_allowed_and_keep_no_more_than_that(
 
 @pytest.mark.parametrize(
     ("line", "tau"),
-    [(b"-12.345 Nm", -12.345), (b"+0.5 N.m", 0.5), (b"4.285 Nm", 4.285), (b" 3 Nm ", 3.0), (b"1.5 Nm*24", None)],
+    [
+        (b"-12.345 Nm", -12.345),
+        (b"+0.5 N.m", 0.5),
+        (b"4.285 Nm", 4.285),
+        (b" 3 Nm ", 3.0),
+        (b"1.5 Nm*24", None),
+        ("2 N·m".encode(), 2.0),
+    ],
 )
 def test_a_torque_is_a_number_with_its_unit(line: bytes, tau: float | None):
     assert decode_line(line) == tau
 
 
 @pytest.mark.parametrize(
-    "line", [b"12.3", b"12.3 lbf.in", b"", b"1021.15", b"12..3 Nm", b"nan Nm", b"1e3 Nm", b"--1 Nm"]
+    "line",
+    [b"12.3", b"12.3 lbf.in", b"", b"1021.15", b"12..3 Nm", b"nan Nm", b"1e3 Nm", b"--1 Nm", b"12 Nmm", b"1 kNm"],
 )
 def test_what_has_no_unit_or_another_one_says_no_torque(line: bytes):
     assert decode_line(line) is None

@@ -111,6 +111,26 @@ def test_halt_works_in_any_state_any_number_of_times():
     assert w.twin.drive.drive_state is DriveState.SWITCH_ON_DISABLED
 
 
+def test_a_drive_that_brakes_before_it_is_in_fault_is_not_said_to_be_off():
+    w = connected()
+    drive, twin = w.instruments.drive, w.twin.drive
+    drive.enable()
+    twin._go(DriveState.FAULT_REACTION_ACTIVE)  # and stays there
+    assert not drive.halt()
+    twin._go(DriveState.FAULT)
+    assert drive.halt()
+
+
+def test_a_drive_that_reboots_is_seen_to_be_off_though_it_sends_no_pdos_any_more():
+    w = connected()
+    w.instruments.drive.enable()
+    w.twin.drive.power_up()  # its power failed for a moment
+    w.wire.wait_until(w.wire.now() + 1.0)
+    w.instruments.latch()
+    assert "rebooted" in w.instruments.drive.read().fault
+    assert w.instruments.drive.halt()
+
+
 def test_resetting_a_fault_never_energises():
     w = connected()
     w.twin.drive.fault(0x3210)

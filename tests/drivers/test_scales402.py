@@ -11,7 +11,12 @@ from tests.drivers.virtual import wired
 @pytest.mark.parametrize(
     ("index", "sub", "value", "told"),
     [
-        (0x6076, 0, 3_000_000, r"rated torque is 3000 N·m \(6076h\).* is 3 N·m: .* factor of 1000$"),  # in µN·m
+        (
+            0x6076,
+            0,
+            3_000_000,
+            r"is 3000 N·m \(6076h\).* is 3 N·m: .* of 1000; where its manual .*: devices\.drive\.rated_step = 1e-6$",
+        ),
         (0x6076, 0, 2100, r"factor of 0.7$"),
         (0x608F, 1, 4096, r"counts 4096 per turn \(608Fh\).*is 10000"),
         (0x6091, 1, 50, r"has a gear of 50:1 of its own"),
@@ -25,6 +30,14 @@ def test_a_scale_that_is_another_is_refused_with_both_numbers(index: int, sub: i
     w.twin.drive.objects.find(index, sub).value = value
     with pytest.raises(NotReady, match=told):
         w.instruments.connect()
+
+
+def test_a_rated_torque_in_another_unit_is_taken_by_the_unit_the_bench_file_gives_it() -> None:
+    w = wired()
+    w.instruments.drive.place.options.update(torque_constant=0.5, rated_step=1e-6)
+    w.twin.drive.objects.find(0x6076, 0).value = 3_000_000  # µN·m
+    w.instruments.connect()
+    assert w.instruments.drive.remarks == []
 
 
 def test_a_drive_nobody_has_commissioned_is_remarked_on() -> None:

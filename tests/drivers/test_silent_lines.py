@@ -172,3 +172,13 @@ def test_the_line_that_falls_silent_is_named_and_the_fault_stays_until_it_tells_
     with saying(bench.encoder, bench.torque):
         bench.reset()
     assert bench.supervisor.state is State.CONNECTED
+
+
+def test_a_line_that_tells_in_another_unit_is_not_called_silent_but_what_it_is(bench: Bench) -> None:
+    bench.world.clock.at[200] = lambda: setattr(bench.torque, "line", b"11.06 lbf.in\r\n")
+    ending = bench.run()
+    assert ending.status == "tripped"
+    meanwhile = (
+        r"no new torque-sensor sample .*; torque sensor on \S+ sent \d+ bytes meanwhile, and no line that says a"
+    )
+    assert re.match(meanwhile, ending.reason)

@@ -39,7 +39,7 @@ def wired(*overrides: str) -> Wired:
     assembly = Assembly(twin_parameters(twin), 7, RATING, 1e6)
     wire = VirtualWire(assembly)
     wire.wait_until(0.1)  # the nodes have booted
-    made = Wired(bench, wire, bench.wired(wire, connect=wire.connect, stamps=wire.now))
+    made = Wired(bench, wire, bench.wired(wire, connect=wire.connect))
     MADE.append(made)
     return made
 
@@ -78,6 +78,6 @@ def odriven(settings: Settings | None = None, *overrides: str) -> Driven:
     wire.wait_until(0.5)
     doors = {"odrive": wire.door(own)}
     connect = lambda channel, **_: doors.get(channel, wire.connect)()  # noqa: E731
-    made = Driven(bench, wire, bench.wired(wire, connect=connect, stamps=wire.now), axis)
+    made = Driven(bench, wire, bench.wired(wire, connect=connect), axis)
     MADE.append(made)
     return made

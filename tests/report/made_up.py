@@ -223,7 +223,7 @@ def result(**changes: Any) -> Result:
             estimate("drift", "Drift with time", -0.12, 0.31, "arcsec/min", "Part of the means that follows time."),
             estimate("speed_scatter", "Speed scatter", 0.41, 0.0, "%", "1 σ over nominal, within the strokes."),
             Estimate("fourier_terms", "Orders worth keeping", 15, "1", (15, 15), "Smallest k below the noise floor."),
-            Estimate("speed_limit", "Fastest speed that agrees", 9.6, "rpm", (8.1, 14.2), "Search at falling speeds."),
+            Estimate("speed_agreed", "Fastest speed that agrees", 9.6, "rpm", (8.1, 14.2), "Search at falling speeds."),
         ),
         "checks": (
             Check("stuck_share", True, "Stuck (below 10 % of 9.60 rpm) for 0.00 % of the strokes, limit 2 %."),

@@ -5,7 +5,7 @@ from rig.report import rows
 from rig.report.cards import cards
 from rig.report.provenance import provenance
 from rig.report.tables import tables
-from rig.report.words import named
+from rig.report.words import definition, named
 from tests.report import made_up
 
 
@@ -87,3 +87,16 @@ def test_a_duration_on_a_virtual_clock_is_said_to_be_one() -> None:
     found = provenance(made_up.manifest(loop={"clock": "virtual"}), "run")
     assert rows.Row("Duration", "3\u00a0min 20\u00a0s on a virtual clock") in found
     assert rows.Row("Duration", "3\u00a0min 20\u00a0s") in provenance(made_up.manifest(), "run")
+
+
+def test_a_search_for_the_slow_speed_is_headed_by_the_speed_and_not_by_the_peak_to_peak_there() -> None:
+    found = (
+        Estimate("kinematic_error_peak_to_peak", "Kinematic error", 93.4, "arcsec", (93.0, 93.8), "series"),
+        Estimate("speed_limit", "Speed at which speed adds 2 %", 62.8, "rpm", (59.0, 66.6), "fitted"),
+    )
+    assert cards(found)[0].label == "Speed at which speed adds 2 %"
+
+
+def test_the_energy_of_a_loop_is_not_explained_as_its_width() -> None:
+    assert "two branches" in definition("hysteresis_loss")
+    assert definition("hysteresis_energy") == ""

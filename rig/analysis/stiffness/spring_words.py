@@ -8,7 +8,7 @@ import numpy as np
 
 from rig.analysis.angle import ARCMIN
 from rig.analysis.findings import Findings
-from rig.analysis.result import Array
+from rig.analysis.result import Array, Part
 from rig.analysis.stiffness.choice import LeftOut
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.laws import Play
@@ -22,6 +22,21 @@ LEVELS = 6  # torques at which the local stiffness is tabulated
 def half_width(values: Array, random: Array, relative: Array | float) -> Array:
     """Half width: what repeats badly, the slope of the kinematic error, and the gain of the sensor."""
     return np.asarray(np.hypot(random, np.abs(values) * np.hypot(relative, SENSOR_GAIN)))
+
+
+def parts_of(value: float, random: float, tilt: float) -> tuple[Part, ...]:
+    """What the interval of a stiffness is made of; `tilt` relative."""
+    return (
+        Part("how badly the ramps repeat", random, "run more cycles"),
+        Part(
+            "the slope of the kinematic error",
+            abs(value) * tilt,
+            "take a slow run in the same campaign, or --reference",
+        ),
+        Part(
+            f"the gain of the torque sensor, {100 * SENSOR_GAIN:g} %", abs(value) * SENSOR_GAIN, "a better sensor only"
+        ),
+    )
 
 
 def value_of(out: LeftOut, numbers: Callable[[Curve], Array]) -> tuple[Array, Array]:
@@ -43,7 +58,8 @@ def add_lines(found: Findings, s: Stiffness) -> None:
     for i, zone in enumerate(zones):
         how = f"Continuous straight lines by least squares, odd, both branches, {zone} either way. {s.spring.knots}"
         name = f"stiffness_K{i + 1}"
-        found.figure(name, f"Stiffness K{i + 1}, {zone}", float(values[i]), "N·m/rad", float(half[i]), how)
+        value, parts = float(values[i]), parts_of(float(values[i]), float(random[i]), s.tilt.zones[i])
+        found.figure(name, f"Stiffness K{i + 1}, {zone}", value, "N·m/rad", float(half[i]), how, *parts)
     if s.spring.fitted_knots:
         how = "Where the lines meet, fitted with them."
         for i, name in ((3, "T1"), (4, "T2")):

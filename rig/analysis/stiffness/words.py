@@ -23,6 +23,7 @@ from rig.analysis.stiffness.spring_words import (
     add_play,
     add_tangent,
     half_width,
+    parts_of,
     value_of,
 )
 from rig.analysis.tame import Tame
@@ -99,7 +100,9 @@ def _add_secant(found: Findings, s: Stiffness, motion: Motion) -> tuple[float, f
         f"leaving out ramps and zones ±{100 * float(random[0] / value[0]):.2g} %, gain of the torque sensor "
         f"±{100 * SENSOR_GAIN:g} % (taken as class 0.2). {s.tilt.words}"
     )
-    found.figure("torsional_stiffness", "System torsional stiffness, secant", float(value[0]), "N·m/rad", half, how)
+    parts = parts_of(float(value[0]), float(random[0]), s.tilt.secant)
+    label = "System torsional stiffness, secant"
+    found.figure("torsional_stiffness", label, float(value[0]), "N·m/rad", half, how, *parts)
     angle = round(float(np.median(motion.theta_m)) % TURN * DEG, 1) % 360.0
     how = "Middle of the motor angles of this run, by the motor encoder's own zero: the stiffness holds there."
     found.exact("wave_generator_angle", "Wave-generator angle", angle, "°", how)

@@ -59,7 +59,7 @@ class Canvas(ABC):
 
     @abstractmethod
     def dot(self, path: str, t: float | None, where: Array, colour: int) -> None:
-        """A dot in a plane, shape (2,)."""
+        """A dot in a plane, shape (1, 2); none any more where the shape is (0, 2)."""
 
     @abstractmethod
     def bars(self, path: str, t: float | None, at: Array, values: Array, colour: int) -> None:

@@ -21,6 +21,10 @@ class Drawing(ABC):
     def add(self, block: Block, canvas: Canvas) -> None:
         """The next rows, at least one."""
 
+    def over(self, t: float, canvas: Canvas) -> None:
+        """No row follows: what is only true of a motor that turns goes. Most pictures have nothing of the kind."""
+        return
+
 
 def draw_frame(path: str, t: float | None, frame: Frame, canvas: Canvas) -> None:
     """Axes, grid, numbers and titles of a plane."""

@@ -82,14 +82,20 @@ class Folded(Drawing):
             self._sides[turn.way].add(turn)
             if not math.isnan(turn.peak_to_peak):
                 self._peak = f"last turn {turn.peak_to_peak:.1f} arcsec peak to peak"
-        now = self._present()
+        now = self._present(self._turns.partial)
         if self._refit(now) or done:
             self._draw_done(t, canvas)
-        self._draw_now(t, now, float(theta[here][-1]), canvas)
+        self._draw_now(t, now, math.degrees(theta[here][-1]) % 360.0, canvas)
 
-    def _present(self) -> Array:
+    def over(self, t: float, canvas: Canvas) -> None:
+        """Where it came to rest the gear unwound: that is no error of a turn."""
+        now = self._present(self._turns.stopped)
+        there = MIDDLES[np.isfinite(now)]
+        end = float(there[-1 if self._turns.way > 0 else 0]) if len(there) else 0.0
+        self._draw_now(t, now, end, canvas)
+
+    def _present(self, now: Array) -> Array:
         """The present turn, laid upon the mean of its side as far as it goes."""
-        now = self._turns.partial
         there = np.isfinite(now)
         side = self._sides.get(self._turns.way)
         offset = np.nanmean(now[there]) if there.any() else 0.0
@@ -117,14 +123,13 @@ class Folded(Drawing):
                 canvas.lines(f"{PATH}/{name}/mean", t, [self._frame.place(MIDDLES, side.mean)], Pen(colour, width, 2.0))
         self._legend(t, canvas)
 
-    def _draw_now(self, t: float, now: Array, theta: float, canvas: Canvas) -> None:
+    def _draw_now(self, t: float, now: Array, angle: float, canvas: Canvas) -> None:
+        """The present turn, and a dot where it is at `angle` deg of it."""
         line = self._frame.place(MIDDLES, now)
         canvas.lines(f"{PATH}/now/line", t, [line] if len(line) > 1 else [], Pen(colours.NOW, 1.5, 4.0))
-        angle = np.degrees(theta) % 360.0
         value = now[min(int(angle * BINS / 360.0), BINS - 1)]
         place = self._frame.place(np.array([angle]), np.array([value]))
-        if len(place):
-            canvas.dot(f"{PATH}/now/dot", t, place[0], colours.NOW)
+        canvas.dot(f"{PATH}/now/dot", t, place, colours.NOW)
 
     def _legend(self, t: float, canvas: Canvas) -> None:
         for x, side, (name, colour, _, _) in zip((30.0, 96.0), self._sides.values(), SIDES.values(), strict=True):

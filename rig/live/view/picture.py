@@ -68,6 +68,11 @@ class Picture:
             for drawing in self._drawings:
                 drawing.add(block, canvas)
 
+    def over(self, canvas: Canvas) -> None:
+        """No row follows."""
+        for drawing in self._drawings:
+            drawing.over(self._t, canvas)
+
     def event(self, event: dict[str, Any], canvas: Canvas) -> None:
         """A line of events.jsonl."""
         t, kind, text = event.get("t"), str(event.get("kind", "")), str(event.get("text", ""))

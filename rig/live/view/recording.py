@@ -56,6 +56,7 @@ def draw(run: Run, said: About, canvas: Canvas) -> None:
         picture.curves(chunk, canvas)
     for chunk in _moments(block):
         picture.draw(chunk, canvas)
+    picture.over(canvas)
 
 
 def _moments(block: Block) -> list[Block]:

@@ -118,8 +118,8 @@ class RerunCanvas(Canvas):
         )
 
     def dot(self, path: str, t: float | None, where: Array, colour: int) -> None:
-        """One point at (2,), DOT px."""
-        self._log(path, t, rr.Points2D([where], radii=-DOT, colors=_rgba([colour]), draw_order=8.0))
+        """One point at (1, 2), DOT px, or none."""
+        self._log(path, t, rr.Points2D(where, radii=-DOT, colors=_rgba([colour]), draw_order=8.0))
 
     def bars(self, path: str, t: float | None, at: Array, values: Array, colour: int) -> None:
         """A bar chart, bars four fifths of their distance wide."""

@@ -27,6 +27,7 @@ class Scene:
         self._about: About | None = None
         self._picture: Picture | None = None
         self._blocks: list[Block] = []  # not yet in the pictures
+        self._ended = False
 
     def step(self, heard: bool) -> None:
         """What came since the last beat. `heard`: the viewer takes what it is sent."""
@@ -42,9 +43,13 @@ class Scene:
             block = of_ring(rows, self._about.mode)
             self._picture.curves(block, canvas)
             self._blocks.append(block)
-        if len(self._blocks) >= DRAWN:
+        ends = self.feed.over and not self._ended
+        if self._blocks and (ends or len(self._blocks) >= DRAWN):
             self._picture.draw(joined(self._blocks), canvas)
             self._blocks.clear()
+        if ends:
+            self._ended = True
+            self._picture.over(canvas)
 
     def renew(self) -> None:
         """The viewer knows nothing any more: a new stream, and all that stands at this moment."""

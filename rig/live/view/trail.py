@@ -119,7 +119,7 @@ class Trail(Drawing):
         for number, piece in self._pieces:
             if number >= before - 1:
                 self._draw(t, number, piece, canvas)
-        canvas.dot(f"{self._plane.path}/now", t, self._frame.place(x[-1:], y[-1:])[0], colours.NOW)
+        canvas.dot(f"{self._plane.path}/now", t, self._frame.place(x[-1:], y[-1:]), colours.NOW)
 
     def _append(self, x: float, y: float) -> None:
         piece = self._pieces[-1][1] if self._pieces else None

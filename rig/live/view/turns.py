@@ -15,6 +15,7 @@ TURN = 2 * math.pi
 BINS = 360  # of a turn: a picture is hardly wider
 GAP = 1 / 8  # of a turn that may lie between two bins with rows, where a turn counts as seen
 HIDING = 1 / 20  # of a turn in which a peak of order 2 loses 5 % at most
+LEAVE = TURN / 18  # rad, where it stopped: the gear unwinds there, 30 arcsec and more in the last 20°
 RUN_UP = TURN / 4  # rad, before the turn: what a reversal sets ringing takes 37° to settle at the slow run's 9.6 rpm
 
 
@@ -56,6 +57,17 @@ class Turns:
         """The present turn as far as it was seen, shape (BINS,), NaN elsewhere."""
         with np.errstate(invalid="ignore"):
             return np.asarray(np.where(self._rows > 0, self._sum / np.maximum(self._rows, 1), np.nan))
+
+    @property
+    def stopped(self) -> Array:
+        """`partial`, without where the motor came to rest, for a run that is over."""
+        end = self._last if self._way > 0 else self._first
+        if not self._way or not math.isfinite(end):
+            return self.partial
+        turn = self.partial
+        behind = self._way * (end % TURN / TURN * BINS - np.arange(BINS) - 0.5)  # bins
+        turn[(behind > -1) & (behind < LEAVE / TURN * BINS)] = np.nan
+        return turn
 
     def add(self, theta: Array, values: Array) -> list[Turn]:
         """Rows of motor angle [rad] and values, each shape (n,), without NaN; the turns they complete."""

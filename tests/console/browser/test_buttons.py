@@ -57,7 +57,7 @@ def test_halt_acts_when_the_button_goes_down_and_not_when_it_comes_up(page: Page
     page.mouse.up()
     page.wait_for_timeout(200)
     assert [act["act"] for act in station.acts] == ["halt"]
-    assert "seen by the loop after 2.0 ms" in text(page, "#answer")
+    until(lambda: "seen by the loop after 2.0 ms" in text(page, "#answer"), "an answer")
 
 
 def test_halt_stop_and_hold_have_keys_that_write_nothing_into_a_field(page: Page, station: Puppet) -> None:

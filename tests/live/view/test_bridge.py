@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from rig.core.ring import Ring
+from rig.live.view.__main__ import NICE
 from rig.live.view.bridge import CHECK, Bridge, Commands
 from rig.live.view.server import Proxy
 from rig.live.view.viewer import Viewer
@@ -109,6 +110,13 @@ def test_closing_leaves_nothing_behind_frozen_or_not(frozen: list[str], tmp_path
             break
         time.sleep(0.01)
     assert started(pids["viewer"]) == 0
+
+
+def test_a_view_that_is_ready_stands_back_with_every_thread(tmp_path: Path) -> None:
+    with Viewer("web") as viewer:
+        for pid in (viewer.pid, viewer.viewer_pid):
+            threads = [int(task.name) for task in Path(f"/proc/{pid}/task").iterdir()]
+            assert {os.getpriority(os.PRIO_PROCESS, thread) for thread in threads} == {NICE}
 
 
 def test_telling_a_frozen_bridge_more_than_it_can_take_waits_for_nobody(tmp_path: Path) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from rig.live.view.axes import HEIGHT
+from rig.live.view.axes import HEIGHT, WIDTH
 from rig.live.view.folded import Folded
 from rig.live.view.layout import layout_for
 from rig.live.view.orders import Orders
@@ -190,3 +191,31 @@ def test_a_turn_of_which_a_third_was_not_seen_is_none() -> None:
     theta = np.linspace(0.0, 3.5, 7000) * 2 * np.pi
     seen = (theta < 2.2 * np.pi) | (theta > 2.9 * np.pi)
     assert [turn.number for turn in Turns().add(theta[seen], np.zeros(seen.sum()))] == [2]
+
+
+def test_a_turn_in_which_the_motor_came_to_rest_ends_before_the_gear_unwinds() -> None:
+    rows = turning(5.5, 40.0)
+    rest = block(500, theta_m=rows["theta_m"][-1], tau_l=0.0, age=1e-4)
+    unwound = np.radians(300.0 / 3600) * (1 - np.exp(-np.arange(500) / 50))
+    rest.rows["theta_l"] = rows["theta_l"][-1] + unwound
+    rest.rows["t"] += rows.t[-1] + 1e-3
+    canvas, drawing = Kept(), Folded(50.0, "")
+    for piece in (rows, rest):
+        drawing.add(piece, canvas)
+    drawing.over(float(rest.t[-1]), canvas)
+    numbers = canvas.shown["/folded/frame/numbers"]
+    line = canvas.shown["/folded/now/line"][0]
+    angle = np.radians(line[:, 0] / WIDTH * 360.0)
+    assert heights(line, numbers) == pytest.approx(40.0 * np.cos(2 * angle), abs=3.0)
+    assert math.degrees(angle[-1]) == pytest.approx(180.0 - 20.0, abs=1.5)
+    assert canvas.shown["/folded/now/dot"] == pytest.approx(line[-1:])
+
+
+def test_a_motor_that_came_to_rest_soon_after_a_turn_leaves_no_piece_of_one() -> None:
+    canvas, drawing = Kept(), Folded(50.0, "")
+    rows = turning(5.03, 40.0)
+    drawing.add(rows, canvas)
+    assert canvas.shown["/folded/now/line"]
+    drawing.over(float(rows.t[-1]), canvas)
+    assert canvas.shown["/folded/now/line"] == []
+    assert canvas.shown["/folded/now/dot"].shape == (0, 2)

@@ -5,10 +5,10 @@ import { headers, uuid } from "./token.js";
 const URGENT = new Set(["halt", "stop", "hold"]);
 const UNANSWERED = 1000; // ms after which an urgent act counts as not confirmed
 
-/** {ok, text, ms}: the server's answer as a sentence. Never throws. */
-export async function act(name, revision, more = {}) {
+/** {ok, text, ms}: the server's answer as a sentence. Never throws. `state`: what the page shows. */
+export async function act(name, state, more = {}) {
   const began = performance.now();
-  const body = { id: uuid(), based_on: revision, act: name, ...more };
+  const body = { id: uuid(), based_on: state?.revision ?? 0, act: name, ...more };
   try {
     const answer = await fetch("/api/act", {
       method: "POST",
@@ -18,7 +18,9 @@ export async function act(name, revision, more = {}) {
       priority: URGENT.has(name) ? "high" : "auto",
       signal: URGENT.has(name) ? AbortSignal.timeout(UNANSWERED) : undefined,
     });
-    return told(name, answer.status, await answer.json().catch(() => ({})), performance.now() - began);
+    const said = await answer.json().catch(() => ({}));
+    if (answer.status === 200 && URGENT.has(name) && state?.station === false) return { ok: false, text: unheard(name) };
+    return told(name, answer.status, said, performance.now() - began);
   } catch (error) {
     return { ok: false, text: unheard(name, error) };
   }
@@ -34,7 +36,7 @@ function told(name, status, said, ms) {
 function done(name, said, ms) {
   if (!URGENT.has(name)) return said.text ?? `${word(name)}: accepted`;
   const loop = said.seen_by_loop_ms;
-  const seen = Number.isFinite(loop) ? `seen by the loop after ${loop.toFixed(1)} ms` : "taken; no loop was running";
+  const seen = Number.isFinite(loop) ? `seen by the loop after ${loop.toFixed(1)} ms` : "taken; nothing was running";
   return `${word(name)}: ${seen} (answered in ${ms.toFixed(0)} ms)`;
 }
 

@@ -12,6 +12,7 @@ import { typed } from "./panels/fields.js";
 import { freshness, header } from "./panels/header.js";
 import { lastRun } from "./panels/last.js";
 import { now } from "./panels/now.js";
+import { outcome } from "./panels/outcome.js";
 import { prompt, promptId } from "./panels/prompt.js";
 import { makeTiles, progress, tilesOf } from "./panels/run.js";
 import { benches, steps } from "./panels/steps.js";
@@ -24,6 +25,8 @@ const LOOK_AT_AGE = 100; // ms
 
 let state = null; // the newest the server sent
 let refused = token === "";
+let came = null; // {ok, text}: what became of the last act, where it is known
+let notNow = null; // the revision a button was refused at, while the answer still says so
 
 makeTiles();
 const charts = new Charts();
@@ -38,30 +41,39 @@ function draw(next) {
   document.documentElement.dataset.revision = String(state.revision);
   header(state);
   now(state);
-  charts.follow(state.run);
+  charts.follow(state.run, state.bench);
   progress(state);
-  tilesOf(state, charts.history);
+  tilesOf(state, charts.present);
   steps(state);
   events(state);
   lastRun(state);
   prompt(state);
   permissions(state, refused);
   chooser.permit(state, refused);
+  const fresh = outcome(state.events);
+  if (fresh) answer((came = fresh));
+  else if (notNow !== null && notNow !== state.revision) answer({ ok: true, text: "" }); // what refused it may be over
 }
 
 function answer({ ok, text }) {
   const box = $("answer");
   box.dataset.ok = String(ok);
   say(box, text);
+  notNow = null;
 }
 
 /** Send one act, based on what the page shows now. */
 async function send(name, more = {}) {
-  answer(await act(name, state?.revision ?? 0, more));
+  came = null;
+  const said = await act(name, state, more);
+  answer(said.ok && came ? came : said); // what became of it may be here before its answer
 }
 
 const urgent = (name) => () => send(name);
-const refuse = (why) => answer({ ok: false, text: `Not possible now: ${why}` });
+function refuse(why) {
+  answer({ ok: false, text: `Not possible now: ${why}` });
+  notNow = state?.revision ?? null;
+}
 
 function jog(direction) {
   const turns = typed($("jog-turns").value, "float");

@@ -39,11 +39,6 @@ export class History {
     this.length += t.length;
   }
 
-  last(name) {
-    const column = this.of.get(name);
-    return column && this.length ? column[this.length - 1] : NaN;
-  }
-
   #column(name) {
     if (!this.of.has(name)) this.of.set(name, new Float32Array(2 * this.capacity).fill(NaN));
     return this.of.get(name);

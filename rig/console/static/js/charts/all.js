@@ -10,11 +10,13 @@ import { Turns } from "./turns.js";
 import { Wave } from "./wave.js";
 
 const EVERY = { strips: 40, picture: 90, orders: 450 }; // ms between two drawings: samples come every 50
+const REST = 0.5; // s: rows that follow so soon are the last of a run; idle ones have another clock
 const ROWS = 12_000; // 20 s of 250 pairs a second, and some more
 
 export class Charts {
   constructor() {
     this.history = new History(ROWS);
+    this.present = new Map(); // the newest value of each column, of a run or not
     this.turns = new Turns();
     this.strips = [
       new Strip($("chart-angle"), [{ column: "reference", label: "reference", colour: "axis", scale: "deg", width: 3 }, { column: "motor_angle", label: "measured", colour: "forward", scale: "deg" }], [{ scale: "deg", label: "deg", least: 5 }], legend),
@@ -28,12 +30,22 @@ export class Charts {
     this.drawn = {};
     this.choose("wave");
     this.run = null;
+    this.bench = null;
     requestAnimationFrame(() => this.#frame());
   }
 
-  /** A new run begins a new picture; one locked shows torque against wind-up. */
-  follow(run) {
+  /** A new run begins a new picture, another bench an empty one; a run that is over stays until then. */
+  follow(run, bench) {
     const uid = run?.uid ?? null;
+    if ((bench?.source ?? null) !== this.bench) {
+      this.bench = bench?.source ?? null;
+      this.run = null;
+      this.present.clear();
+      this.clear();
+    }
+    const over = uid === null && this.run !== null;
+    if (over && $("charts").dataset.over !== "true") this.turns.over();
+    $("charts").dataset.over = String(over);
     if (uid === null || uid === this.run) return;
     this.run = uid;
     this.clear();
@@ -41,10 +53,14 @@ export class Charts {
   }
 
   add(names, rows, running) {
-    if (rows.t.length && rows.t[0] < this.history.newest) this.clear(); // another clock: another stream
+    if (!rows.t.length) return;
     const of = new Map(names.map((name, k) => [name, rows.columns[k]]));
     const [angle, following, error, torque] = ["motor_angle", "following", "kinematic_error", "tau_l"].map((name) => of.get(name));
     if (angle && following) of.set("reference", angle.map((value, k) => value + following[k]));
+    for (const [name, values] of of) this.present.set(name, values[values.length - 1]);
+    const gap = rows.t[0] - this.history.newest;
+    if (!running && this.run !== null && !(gap >= 0 && gap < REST)) return; // idle: what led to the end of a run stays
+    if (gap < 0) this.clear(); // another clock: another stream
     this.history.add(of, rows.t);
     this.#renew();
     if (!running || !angle || !error) return;
@@ -112,6 +128,8 @@ export class Charts {
     const orders = $("chart-orders");
     show(orders.querySelector(".empty"), amplitudes === null);
     say(orders.querySelector(".empty"), "after one whole turn clear of turning round");
-    say(orders.querySelector(".legend"), amplitudes ? `of the mean, ${way}, ${this.turns.ways[way].revolutions} turns` : "");
+    say(orders.querySelector(".legend"), amplitudes ? `of the mean, ${way}, ${count(this.turns.ways[way].revolutions)}` : "");
   }
 }
+
+const count = (turns) => `${turns} turn${turns === 1 ? "" : "s"}`;

@@ -34,11 +34,17 @@ export class Turns {
   add(angle, error) {
     if (!Number.isFinite(angle) || !Number.isFinite(error)) return;
     this.#follow(angle);
-    this.marker = { angle: angle - 360 * Math.floor(angle / 360), error };
     if (this.way === null || Math.abs(angle - this.extreme) > BEHIND) return;
     if (this.before && Math.abs(angle - this.before.angle) < BIN / 4) return; // one that stands does not weigh more
+    this.marker = { angle: angle - 360 * Math.floor(angle / 360), error }; // standing, the gear unwinds: no error of it
     this.#join(angle, error);
     this.before = { angle, error };
+  }
+
+  /** No row follows: where the motor came to rest the gear unwound, and that is no error of a turn. */
+  over() {
+    for (const { bin } of this.pending) this.present[bin] = null;
+    this.marker = null;
   }
 
   /** Every bin from the row before to this one, in the direction of turning. */

@@ -1,6 +1,7 @@
 // A parameter as typed, turned into what is sent. What is not a number goes as text: the server words what is wrong.
 
 const NUMBERS = new Set(["float", "int"]);
+const DECIMAL = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i; // 0x10 is no number a person means
 const LISTS = new Set(["tuple", "list"]);
 
 export function typed(text, type) {
@@ -13,7 +14,7 @@ export function typed(text, type) {
 
 function number(text) {
   const value = Number(text);
-  return text !== "" && Number.isFinite(value) ? value : text;
+  return DECIMAL.test(text) && Number.isFinite(value) ? value : text;
 }
 
 export function written(value) {

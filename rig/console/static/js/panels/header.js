@@ -30,8 +30,10 @@ export function freshness(link, state) {
   const dead = state?.station === false;
   const kind = root.dataset.link === "refused" ? "refused" : link.stale || dead ? "stale" : "live";
   root.dataset.link = kind;
-  show($("stale"), kind === "stale");
-  say($("stale-age"), dead && !link.stale ? "the control process has ended: nobody looks after the rig" : `no word from the station for ${aged(link.age)}`);
+  show($("stale"), kind !== "live");
+  say($("stale").firstElementChild, kind === "refused" ? "NO TOKEN" : "STALE");
+  if (kind === "refused") say($("stale-age"), "this page hears nothing, and its halt is refused");
+  else say($("stale-age"), dead && !link.stale ? "the control process has ended: nobody looks after the rig" : `no word from the station for ${aged(link.age)}`);
   const samples = state?.live?.age_ms ?? null; // when the state was made; null without any
   root.dataset.samples = samples !== null && samples + link.age > OLD ? "old" : "fresh";
   say($("link").querySelector(".text"), { live: `live, state ${aged(link.age)} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);

@@ -35,13 +35,14 @@ function put(name, text, abnormal = false, basis = null) {
   if (basis !== null) say(tile.basis, basis);
 }
 
-export function tilesOf(state, history) {
+/** `present`: the newest value of each column by name. */
+export function tilesOf(state, present) {
   const { run, bench } = state;
   const limits = bench?.limits ?? {};
   const late = run?.lateness;
   put("peak", run ? withUnit(run.peak_to_peak_arcsec, "arcsec", 1) : "—");
   put("following", run ? withUnit(run.rms_following_deg, "deg", 3) : "—");
-  const last = (name) => (bench ? history.last(name) : NaN);
+  const last = (name) => (bench ? present.get(name) ?? NaN : NaN);
   put("angle", withUnit(last("motor_angle"), "deg", 1));
   gauge("speed", last("speed"), "rpm", 1, limits.speed_rpm);
   gauge("motor", last("tau_m"), "N·m", 2, limits.torque);
@@ -57,9 +58,9 @@ function gauge(name, value, unit, digits, limit) {
 }
 
 export function progress(state) {
-  const { run, campaign, last_run: last } = state;
+  const { run, campaign } = state;
   say($("run-title"), run ? run.title : state.job || "nothing runs");
-  say($("run-folder"), run ? short(run.folder) : last ? `last: ${short(last.folder)}, ${last.status}` : "");
+  say($("run-folder"), run ? short(run.folder) : "");
   const share = run && run.duration ? Math.min(run.t / run.duration, 1) : 0;
   $("run-meter").setAttribute("aria-valuenow", String(Math.round(100 * share)));
   $("run-meter").firstElementChild.style.transform = `scaleX(${share.toFixed(4)})`;

@@ -28,7 +28,7 @@ export function steps(state) {
   mark("prove", Boolean(state.proof));
   tell("prove", state.proof ?? "not made");
   mark("tare", Boolean(state.tare));
-  tell("tare", state.tare ?? "not made");
+  tell("tare", state.tare ?? (state.proof ? "not made" : "not made; the proof comes first"));
 }
 
 /** How many passed, with what a person should know before starting all the same. */

@@ -1,0 +1,92 @@
+"""Limits that a run's figures are judged against, with the guard band, and what stands in the way of a judgement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rig.analysis.intervals import against_limit
+from rig.analysis.result import Check, Estimate, Verdict
+from rig.quantities import nearest
+
+WHERE = {
+    Verdict.PASS: "the whole interval is inside",
+    Verdict.FAIL: "the whole interval is outside",
+    Verdict.INCONCLUSIVE: "the limit lies within the interval",
+}
+GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)  # one figure out of limits fails the run
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What the limits say of a run."""
+
+    verdict: Verdict  # MEASURED without any limit
+    checks: tuple[Check, ...] = ()
+    unsettled: str = ""  # what to do about the limits that settle nothing; "" where all do
+
+
+@dataclass(frozen=True)
+class _Judged:
+    verdict: Verdict
+    check: Check
+    unsettled: str = ""
+
+
+def judge(estimates: Sequence[Estimate], limits: Mapping[str, Any]) -> Judgement:
+    """Every limit against its figure.
+
+    `limits`: {estimate name: {"lower": x, "upper": y, "unit": u}} or {estimate name: upper}, in the unit of the
+    estimate; a `unit` given is compared, never converted; None is no limit. A limit without its figure is
+    INCONCLUSIVE: what was asked about was not measured.
+    """
+    by_name = {e.name: e for e in estimates}
+    asked = {name: limit for name, limit in limits.items() if limit is not None}
+    judged = [
+        _judged(name, by_name, limit if isinstance(limit, Mapping) else {"upper": limit})
+        for name, limit in asked.items()
+    ]
+    verdicts = {j.verdict for j in judged}
+    verdict = next((v for v in GRAVEST if v in verdicts), Verdict.MEASURED)
+    return Judgement(verdict, tuple(j.check for j in judged), " ".join(j.unsettled for j in judged if j.unsettled))
+
+
+def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]) -> _Judged:
+    e = by_name.get(name)
+    if e is None:
+        return _unjudged(name, f"This run has no figure '{name}' to judge against its limit; {nearest(name, by_name)}.")
+    unit, lower, upper = limit.get("unit", e.unit), limit.get("lower"), limit.get("upper")
+    if unit != e.unit:
+        return _unjudged(name, f"The limit of {e.label} is in {unit}, the figure in {e.unit}: it was not judged.")
+    if lower is None and upper is None:
+        return _unjudged(name, f"The limit of {e.label} is no number: it was not judged.")
+    low, high = e.ci95
+    words = " and ".join(f"{w} {b:g} {unit}" for w, b in (("at least", lower), ("at most", upper)) if b is not None)
+    verdict = against_limit(e.ci95, lower, upper)
+    text = f"{e.label} {e.value:.4g} {unit} ({low:.4g} to {high:.4g}), limit {words}: {WHERE[verdict]}."
+    unsettled = ""
+    if verdict is Verdict.INCONCLUSIVE:
+        bounds = [float(b) for b in (lower, upper) if b is not None]
+        unsettled = _to_settle(e, min(bounds, key=lambda b: abs(b - e.value)))
+    return _Judged(verdict, Check(f"limit_{name}", verdict is Verdict.PASS, text), unsettled)
+
+
+def _unjudged(name: str, why: str) -> _Judged:
+    return _Judged(Verdict.INCONCLUSIVE, Check(f"limit_{name}", False, why), why)
+
+
+def _to_settle(e: Estimate, bound: float) -> str:
+    """How narrow the interval would have to be, and which part of it to reduce."""
+    half, away = (e.ci95[1] - e.ci95[0]) / 2, abs(bound - e.value)
+    if not math.isfinite(half):
+        return f"{e.label} has no interval here, so nothing is settled: {e.how}"
+    part = max(e.parts, key=lambda p: p.half, default=None)
+    largest = f"It is made so: {e.how}"
+    if part is not None:
+        largest = f"The most of it, ±{part.half:.2g} {e.unit}, is {part.what}: {part.remedy}."
+    return (
+        f"{e.label} lies {away:.2g} {e.unit} from {bound:g} {e.unit} and is known to ±{half:.2g} {e.unit}; an interval "
+        f"narrower than ±{away:.2g} {e.unit} would settle it. {largest}"
+    )

@@ -1,0 +1,46 @@
+"""--limit: the words of an operator to the limits a run is judged against."""
+
+from pathlib import Path
+
+import pytest
+
+from rig.cli import main
+from rig.commands.limits import limits_of
+from rig.core.errors import UsageError
+from tests.commands.made_run import made_run
+
+
+@pytest.mark.parametrize(
+    ("said", "limits"),
+    [
+        ("peak-to-peak=60 arcsec", {"kinematic_error_peak_to_peak": {"upper": 60.0, "unit": "arcsec"}}),
+        ("K1=7000..", {"stiffness_K1": {"lower": 7000.0}}),
+        ("C_2=39.5..40.5", {"fourier_amplitude_2": {"lower": 39.5, "upper": 40.5}}),
+        ("drift=-1e-2..", {"drift": {"lower": -0.01}}),
+    ],
+)
+def test_a_limit_is_read_as_upper_lower_or_both(said: str, limits: dict[str, object]) -> None:
+    assert limits_of([said]) == limits
+
+
+@pytest.mark.parametrize("said", ["K1", "=3", "K1=", "K1=..", "K1=nan", "K1=8..7", "K1=60arcsec", "K1=1...2"])
+def test_what_is_no_limit_is_refused_with_the_form_expected(said: str) -> None:
+    with pytest.raises(UsageError, match=r"NAME=LOWER\.\.UPPER"):
+        limits_of([said])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("limit", "code"), [("120 arcsec", 0), ("60 arcsec", 1), ("1.5 arcmin", 6), ("80..", 0)])
+def test_analyse_judges_by_the_limit_it_is_given_and_leaves_the_manifest_alone(
+    tmp_path: Path, limit: str, code: int
+) -> None:
+    folder = made_run(tmp_path / "run")
+    before = (folder / "manifest.json").read_bytes()
+    assert main(["analyse", str(folder), "--out", str(tmp_path / "out"), "--limit", f"peak-to-peak={limit}"]) == code
+    assert (folder / "manifest.json").read_bytes() == before
+
+
+@pytest.mark.slow
+def test_a_sweep_of_many_runs_is_not_judged_by_one_limit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "load-sweep", "--dry-run", "--limit", "peak-to-peak=60"]) == 2
+    assert "hdrig analyse --limit" in capsys.readouterr().err
