@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rig.analysis.tracing.outcome.report import AT_REVERSALS
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.report.figures.arrays import line
 from rig.report.numbers import join
 from rig.report.trace.channels import CHANNELS, Channel
@@ -41,6 +43,8 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
     ratio = f"{three(ratios[0])} × the floor"
     if not alone and ratios[1] is not None:
         ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
+    if channel.sensor == "tau_m":
+        ratio += _where_it_turns_back(trace, alone)
     how = f"RMS of measured less model over {len(trace.held_out)} held-out runs"
     how += f"; floor {join(three(floor), channel.unit)}" if floor is not None else ""
     spread = [_interval(trace, channel, which) for which in (("before",) if alone else ("before", "after"))]
@@ -54,6 +58,14 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
         f"{how}.",
         main,
     )
+
+
+def _where_it_turns_back(trace: Trace, alone: bool) -> str:
+    """The ratio of those few rows by themselves, where it is not small: all others drown them."""
+    before, after = (r.get(AT_REVERSALS, 0.0) for r in (trace.ratios_before, trace.ratios_after))
+    if before <= EXPLAINED:
+        return ""
+    return f"; where the motor turns back {three(before)}{'' if alone else f' → {three(after)}'} ×"
 
 
 def _interval(trace: Trace, channel: Channel, which: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import deciding
@@ -23,6 +23,10 @@ from rig.model.effects import CATALOGUE, LIBRARY
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
+
+
+AT_REVERSALS: Final = Home("memory", "R", 1.0)
+"""What stands only where the motor turns back remembers the way since then."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +58,14 @@ def decide(
     names = tuple(name for name in weighed if name not in SHADOWS)
     if shadows:
         return _cast(shadows[0], _clean(names, worths))
-    loud = total > EXPLAINED or single > (MISSING if names else ALONE) or line is not None
+    loud = _is_loud(total, single, names) or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         return _settled(p, names, found, first, total)
-    where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+    elsewhere = p.court.worst({key: e for key, e in after.items() if key[1] != "R"})
+    where = [AT_REVERSALS]
+    if line is not None or _is_loud(*elsewhere, names):
+        where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
     if line is None and names and known and mostly:
@@ -75,6 +82,11 @@ def decide(
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), None)
+
+
+def _is_loud(total: float, single: float, names: Sequence[str]) -> bool:
+    """Whether a channel, or a single run beside what chance does to it, has more left than may be."""
+    return total > EXPLAINED or single > (MISSING if names else ALONE)
 
 
 def _clean(names: Sequence[str], worths: Sequence[Worth]) -> tuple[str, ...]:
