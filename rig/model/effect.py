@@ -217,6 +217,7 @@ class Effect(ABC):
     shape_names: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[frozenset[str]] = frozenset()  # parameters of which several terms of it make one sum
     remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
+    backbone: ClassVar[bool] = False  # a loop in torque against wind-up has a mean curve that looks like it
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted

@@ -19,6 +19,7 @@ class LostMotion(Effect):
     name: ClassVar[str] = "lost_motion"
     in_short: ClassVar[str] = "dead zone at zero torque (Oldham backlash)"
     source: ClassVar[str] = "harmonicdrive"
+    backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("epsilon",)
     loose: ClassVar[tuple[bool, ...]] = (True,)
     WIDTHS: Final = (0.05, 0.15, 0.4)  # N·m: noise of a torque sensor to the least that counts as soft wind-up

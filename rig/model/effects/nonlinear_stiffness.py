@@ -23,6 +23,7 @@ class NonlinearStiffness(Effect):
     name: ClassVar[str] = "nonlinear_stiffness"
     in_short: ClassVar[str] = "soft wind-up, cubic or piecewise K1/K2/K3"
     source: ClassVar[str] = "harmonicdrive"
+    backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("kind", "T_0")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
     TORQUES: Final = (1.5, 3.0, 6.0, 12.0, 25.0, 50.0)  # N·m

@@ -103,8 +103,11 @@ def _cast(shadow: Shadow, names: Sequence[str]) -> Ruling:
 
 
 def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
-    """Names that may stand beside a rest: one with memory would give its share to any law that remembers."""
-    return tuple(name for name in names if coordinate != "memory" or not LIBRARY[name].remembers)
+    """Names that may stand beside a rest: one with memory would give its share to any law that remembers, and the mean
+    curve of its loop to one that bends the spring."""
+    if coordinate != "memory":
+        return tuple(names)
+    return tuple(name for name in names if not (LIBRARY[name].remembers or LIBRARY[name].backbone))
 
 
 def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
