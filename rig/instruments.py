@@ -135,6 +135,14 @@ class Instruments:
         self.latch()
         return self.read(self.clock.wait_until(asked + ANSWER))
 
+    def overdue(self, now: float, longest: float) -> int:
+        """STALE flags of the channels with nothing newer at `now` [s] than `longest` s: a slow one is stale in most
+        rows, and no reason for a trip.
+        """
+        there = ((self.drive, STALE_M), (self.load_encoder, STALE_L), (self.torque_sensor, STALE_TAU))
+        late = (flag for (device, flag), t in zip(there, self._last, strict=True) if device and now - t > longest)
+        return sum(late)
+
     def told(self) -> dict[str, dict[str, float | int]]:
         """Latch times against the motor angle's since `start`, of the channels that are there, as drivers tell them."""
         named = zip(("theta_l", "tau_l"), self.offsets, strict=True)

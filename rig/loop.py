@@ -12,7 +12,7 @@ from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
-from rig.guard import Guard, Trip
+from rig.guard import Guard, Trip, stale
 from rig.instruments import Instruments
 from rig.interrupts import Interrupts
 from rig.realtime import RealTime
@@ -132,7 +132,7 @@ class Loop:
             trip = check(sample, asked)
             if trip is not None:
                 self.instruments.cut()
-                trip = self._explained(trip)
+                trip = self._explained(trip, sample, asked, now)
                 self.tripped(trip.sentence)
                 self.instruments.safe()
                 self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
@@ -192,9 +192,13 @@ class Loop:
             woken = now
         return now
 
-    def _explained(self, trip: Trip) -> Trip:
-        """Data too old to act on: where a device tells one thing and not the other, which it is."""
-        told = self.instruments.silent() if trip.name == "stale" else ""
+    def _explained(self, trip: Trip, sample: Sample, asked: Setpoint, now: float) -> Trip:
+        """Data too old to act on: whose, and where a device tells one thing and not the other, which it is."""
+        if trip.name != "stale":
+            return trip
+        late = self.instruments.overdue(now, self.guard.limits.stale)
+        trip = stale(self.guard, sample._replace(flags=late), asked) or trip
+        told = self.instruments.silent()
         return trip._replace(sentence=f"{trip.sentence}; {told}") if told else trip
 
     def _last_row(self, sample: Sample, asked: Setpoint) -> None:

@@ -35,7 +35,7 @@ class Peer:
     """The far end of a serial line: answers a QSB's questions by itself, and tells its reading when asked to."""
 
     def __init__(self, line: bytes) -> None:
-        self.line, self.mute = line, False
+        self.line, self.mute, self.every, self.ticks = line, False, 1, 0
         self.master, self.slave = os.openpty()
         tty.setraw(self.slave)
         self.path = os.ttyname(self.slave)
@@ -55,9 +55,11 @@ class Peer:
             os.write(self.master, self.line)
 
     def tells(self) -> None:
-        """One reading, there for the host when this returns."""
-        self.says()
-        if not self.mute:
+        """One reading, or one in `every` ticks, there for the host when this returns."""
+        self.ticks += 1
+        if self.ticks % self.every == 0:
+            self.says()
+        if not self.mute and self.ticks % self.every == 0:
             assert select.select([self.slave], [], [], DELIVERED)[0]
 
     def close(self) -> None:
@@ -182,3 +184,9 @@ def test_a_line_that_tells_in_another_unit_is_not_called_silent_but_what_it_is(b
         r"no new torque-sensor sample .*; torque sensor on \S+ sent \d+ bytes meanwhile, and no line that says a"
     )
     assert re.match(meanwhile, ending.reason)
+
+
+def test_a_slow_line_that_lives_is_not_named_beside_the_one_that_fell_silent(bench: Bench) -> None:
+    bench.torque.every = 3
+    bench.world.clock.at[200] = lambda: setattr(bench.encoder, "mute", True)
+    assert bench.run().reason.startswith("no new load-encoder sample for")
