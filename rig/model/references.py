@@ -32,6 +32,8 @@ REFERENCES: dict[str, str] = {
     "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",
     "findley1976": "W. N. Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
     "North-Holland (1976)",
+    "nordin2002": "M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash - a survey, "
+    "Automatica 38 (2002) 1633-1649",
     "krause2013": "P. C. Krause, O. Wasynczuk, S. D. Sudhoff, S. Pekarek, Analysis of Electric Machinery and Drive "
     "Systems, 3rd ed., Wiley (2013)",
     "jia2021": "H. Jia et al., Modeling and analysis of pure kinematic error in harmonic drive, "

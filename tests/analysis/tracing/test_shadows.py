@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.shadows import SHADOWS, Creep, Droop
+from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Port
@@ -51,6 +51,20 @@ def test_droop_gives_as_it_takes_where_friction_would_take_both_ways() -> None:
     forth, back = (Droop().columns(motion(sign), ())[Port.READS_TAU_M][:, 0] for sign in (1.0, -1.0))
     np.testing.assert_allclose(forth, -back, atol=1e-12)
     assert (np.sign(forth) == np.sign(motion().tau_m)).all()
+
+
+def test_an_encoder_with_play_stays_behind_by_the_same_under_any_torque_and_rests_when_it_is_held() -> None:
+    s = motion(n=4000)
+    there_and_back = 0.01 * np.sin(np.linspace(0, 2 * np.pi, 4000))
+    behind = {
+        torque: CouplingPlay().columns(replace(s, theta_l=there_and_back, torque=np.full(4000, torque)), ())
+        for torque in (0.0, 40.0)
+    }
+    forth, back = behind[0.0][Port.READS_THETA_L][[500, 2000], 0]
+    np.testing.assert_allclose((forth, back), (-1.0, 1.0))
+    np.testing.assert_array_equal(behind[0.0][Port.READS_THETA_L], behind[40.0][Port.READS_THETA_L])
+    held = CouplingPlay().columns(replace(s, theta_l=np.zeros(4000)), ())[Port.READS_THETA_L]
+    assert (held == 0).all()
 
 
 @pytest.mark.slow

@@ -15,6 +15,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.memory import play
 
 
 class Creep(Effect):
@@ -69,6 +70,36 @@ class Droop(Effect):
         return ()
 
 
+class CouplingPlay(Effect):
+    """The load encoder's coupling has play: its reading stays behind by half of it, whichever way it is turned, and
+    whatever the torque      [nordin2002]
+
+    Under the load's own friction it is what a loop in the spring or lost motion would be; a locked output shows none.
+    """
+
+    name: ClassVar[str] = "coupling_play"
+    in_short: ClassVar[str] = "an encoder's coupling has play"
+    source: ClassVar[str] = "nordin2002"
+    HALF: Final = 2e-5  # rad: gone through within a row of the slow run, so its size tells nothing but the height
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading, for half the play of 1 rad."""
+        angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
+        return {Port.READS_THETA_L: ((play(angle, self.HALF) - angle) / self.HALF)[:, None]}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+    def plausible(self, fit: Fit) -> bool:
+        """It stays behind."""
+        return bool(fit.coefficients[0] > 0)
+
+
 @dataclass(frozen=True)
 class Shadow:
     """A law, what it is taken for, and the coordinate it lives in."""
@@ -86,6 +117,13 @@ SHADOWS: Final = {
         "memory",
         "A part of the wind-up follows the torque seconds late, as creep does; a loop that does not depend on the rate "
         "explains less, and no effect of the library explains it.",
+    ),
+    "coupling_play": Shadow(
+        CouplingPlay(),
+        frozenset({"hysteretic_stiffness", "lost_motion"}),
+        "direction",
+        "The load angle stays behind by the same whichever way the motor turns and whatever the torque, as an encoder "
+        "does whose coupling has play; a loop in the spring explains less, and no effect of the library explains it.",
     ),
     "droop": Shadow(
         Droop(),
