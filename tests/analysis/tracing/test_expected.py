@@ -40,4 +40,4 @@ def test_friction_laws_are_told_apart_by_speeds_and_not_by_a_locked_output(tmp_p
     best = max(found, key=lambda name: found[name])
     assert best.endswith("friction"), "eight speeds both ways"
     assert found["{'output_locked': True}stiffness_lock"] < 1.0
-    assert found["{}kinematic_error"] < 0.1 * found[best]
+    assert found["{}kinematic_error"] < 0.2 * found[best], "all it has of other speeds are its reversals"
