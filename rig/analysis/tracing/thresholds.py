@@ -19,7 +19,7 @@ LAG: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530
 ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
 
 GAIN: Final = 5e-4  # of the torque: a torque sensor of accuracy class 0.05, where no repeats show it
-AT_REVERSALS: Final = 1.5  # of the motor torque's floor: single counts and channels read 0.1 ms apart tell there
+TURNED_BACK: Final = 1.5  # of the motor torque's floor: single counts and channels read 0.1 ms apart tell there
 FLOOR_LEAST: Final = 400  # rows that two repeats must share before their difference is believed
 UNCORRELATED: Final = 0.05  # of the autocorrelation: below it rows count as independent
 

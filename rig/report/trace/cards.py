@@ -8,7 +8,7 @@ import numpy as np
 
 from rig.analysis.tracing.outcome.report import AT_REVERSALS
 from rig.analysis.tracing.outcome.result import Status, Trace
-from rig.analysis.tracing.thresholds import EXPLAINED
+from rig.analysis.tracing.thresholds import EXPLAINED, TURNED_BACK
 from rig.report.figures.arrays import line
 from rig.report.numbers import join
 from rig.report.trace.channels import CHANNELS, Channel
@@ -43,10 +43,10 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
     ratio = f"{three(ratios[0])} × the floor"
     if not alone and ratios[1] is not None:
         ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
-    if channel.sensor == "tau_m":
-        ratio += _where_it_turns_back(trace, alone)
+    back = _where_it_turns_back(trace, alone) if channel.sensor == "tau_m" else ""
     how = f"RMS of measured less model over {len(trace.held_out)} held-out runs"
     how += f"; floor {join(three(floor), channel.unit)}" if floor is not None else ""
+    how += f", {three(TURNED_BACK)} times that where the motor turns back" if back else ""
     spread = [_interval(trace, channel, which) for which in (("before",) if alone else ("before", "after"))]
     return Card(
         channel.name if channel.letter == "A" else f"{channel.name} error",
@@ -54,7 +54,7 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
         "" if alone else three(after),
         channel.unit,
         " → ".join(spread) if all(spread) else "",
-        ratio,
+        ratio + back,
         f"{how}.",
         main,
     )

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from rig.analysis.tracing.outcome.report import AT_REVERSALS
 from rig.analysis.tracing.outcome.result import Before, Candidate, Floor, Found, Trace
 from rig.model.effect import parameter
 from rig.report.trace import page
 from rig.report.trace.campaign import Provenance, provenance
+from rig.report.trace.cards import cards
 from tests.report.test_page import HOSTILE, Reader
 from tests.report.trace import made_up
 
@@ -172,3 +174,15 @@ def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> 
     assert outside == []
     assert text.count("<figure") == 9  # the shaft torque is at its floor and has no close-up
     assert len(text) < 1_500_000
+
+
+def test_what_stands_only_where_the_motor_turns_back_is_told_beside_the_whole_motor_torque() -> None:
+    base = made_up.explained()
+    quiet = cards(base)
+    loud = cards(
+        replace(base, ratios_before=base.ratios_before | {AT_REVERSALS: 6.1}, ratios_after={AT_REVERSALS: 1.0})
+    )
+    (card,) = (c for c in loud if c.label == "Motor torque error")
+    assert "where the motor turns back 6.10 → 1.00 ×" in card.ratio
+    assert "1.50 times that where the motor turns back" in card.how
+    assert not any("turns back" in f"{c.ratio}{c.how}" for c in quiet)

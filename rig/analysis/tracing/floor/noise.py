@@ -24,7 +24,7 @@ from rig.analysis.tracing.floor.repeats import (
     scatter,
     strokes,
 )
-from rig.analysis.tracing.thresholds import AT_REVERSALS, CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, ZERO
+from rig.analysis.tracing.thresholds import CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, TURNED_BACK, ZERO
 from rig.model.effect import Array
 
 TURN = 2 * np.pi
@@ -90,7 +90,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
 
 def _at_reversals(noise: Noise) -> Noise:
     """With R as noisy as M, and a little more: it has too few rows to compare repeats in."""
-    sigma = noise.sigma | {"R": AT_REVERSALS * noise.sigma["M"]}
+    sigma = noise.sigma | {"R": TURNED_BACK * noise.sigma["M"]}
     return Noise(sigma, noise.kappa | {"R": noise.kappa["M"]}, noise.local | {"R": noise.local["M"]})
 
 
