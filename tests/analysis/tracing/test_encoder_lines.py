@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -39,3 +40,17 @@ def test_a_line_count_that_no_manifest_says_is_found_to_the_line(clean: Prepared
     covered = reach([clean.eq.runs[i] for i in runs])
     assert LINES not in with_lines(covered, _with_waves(clean, 0.0), runs).lines_l
     assert with_lines(covered, _with_waves(clean, 6e-6), runs).lines_l[0] == LINES
+
+
+@pytest.mark.slow
+def test_an_encoder_that_hardly_moves_has_no_lines(clean: Prepared) -> None:
+    runs = clean.split.fitted
+    covered = reach([clean.eq.runs[i] for i in runs])
+    s = _with_waves(clean, 6e-6)
+    eq = s.design.eq
+    dead = tuple(
+        dataclasses.replace(r, pieces=tuple(dataclasses.replace(p, theta_l=1e-6 * p.theta_l) for p in r.pieces))
+        for r in eq.runs
+    )
+    s = dataclasses.replace(s, design=dataclasses.replace(s.design, eq=dataclasses.replace(eq, runs=dead)))
+    assert with_lines(covered, s, runs).lines_l == ()

@@ -18,6 +18,7 @@ from rig.model.effects.encoder_interpolation_error import EncoderInterpolationEr
 TURN: Final = 2.0 * np.pi
 SLOW: Final = 2.0  # times the slowest run: faster ones sample the lines too seldom to find them
 PEAKS: Final = 2  # of each encoder: the lines and their second wave
+FEWEST: Final = 2.0  # periods of the fewest lines that a stroke must hold
 AROUND: Final = 2.0  # widths of a peak, within which the whole number is looked for
 FINEST: Final = 4  # points of the spectrum per width
 BLOCKS: Final = 40  # of the spectrum: each holds a hundred widths and more
@@ -43,7 +44,8 @@ def _counts(s: Solution, keys: Sequence[Key], name: str, covered: Reach) -> tupl
     """Whole numbers of periods per turn of that angle that stand out, the strongest first."""
     least = float(EncoderInterpolationError.LEAST[name == "theta_l"])
     highest = EncoderInterpolationError.highest(covered, name == "theta_l")
-    parts = [part for key in keys for part in _parts(s, key, name)]
+    # an encoder that stands still, or nearly, has no orders: its peaks would be wider than all that is looked at
+    parts = [(x, e) for key in keys for x, e in _parts(s, key, name) if np.ptp(x) * least > FEWEST * TURN]
     if not parts or highest <= least:
         return ()
     width = TURN / float(np.median([np.ptp(x) for x, _ in parts]))
