@@ -9,8 +9,9 @@ CATALOGUE: dict[str, str] = {
     "serial.ascii_torque": "drivers.ascii_torque:AsciiTorque",
 }
 
-PROFILES: dict[int, tuple[str, str]] = {  # CiA profile, -1: CANSimple → (role on a bench, device type)
-    -1: ("drive", "can.odrive"),
+NO_PROFILE = -1  # in the place of a CiA number: an axis that speaks CANSimple
+PROFILES: dict[int, tuple[str, str]] = {  # CiA profile → (role on a bench, device type)
+    NO_PROFILE: ("drive", "can.odrive"),
     402: ("drive", "can.cia402"),
     406: ("load_encoder", "can.cia406"),
     404: ("torque_sensor", "can.cia404"),

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from serial.tools import list_ports
 
+from drivers import NO_PROFILE
 from drivers import cansimple as cs
 from drivers.axis import LISTEN, Axis
 from drivers.bus import HEARTBEAT, SYNC, Bus
@@ -15,7 +16,6 @@ from rig.core.devices import Identity
 from rig.core.errors import NotReady
 
 NODES = range(1, 128)
-NO_PROFILE = -1  # in place of a CiA number: no CANopen
 STRONGEST = 100.0  # N·m of an ampere: no motor makes as much; who says so counts 6076h in µN·m
 MICRO = 1e-6  # N·m
 PATIENCE = 0.03  # s for an answer; a node that is there takes 1 to 10 ms

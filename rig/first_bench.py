@@ -59,8 +59,7 @@ def first_bench(
     """The text of a bench file for these nodes. Devices of a kind that did not answer are left out."""
     import tomlkit
 
-    from drivers import PROFILES
-    from drivers.scan import NO_PROFILE
+    from drivers import NO_PROFILE, PROFILES
 
     own = NO_SYNC if any(node.profile == NO_PROFILE for node in nodes) else SLOW.get(interface, TEMPLATE)
     document: Any = tomlkit.parse((BENCHES / f"{own}.toml").read_text(encoding="utf-8"))

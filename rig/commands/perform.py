@@ -54,9 +54,7 @@ class Job:
     root: Path
     note: str
     before: Callable[[Session, Show], None] = let_be  # what is done once connected, before anything moves
-    limits: Mapping[str, Any] = field(
-        default_factory=dict
-    )  # what the figures are judged against; kept in the run's manifest
+    limits: Mapping[str, Any] = field(default_factory=dict)  # the figures' own; kept in the run's manifest
 
 
 def perform(job: Job, show: Show, looking_on: Observer) -> int:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.report import AT_REVERSALS
+from rig.analysis.tracing.outcome.result import AT_REVERSALS
 from rig.analysis.tracing.trace import trace
 
 pytestmark = pytest.mark.slow

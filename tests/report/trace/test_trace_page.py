@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.outcome.report import AT_REVERSALS
-from rig.analysis.tracing.outcome.result import Before, Candidate, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
 from rig.model.effect import parameter
 from rig.report.trace import page
 from rig.report.trace.campaign import Provenance, provenance

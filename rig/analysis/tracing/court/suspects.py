@@ -13,14 +13,14 @@ from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import extended, fit
 from rig.analysis.tracing.fit.search import Scored
-from rig.analysis.tracing.outcome.result import Candidate
+from rig.analysis.tracing.outcome.result import AT_REVERSALS, Candidate
 from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": "tau_m_at_reversals", "L": "tau_l"}
+SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": AT_REVERSALS, "L": "tau_l"}
 TAKEN: Final = "; what stands in its place explains more"
 IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "R": "motor torque at reversals", "L": "shaft torque"}
 

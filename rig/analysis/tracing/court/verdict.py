@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
-AT_REVERSALS: Final = Home("memory", "R", 1.0)
+WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
 """What stands only where the motor turns back remembers the way since then."""
 
 
@@ -63,7 +63,7 @@ def decide(
     if not loud:
         return _settled(p, names, found, first, total)
     elsewhere = p.court.worst({key: e for key, e in after.items() if key[1] != "R"})
-    where = [AT_REVERSALS]
+    where = [WHERE_IT_TURNS_BACK]
     if line is not None or _is_loud(*elsewhere, names):
         where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand

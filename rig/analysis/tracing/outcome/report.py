@@ -21,7 +21,7 @@ from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import curves_of, free, with_free
 from rig.analysis.tracing.outcome.pictures import pictures
-from rig.analysis.tracing.outcome.result import Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.rest.unknown import smooth_term
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
-AT_REVERSALS = "tau_m_at_reversals"
 
 
 def report(

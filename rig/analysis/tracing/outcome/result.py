@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Final
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
+
+AT_REVERSALS: Final = "tau_m_at_reversals"  # beside the sensors' names: the motor torque where the motor turns back
 
 
 class Status(StrEnum):
