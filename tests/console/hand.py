@@ -87,6 +87,15 @@ class Hand:
         """What every run needs first."""
         assert self.finish("prove")["proof"]
 
+    def prompt(self, text: str = "") -> dict[str, Any]:
+        """The open prompt that asks for `text`: the one answered last stays in State until the station has gone on."""
+        asked: dict[str, Any] = self.until(lambda s: s["prompt"] and text in s["prompt"]["text"])["prompt"]
+        return asked
+
+    def made(self, text: str) -> None:
+        """The change that is asked for in `text` is said to be made."""
+        self.do("answer", prompt_id=self.prompt(text)["id"], done=True)
+
     def told(self, kind: str) -> list[str]:
         """Events of that kind, as sentences."""
         return [event["text"] for event in self.state()["events"] if event["kind"] == kind]

@@ -17,23 +17,17 @@ from tests.console.hand import Hand
 SWEEP = {"weights": [0.0, 3.0], "amplitude_deg": 540.0, "frequency": 0.1}  # 36 rpm, 10 s of rig time each
 
 
-def answer(hand: Hand, text: str) -> None:
-    """The prompt that asks for `text` is answered: it is done."""
-    prompt = hand.until(lambda s: s["prompt"] and text in s["prompt"]["text"])["prompt"]
-    hand.do("answer", prompt_id=prompt["id"], done=True)
-
-
 @pytest.mark.slow
 def test_a_sweep_from_the_page_keeps_its_note_in_every_run_and_ends_with_its_page(tmp_path: Path) -> None:
     with Hand(tmp_path) as hand:
         hand.connect()
         hand.do("campaign", plan="load-sweep", parameters=SWEEP, note="new grease")
-        answer(hand, "hang 3 N·m")
-        hand.until(lambda s: s["prompt"] and "take the weight off" in s["prompt"]["text"])
+        hand.made("hang 3 N·m")
+        hand.prompt("take the weight off")
         assert hand.state()["allowed"]["note"] is True
         hand.do("note", text="weight swings a little")
         folder = Path(hand.state()["campaign"]["folder"])
-        answer(hand, "take the weight off")
+        hand.made("take the weight off")
         state = hand.until(lambda s: not s["job"])
         last = state["last_run"]
         assert (last["title"], last["status"]) == ("campaign load-sweep", "completed")

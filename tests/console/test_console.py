@@ -193,8 +193,7 @@ def test_a_websocket_without_the_token_hears_nothing(ready: Hand, first: str) ->
 
 def test_a_prompt_is_answered_by_the_page_and_believed_only_when_the_sensors_show_it(ready: Hand) -> None:
     ready.do("start", procedure="lock-check", parameters={})
-    prompt = ready.until(lambda s: s["prompt"])["prompt"]
-    assert prompt["text"] == "fit the lock pin of the output"
+    prompt = ready.prompt("fit the lock pin of the output")
     assert ready.ask("answer", prompt_id="another", done=True)[0] == 409
     ready.do("answer", prompt_id=prompt["id"], done=True)
     state = ready.until(lambda s: not s["job"])
@@ -202,33 +201,29 @@ def test_a_prompt_is_answered_by_the_page_and_believed_only_when_the_sensors_sho
     assert any(text.startswith("the output is locked: the motor turned") for text in ready.told("finding"))
     assert ready.state()["allowed"]["jog"] == "the output is locked"
     ready.do("start", procedure="standstill", parameters={"duration": 0.5})  # needs it free: asked for again
-    prompt = ready.until(lambda s: s["prompt"])["prompt"]
-    ready.do("answer", prompt_id=prompt["id"], done=True)
+    ready.made("remove the lock pin")
     assert not ready.until(lambda s: not s["job"])["rigging"]["output_locked"]
 
 
 def test_a_change_that_could_not_be_made_is_made_sure_before_the_next_run(ready: Hand) -> None:
     ready.do("start", procedure="lock-check", parameters={})
-    prompt = ready.until(lambda s: s["prompt"])["prompt"]
-    ready.do("answer", prompt_id=prompt["id"], done=False)
+    ready.do("answer", prompt_id=ready.prompt("fit the lock pin")["id"], done=False)
     state = ready.until(lambda s: not s["job"])
     assert state["unsure"] == "fit the lock pin of the output"
     assert "the operator could not do this" in ready.told("refused")[-1]
     ready.do("start", procedure="standstill", parameters={"duration": 0.5})
-    prompt = ready.until(lambda s: s["prompt"])["prompt"]
-    assert prompt["text"] == "remove the lock pin of the output"
-    ready.do("answer", prompt_id=prompt["id"], done=True)
+    ready.made("remove the lock pin of the output")
     assert ready.until(lambda s: not s["job"])["unsure"] == ""
 
 
 def test_halting_a_prompt_ends_what_was_asked_for(ready: Hand) -> None:
     ready.do("start", procedure="lock-check", parameters={})
-    ready.until(lambda s: s["prompt"])
+    ready.prompt()
     ready.do("halt")
     state = ready.until(lambda s: not s["job"])
     assert state["prompt"] is None
     ready.do("start", procedure="standstill", parameters={"duration": 0.2})
-    ready.do("answer", prompt_id=ready.until(lambda s: s["prompt"])["prompt"]["id"], done=True)
+    ready.made("remove the lock pin")
     assert ready.until(lambda s: not s["job"])["last_run"]["status"] == "completed"
 
 
@@ -334,9 +329,7 @@ def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path
     assert "the bench is not the one this campaign began with" in other["problems"]["*"]
     hand.do("campaign", resume=left["folder"], note="after lunch")
     for text in ("remove the lock pin", "fit the lock pin", "remove the lock pin"):
-        prompt = hand.until(lambda s: s["prompt"])["prompt"]
-        assert text in prompt["text"]
-        hand.do("answer", prompt_id=prompt["id"], done=True)
+        hand.made(text)
     hand.until(lambda s: not s["job"])
     assert "campaign completed: 2 done" in hand.told("said")[-1]
     book = json.loads((Path(campaign["folder"]) / "campaign.json").read_text(encoding="utf-8"))
