@@ -37,15 +37,20 @@ def presliding(theta: Array, x0: float) -> Array:
     return out
 
 
-@njit(cache=True)
 def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
-    """x through ω²/(s² + 2ζωs + ω²), x linear between samples dt [s] apart, exact; starts in balance with x[0].
+    """x through ω²/(s² + 2ζωs + ω²), x linear between samples dt [s] apart, exact; starts in balance with x[0]."""
+    return resonance(x, dt, omega, zeta)[0]
 
-    The state is how far the output is behind: e = y − x and its rate; both shapes (n,).
+
+@njit(cache=True)
+def resonance(x: Array, dt: float, omega: float, zeta: float) -> tuple[Array, Array]:
+    """`resonated` and its second derivative, both shapes (n,).
+
+    The state is how far the output is behind: e = y − x and its rate.
     """
-    out = np.empty_like(x)
+    out, second = np.empty_like(x), np.zeros_like(x)
     if x.size == 0:
-        return out
+        return out, second
     sigma = zeta * omega
     wd = omega * math.sqrt(1.0 - zeta * zeta)
     decay, c, s = math.exp(-sigma * dt), math.cos(wd * dt), math.sin(wd * dt)
@@ -59,5 +64,5 @@ def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
         e_next = decay * (e * c + (v + sigma * e) / wd * s)
         v_next = decay * (v * c - (sigma * v + omega * omega * e) / wd * s)
         y, rate = x[i] - settled + e_next, slope + v_next
-        out[i] = y
-    return out
+        out[i], second[i] = y, omega * omega * (x[i] - y) - 2.0 * sigma * rate
+    return out, second

@@ -8,11 +8,28 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import resonated
+from rig.model.memory import resonance, resonated
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
+SOFT = 5.0  # or a coupling with its own resonance among the frequencies that are compared
 HUB = 4.0  # or an inertia between the gear and the spring of the torque sensor
+SMALL = 1e-6  # rad: a twist by less has the tangent's slopes
+
+
+def twisted(s: Signals, psi: Array) -> tuple[Array, Array]:
+    """Slopes of θ̃ and of its lever by the twist ψ rad (n,), secants from θ_m − ψ to θ_m: (1/N − Δθ̃_p/ψ, Δθ̃_p′/ψ)."""
+    series, back = s.gear.kinematic_error, s.theta_m - psi
+    small = np.abs(psi) < SMALL
+    by = np.where(small, 1.0, psi)
+    slope = np.where(small, s.series_slope, (s.series_value - series.value(back)) / by)
+    bend = np.where(small, s.series_bend, (s.series_slope - series.slope(back)) / by)
+    return 1.0 / s.ratio - slope, bend
+
+
+def tangent(s: Signals) -> tuple[Array, Array]:
+    """The same of a twist that is not known yet."""
+    return 1.0 / s.ratio - s.series_slope, s.series_bend
 
 
 class TorsionalMode(Effect):
@@ -31,23 +48,35 @@ class TorsionalMode(Effect):
     in_short: ClassVar[str] = "a second resonance beyond the gear's own"
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta")
-    loose: ClassVar[tuple[bool, ...]] = (False, True, True)
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta", "about")  # about: rad/(N·m), of a coupling
+    loose: ClassVar[tuple[bool, ...]] = (False, True, True, False)
     LOWEST: Final = 10.0  # Hz
     STEP: Final = 1.08  # neighbouring frequencies within a half width of a 4 % damped peak
     ZETA: Final = 0.04
+    DAMPED: Final = 0.1  # of a soft coupling in the bank: its neighbours are three steps away, the refit finds the rest
+    SOFTEST: Final = 1.0  # rad/(N·m): a coupling that twists by a turn at 6 N·m is none
     EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
-        modes = tuple((side, float(f), self.ZETA) for side in (LOAD, MOTOR) for f in frequencies)
-        return (*modes, *((side, float(max(reach.band, self.LOWEST)), self.ZETA) for side in (BEFORE, AFTER, HUB)))
+        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR) for f in frequencies)
+        soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
+        top = float(max(reach.band, self.LOWEST))
+        return (*modes, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((LOAD, HUB), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4))
+        return ((LOAD, SOFT), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4), (0.0, self.SOFTEST))
+
+    def expands(self, shape: Shape) -> bool:
+        """About the twist of a coupling."""
+        return shape[0] in (BEFORE, AFTER, SOFT)
+
+    def about(self, shape: Shape, coefficients: Array) -> Shape:
+        """The compliance as found."""
+        return (*shape[:3], float(np.clip(coefficients[0], 0.0, self.SOFTEST)))
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
@@ -56,27 +85,46 @@ class TorsionalMode(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
         two, for J_2 and for J_2/k."""
-        side, frequency, zeta = shape
+        side, frequency, zeta, about = shape
         if side == HUB:
             return self._hub(signals)
+        if side == SOFT:
+            return self._soft(signals, 2.0 * np.pi * frequency, zeta, about)
         if side in (BEFORE, AFTER):
-            return self._twist(signals, side)
+            return self._stiff(signals, side, about)
         alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
         # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
         alpha = np.where(np.abs(signals.omega_m) > self.EXCITED, alpha, 0.0)
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: resonated(alpha, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]}
 
-    def _twist(self, s: Signals, side: float) -> Mapping[Port, Array]:
-        lever = 1.0 / s.ratio - s.series_slope
-        through = s.torque * lever
+    def _stiff(self, s: Signals, side: float, about: float) -> Mapping[Port, Array]:
+        through = self._through(s, about)
         if side == AFTER:
             # the wave generator's inertia, say half of J_m, its friction and the gear are beyond it
             through = s.tau_m - 0.5 * s.gear.J_m * s.alpha_m
+        lever, bend = twisted(s, about * through) if about else tangent(s)
         return {
             Port.KINEMATIC_ERROR: (lever * through)[:, None],
-            Port.MOTOR_TORQUE: (s.torque * s.series_bend * through)[:, None],
+            Port.MOTOR_TORQUE: (s.torque * bend * through)[:, None],
         }
+
+    def _soft(self, s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, Array]:
+        late = [resonance(np.ascontiguousarray(u), s.dt, omega, zeta) for u in (self._through(s, about), s.alpha_m)]
+        (by_torque, jerk_t), (by_alpha, jerk_a) = late
+        lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)
+        none, turned = np.zeros_like(lever), s.torque * bend
+        return {
+            Port.KINEMATIC_ERROR: np.stack([lever * by_torque, lever * by_alpha, none], 1),
+            Port.MOTOR_TORQUE: np.stack([turned * by_torque, turned * by_alpha - jerk_t, -jerk_a], 1),
+        }
+
+    def _through(self, s: Signals, about: float) -> Array:
+        """T times the lever at the wave generator's own angle, N·m."""
+        straight = s.torque * (1.0 / s.ratio - s.series_slope)
+        if not about:
+            return straight
+        return s.torque * (1.0 / s.ratio - s.gear.kinematic_error.slope(s.theta_m - about * straight))
 
     def _hub(self, s: Signals) -> Mapping[Port, Array]:
         turned = np.stack([s.alpha_l, np.gradient(s.torque_rate, s.dt)], 1)
@@ -84,28 +132,29 @@ class TorsionalMode(Effect):
         return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Inertia, frequency and damping; of a stiff coupling its compliance, of a hub no damping."""
+        """Inertia, frequency and damping; of a stiff coupling its compliance, of a soft one both, of a hub no damping."""
+        by = np.eye(fit.covariance.shape[0])
+        by_frequency, by_zeta = by[fit.coefficients.size + 1], by[fit.coefficients.size + 2]
         if fit.shape[0] == HUB:
-            return self._of_hub(fit)
-        if fit.shape[0] in (BEFORE, AFTER):
-            return (parameter("coupling_compliance", fit.coefficients[0], fit.half_width(np.eye(4)[0]), "rad/(N·m)"),)
-        inertia, _, frequency, zeta = np.eye(4)[:, : fit.covariance.shape[0]]
-        return (
-            parameter("J_2", fit.coefficients[0], fit.half_width(inertia), "kg·m²"),
-            parameter("frequency", fit.shape[1], fit.half_width(frequency), "Hz"),
-            parameter("zeta", fit.shape[2], fit.half_width(zeta), "1"),
+            return self._of_hub(fit, by)
+        mode = (
+            parameter("frequency", fit.shape[1], fit.half_width(by_frequency), "Hz"),
+            parameter("zeta", fit.shape[2], fit.half_width(by_zeta), "1"),
         )
+        if fit.shape[0] in (LOAD, MOTOR):
+            return (parameter("J_2", fit.coefficients[0], fit.half_width(by[0]), "kg·m²"), *mode)
+        compliance = parameter("coupling_compliance", fit.coefficients[0], fit.half_width(by[0]), "rad/(N·m)")
+        return (compliance, *mode) if fit.shape[0] == SOFT else (compliance,)
 
-    def _of_hub(self, fit: Fit) -> tuple[Parameter, ...]:
+    def _of_hub(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
         inertia, square = fit.coefficients[:2]
-        by_inertia, by_square = np.eye(5)[:2]
         frequency = 1.0 / (2.0 * np.pi * np.sqrt(max(square, 1e-12)))
-        half = fit.half_width(by_square * frequency / (2.0 * max(square, 1e-12)))
+        half = fit.half_width(by[1] * frequency / (2.0 * max(square, 1e-12)))
         return (
-            parameter("J_2", inertia, fit.half_width(by_inertia), "kg·m²"),
+            parameter("J_2", inertia, fit.half_width(by[0]), "kg·m²"),
             parameter("frequency", frequency, half, "Hz"),
         )
 
     def plausible(self, fit: Fit) -> bool:
         """An inertia is positive, and so is a compliance."""
-        return bool(fit.coefficients[0] > 0 and (fit.shape[0] != HUB or fit.coefficients[1] > 0))
+        return bool(np.all(fit.coefficients[:2] > 0))

@@ -22,7 +22,7 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     best = extended(d, term, runs)
     found = fit(best)
     if term.effect.expands(term.shape):
-        return _expanded(d, best, found, runs)
+        best, found = _expanded(d, best, found, runs)
     free = [i for i, loose in enumerate(term.effect.loose) if loose]
     if not free:
         return best, found
@@ -32,14 +32,14 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
         moved = False
         for share in (1.0, 0.3):
             shape = _moved(best.terms[-1].shape, share * np.clip(step, -LARGEST, LARGEST), free, bounds)
-            trial = extended(d, replace(term, shape=shape), runs)
+            trial = extended(d, replace(best.terms[-1], shape=shape), runs)
             tried = fit(trial)
             if tried.gain > gain:
                 best, found, gain, moved = trial, tried, tried.gain, True
                 break
         if not moved or np.max(np.abs(step)) < CLOSE:
             break
-    return best, found
+    return _expanded(d, best, found, runs) if term.effect.expands(term.shape) else (best, found)
 
 
 def shape_step(best: Design, found: Solution, runs: Sequence[int], free: Sequence[int]) -> Array:

@@ -200,7 +200,8 @@ def _new(term: Term, s: Solution) -> bool:
 def _same(a: Term, b: Term) -> bool:
     """The same effect again in a shape that the refit would have found."""
     fixed = [i for i, loose in enumerate(a.effect.loose) if not loose]
-    return a.effect.expands(a.shape) or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
+    expand = a.effect.expands(a.shape) and a.effect.expands(b.shape)
+    return expand or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
 
 
 def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
