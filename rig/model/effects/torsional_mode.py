@@ -132,7 +132,7 @@ class TorsionalMode(Effect):
         return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Inertia, frequency and damping; of a stiff coupling its compliance, of a soft one both, of a hub no damping."""
+        """Inertia, frequency and damping; of a coupling its compliance, of a hub no damping."""
         by = np.eye(fit.covariance.shape[0])
         by_frequency, by_zeta = by[fit.coefficients.size + 1], by[fit.coefficients.size + 2]
         if fit.shape[0] == HUB:

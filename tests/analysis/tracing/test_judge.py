@@ -45,7 +45,7 @@ def test_a_compromise_between_runs_is_told_by_its_spread() -> None:
 
 def found(frequency: float, *scales: tuple[float, float]) -> list[str]:
     """What stays unresolved of a mode at `frequency` Hz whose frequencies have those intervals."""
-    terms = tuple(Term(TorsionalMode(), (0.0, frequency, 0.04)) for _ in scales)
+    terms = tuple(Term(TorsionalMode(), (0.0, frequency, 0.04, 0.0)) for _ in scales)
     solution: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
     words = [Parameter(f"frequency_{i}" if i > 1 else "frequency", 50.0, c, "Hz") for i, c in enumerate(scales, 1)]
     return unresolved(solution, {"torsional_mode": words}, REACH)

@@ -6,16 +6,17 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from rig.analysis.tracing.runs.smoothing import thin
-from rig.model.effect import Fit, Moved, Port
+from rig.model.effect import Array, Fit, Moved, Port, Signals
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, NonlinearStiffness
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
-from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, TorsionalMode
+from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, N, motion
 
@@ -48,18 +49,53 @@ def test_heat_comes_from_friction_stays_with_a_slow_leak_and_goes_with_a_fast_on
 
 
 @pytest.mark.parametrize("side", [BEFORE, AFTER])
-def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(side: float) -> None:
+@pytest.mark.parametrize(("soft", "about", "within"), [(1e-3, 0.0, 2e-3), (0.05, 0.05, 1e-3)])
+def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(
+    side: float, soft: float, about: float, within: float
+) -> None:
     """The wave generator stands behind the encoder by the twist, where the gear's error and its lever are others."""
-    s, soft, p = motion(), 1e-3, KNOWN.kinematic_error
-    through = s.torque * (1 / N - p.slope(s.theta_m))
-    s = dataclasses.replace(s, tau_m=through + 0.5 * KNOWN.J_m * s.alpha_m)
-    twist = soft * through
-    behind = s.theta_m - twist
+    s, p = motion(), KNOWN.kinematic_error
+    behind = s.theta_m
+    for _ in range(20):
+        behind = s.theta_m - soft * s.torque * (1 / N - p.slope(behind))
+    twist = s.theta_m - behind
+    s = dataclasses.replace(s, tau_m=twist / soft + 0.5 * KNOWN.J_m * s.alpha_m)
+    error, torque = behind_the_encoder(s, behind)
+    ports = TorsionalMode().columns(s, (side, 70.0, 0.04, about))
+    np.testing.assert_allclose(soft * ports[Port.KINEMATIC_ERROR][:, 0], error, atol=within * np.abs(error).max())
+    np.testing.assert_allclose(soft * ports[Port.MOTOR_TORQUE][:, 0], torque, atol=within * np.abs(torque).max())
+
+
+def behind_the_encoder(s: Signals, behind: Array) -> tuple[Array, Array]:
+    """What θ̃ and the motor's torque gain when the wave generator stands at `behind` rad."""
+    p = KNOWN.kinematic_error
     error = (s.theta_m - behind) / N + p.value(behind) - p.value(s.theta_m)
-    torque = -s.torque * (p.slope(behind) - p.slope(s.theta_m))
-    ports = TorsionalMode().columns(s, (side, 70.0, 0.04))
-    np.testing.assert_allclose(soft * ports[Port.KINEMATIC_ERROR][:, 0], error, atol=2e-3 * np.abs(error).max())
-    np.testing.assert_allclose(soft * ports[Port.MOTOR_TORQUE][:, 0], torque, atol=2e-3 * np.abs(torque).max())
+    return error, -s.torque * (p.slope(behind) - p.slope(s.theta_m))
+
+
+def test_a_soft_coupling_swings_as_its_own_equation_of_motion_says() -> None:
+    """J_2·(ω̇_m − ψ̈) = k·ψ + c·ψ̇ − T·(1/N − θ̃_p′(θ_m − ψ)), integrated apart."""
+    s, p, omega, zeta, inertia = motion(), KNOWN.kinematic_error, 2 * np.pi * 9.0, 0.06, 5e-4
+
+    def swing(t: float, state: Array) -> Array:
+        theta, alpha, torque = (np.interp(t, s.t, x) for x in (s.theta_m, s.alpha_m, s.torque))
+        load = torque * (1 / N - p.slope(np.array(theta - state[0])))
+        return np.array([state[1], alpha + load / inertia - omega**2 * state[0] - 2 * zeta * omega * state[1]])
+
+    start = [(s.torque[0] * (1 / N - s.series_slope[0]) / inertia + s.alpha_m[0]) / omega**2, 0.0]
+    found = solve_ivp(swing, (s.t[0], s.t[-1]), start, t_eval=s.t, rtol=1e-9, atol=1e-12, max_step=s.dt)
+    psi = found.y[0]
+    accelerated = np.array([swing(t, y)[1] for t, y in zip(s.t, found.y.T, strict=True)])
+    error, torque = behind_the_encoder(s, s.theta_m - psi)
+    c = 1 / (inertia * omega**2)
+    ports = TorsionalMode().columns(s, (SOFT, 9.0, zeta, c))
+    coefficients, on = np.array([c, 1 / omega**2, inertia / omega**2]), slice(1, None)
+    got = {port: (columns @ coefficients)[on] for port, columns in ports.items()}
+    np.testing.assert_allclose(got[Port.KINEMATIC_ERROR], error[on], atol=0.01 * np.abs(error).max())
+    want = (torque - inertia * accelerated)[on]
+    np.testing.assert_allclose(
+        got[Port.MOTOR_TORQUE], want, atol=0.02 * np.abs(want).max()
+    )  # lever of the twist at rest
 
 
 def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
@@ -75,7 +111,7 @@ def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> Non
     omega = 2 * np.pi * hz
     torque = 5.0 * np.sin(omega * s.t)
     s = dataclasses.replace(s, torque=torque, torque_rate=5.0 * omega * np.cos(omega * s.t), alpha_l=0.0 * s.t)
-    wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
+    wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04, 0.0))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
     inside = slice(5, -5)
     np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
 
