@@ -62,6 +62,7 @@ RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "
 """Coefficients of derivatives by time."""
 HIGHEST: Final = 3  # derivative the low-pass makes
 ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
+SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
@@ -116,7 +117,18 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
     y = np.concatenate([m[0] for m in made])
     z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
-    return y, z, tuple(INDEX[name] for name in made[0][1])
+    names = tuple(made[0][1])
+    if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
+        z[:, names.index("J_m")] = 0.0
+    return y, z, tuple(INDEX[name] for name in names)
+
+
+def _shaken(run: Recording, alpha: Array) -> bool:
+    """Whether ω̇_m (n,) of a run is the rounding of its encoder and no more. A position loop answers that rounding with
+    torque, so that J_m would come out too small, and no correction for noise that is independent could mend it."""
+    noise = run.noise.get("theta_m", 0.0) * run.smoother.gain(2)
+    usual = float(np.nanmedian(np.abs(alpha))) / 0.6745  # the median does not see reversals
+    return usual < SHAKEN * noise
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:

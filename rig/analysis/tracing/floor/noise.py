@@ -85,12 +85,14 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
-    return Measured(_at_reversals(Noise(sigma, kappa, local)), by_run, white, how, free)
+    turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
+    return Measured(_at_reversals(Noise(sigma, kappa, local), turned), by_run, white, how, free)
 
 
-def _at_reversals(noise: Noise) -> Noise:
-    """With R as noisy as M, and a little more: it has too few rows to compare repeats in."""
-    sigma = noise.sigma | {"R": TURNED_BACK * noise.sigma["M"]}
+def _at_reversals(noise: Noise, white: float = 0.0) -> Noise:
+    """With R as noisy as M, and a little more: it has too few rows to compare repeats in. And as noisy as the sensors
+    make it, RMS `white`: of a coarse encoder the acceleration is used there alone."""
+    sigma = noise.sigma | {"R": float(np.hypot(TURNED_BACK * noise.sigma["M"], white))}
     return Noise(sigma, noise.kappa | {"R": noise.kappa["M"]}, noise.local | {"R": noise.local["M"]})
 
 

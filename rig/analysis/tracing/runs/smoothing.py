@@ -80,6 +80,10 @@ class Smoother:
         out = _thinned(wide, self._kernel(derivative)[::-1].copy(), self.rows(x.shape[0]), self.step)
         return out if x.ndim == 2 else np.ascontiguousarray(out[:, 0])
 
+    def gain(self, derivative: int) -> float:
+        """RMS of the derivative of white noise of RMS 1."""
+        return float(np.sqrt(np.sum(self._kernel(derivative) ** 2)))
+
     def same(self, x: Array, derivative: int = 0) -> Array:
         """The derivative on the grid of `x` itself (n,), the ends held at the nearest valid row."""
         full = np.convolve(x, self._kernel(derivative), mode="same") if x.size > 2 * self.half else np.zeros_like(x)
