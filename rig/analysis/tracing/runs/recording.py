@@ -91,9 +91,9 @@ def record(whole_run: Run, start: float) -> Recording:
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     factor = max(1, round(1 / dt / RATE))
     work = dt * factor
-    sigma = min(BANDWIDTH, TAMEST / work, _quiet(channels["theta_m"]))
-    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     encoders = run.manifest.get("encoders") or {}
+    sigma = min(BANDWIDTH, TAMEST / work, _quiet(channels["theta_m"], encoders))
+    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     tau_ext = _stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
@@ -118,10 +118,10 @@ def record(whole_run: Run, start: float) -> Recording:
     )
 
 
-def _quiet(theta_m: Array | None) -> float:
+def _quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
     """Hz of low-pass that suits the motor encoder: a position loop answers the rounding of a coarse one with torque,
     and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
-    step = 0.0 if theta_m is None else smallest_step(theta_m)
+    step = 0.0 if theta_m is None else _count(theta_m, encoders)
     return BANDWIDTH * COARSE / step if step > COARSE else BANDWIDTH
 
 
@@ -271,23 +271,30 @@ def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: 
 
 
 def _noise(name: str, x: Array, encoders: Mapping[str, float]) -> float:
-    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it."""
+    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
+    less: while it moves by less than a count a row it looks free of noise."""
     counts = float(encoders.get("motor_counts_per_rev") or 0.0)
     if name == "theta_m" and counts > 0:
-        return min(rough(x), 2 * np.pi / counts / 12**0.5)
+        return float(min(max(rough(x), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
     return rough(x)
 
 
+def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:
+    """rad of one count, as declared, or less where the reading is finer than that; 0 where nothing is declared."""
+    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
+    return min(2 * np.pi / counts, smallest_step(theta_m)) if counts > 0 else 0.0
+
+
 def rough(x: Array) -> float:
-    """RMS of the white noise in a reading (n,); of one that moves by less than a count a row, that of the rounding."""
+    """RMS of the white noise in a reading (n,)."""
     # the fourth difference of white noise has 70 times its variance; the median does not see reversals
-    return max(float(np.nanmedian(np.abs(np.diff(x, 4))) / 0.6745 / np.sqrt(70.0)), smallest_step(x) / 12**0.5)
+    return float(np.nanmedian(np.abs(np.diff(x, 4))) / 0.6745 / np.sqrt(70.0))
 
 
 def smallest_step(x: Array) -> float:
-    """Smallest change from one row to the next that is no rounding of the numbers, 0 where there is none: one count of
-    a coarse reading, next to nothing of a fine one."""
-    steps = np.abs(np.diff(x))
+    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
+    one count of a coarse reading, next to nothing of a fine one."""
+    steps = np.abs(np.diff(x, 2))
     steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
     return float(np.min(steps, initial=np.inf)) if steps.size else 0.0
 
