@@ -81,7 +81,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
         free |= {(i, channel): s.freedom for s in found for i in s.pair}
         by_run |= _never_compared(eq, e, channel, among, found)
-        local[channel] = own_offset(channel, found, sigma[channel] ** 2 * kappa[channel], eq.runs[among[0]].ratio)
+        local[channel] = own_offset(solution, channel, found, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
@@ -137,12 +137,14 @@ def _never_compared(
     return {(i, "M"): float(np.sqrt(np.mean(e[i, "M"] ** 2))) for i in rest if channel == "M" and (i, "M") in e}
 
 
-def own_offset(channel: str, found: Sequence[Scatter], variance: float, ratio: float) -> float:
+def own_offset(s: Solution, channel: str, found: Sequence[Scatter], variance: float) -> float:
     """How far a run's offset lies from the others', beyond what noise does to a mean."""
+    ratio = s.design.eq.runs[found[0].pair[0]].ratio
     least = {"A": np.inf, "M": ZERO / ratio, "L": ZERO}[channel]
-    if not np.isfinite(least) or len(found) < 3 or found[0].pair[0] == found[0].pair[1]:
+    if not np.isfinite(least) or len(found) < ENOUGH or found[0].pair[0] == found[0].pair[1]:
         return least
-    excess = float(np.mean([s.offset**2 / 2 - variance / s.rows for s in found]))
+    gaps = [offset(s, a, channel) - offset(s, b, channel) for a, b in (pair.pair for pair in found)]
+    excess = float(np.mean([gap**2 / 2 - variance / pair.rows for gap, pair in zip(gaps, found, strict=True)]))
     return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
 
 
@@ -152,16 +154,17 @@ def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> fl
     Where both encoders are homed once and for all, runs at any speed and load share it, and what shifts it from one
     speed to another is an effect.
     """
-    gaps = [offset(s, a) - offset(s, b) for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys]
+    gaps = [offset(s, a, "A") - offset(s, b, "A") for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys]
     if len(gaps) < ENOUGH:
         return np.inf
     return max(float(np.sqrt(np.mean(np.square(gaps)) / 2)), least)
 
 
-def offset(s: Solution, run: int) -> float:
-    """What the baseline leaves in A of one run [rad] before any step of its own; repeats share what effects add."""
-    eq = s.design.eq
-    r, own = eq.rows[run, "A"], eq.own.get((run, "A"), np.zeros((eq.rows[run, "A"].y.size, 0)))
+def offset(s: Solution, run: int, channel: str) -> float:
+    """What the baseline leaves in a channel of one run, in its unit, before any step of its own; repeats share what
+    effects add. From all rows, not from a residual: that has lost as much of it as the offset is believed to wander."""
+    eq, key = s.design.eq, (run, channel)
+    r, own = eq.rows[key], eq.own.get(key, np.zeros((eq.rows[key].y.size, 0)))
     z = np.hstack([np.ones((r.y.size, 1)), own])
     return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
 
@@ -254,18 +257,31 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     same = {i: v for i, v in known.items() if eq.runs[i].procedure == eq.runs[run].procedure}
     if said:
         return float(np.sqrt(np.mean(np.square(said))))
-    return _between_speeds(same, eq, run) if same else _elsewhere(measured, eq, key)
+    return _at_other_conditions(same, eq, run) if same else _elsewhere(measured, eq, key)
 
 
-def _between_speeds(same: Mapping[int, float], eq: Equations, run: int) -> float:
-    """From runs of the same kind at other speeds: σ² = a + b·ω², b of a clock that jitters; their mean where fewer than
-    three speeds show it."""
-    speeds = np.square([eq.runs[i].turning for i in same])
-    power = np.square(list(same.values()))
-    if np.unique(np.round(np.log(np.maximum(speeds, 1e-9)), 1)).size < ENOUGH:
+def _at_other_conditions(same: Mapping[int, float], eq: Equations, run: int) -> float:
+    """From runs of the same kind at other speeds and loads: σ² = a + b·ω² + c·T², b of a clock that jitters and c of a
+    torque sensor's gain that wanders, each only where three speeds, three loads show it; else their mean."""
+    power, at = np.square(list(same.values())), np.array([_conditions(eq, i) for i in same])
+    shown = [j for j in (0, 1) if _differ(at[:, j]) >= ENOUGH]
+    if not shown:
         return float(np.sqrt(np.mean(power)))
-    (still, moving), _ = nnls(np.stack([np.ones(speeds.size), speeds], 1), power)
-    return float(np.sqrt(still + moving * eq.runs[run].turning ** 2))
+    z = np.hstack([np.ones((power.size, 1)), at[:, shown]])
+    found, _ = nnls(z / z.max(0), power)
+    return float(np.sqrt(np.array([1.0, *np.array(_conditions(eq, run))[shown]]) / z.max(0) @ found))
+
+
+def _conditions(eq: Equations, run: int) -> tuple[float, float]:
+    """Mean |ω_m| and mean torque of a run, both squared."""
+    torque = np.concatenate([p.torque for p in eq.runs[run].pieces])
+    mean = float(np.nanmean(torque)) if np.isfinite(torque).any() else 0.0
+    return eq.runs[run].turning ** 2, mean**2
+
+
+def _differ(square: Array) -> int:
+    """How many conditions that are a tenth apart and more there are."""
+    return int(np.unique(np.round(np.log(np.maximum(square, 1e-9)), 1)).size)
 
 
 def _elsewhere(measured: Measured, eq: Equations, key: Key) -> float:
