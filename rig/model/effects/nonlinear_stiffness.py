@@ -36,6 +36,10 @@ class NonlinearStiffness(Effect):
         cubic = [(CUBIC, share * reach.torque) for share in self.CUBIC_AT]
         return (*gradual, *knees, *cubic)
 
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """A knee that the fit pushed to next to no torque: that is a gap, and no spring's."""
+        return shape[0] != CUBIC and shape[1] < 1.1 * self.bounds(reach)[1][0]
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         kind, T_0 = shape
