@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import heard, heard_again
+from rig.analysis.tracing.court.hearing import heard, heard_again, heard_alone
 from rig.analysis.tracing.court.judge import Court, court
 from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
@@ -66,6 +66,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     case = heard(p, found, runs, covered)
     if bank is not None:
         case = heard_again(case, found, bank, runs, covered)
+        case = heard_alone(case, found, runs, covered)
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 

@@ -9,6 +9,9 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 
+MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
+REACTION: Final = {MOTOR: Port.MOTOR_TORQUE, OUTPUT: Port.LOAD_TORQUE}
+
 
 class AngleDependentStiffness(Effect):
     """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4: the wind-up gains T·κ/K·cos …, the motor is resisted by ½·φ²·dK/dθ_m
@@ -20,24 +23,29 @@ class AngleDependentStiffness(Effect):
     name: ClassVar[str] = "angle_dependent_stiffness"
     in_short: ClassVar[str] = "stiffness modulated by angle"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
-    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
+    loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
+    OF_OUTPUT: Final = (1.0, 2.0)
+    TURNS: Final = 0.5  # of the output, least travel: an order 1 has shown both its ends then
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Low orders of the wave generator."""
-        return tuple((k, reaction) for k in self.ORDERS for reaction in (1.0, 0.0))
+        """Low orders of the wave generator, and of the output where it turns far enough."""
+        of_motor = [(k, reaction, MOTOR) for k in self.ORDERS for reaction in (1.0, 0.0)]
+        orders = self.OF_OUTPUT if reach.load_turns >= self.TURNS else ()
+        return (*of_motor, *((k, reaction, OUTPUT) for k in orders for reaction in (1.0, 0.0)))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """T times cosine and sine, and what they do to the motor."""
-        k, reaction = shape
-        x, torque = k * signals.theta_m, signals.torque[:, None]
+        """T times cosine and sine, and what they do to the shaft whose angle it is."""
+        k, reaction, side = shape
+        x, torque = k * (signals.theta_m if side == MOTOR else signals.theta_l), signals.torque[:, None]
         back = reaction * k / 2 * torque**2
         return {
             Port.WIND_UP: np.stack([np.cos(x), np.sin(x)], 1) * torque,
-            Port.MOTOR_TORQUE: np.stack([np.sin(x), -np.cos(x)], 1) * back,
+            REACTION[side]: np.stack([np.sin(x), -np.cos(x)], 1) * back,
         }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Relative amplitude of the compliance, and phase."""
-        return harmonic(fit, f"kappa_order_{fit.shape[0]:g}", "1", scale=fit.known.K)
+        of = "" if fit.shape[2] == MOTOR else "_of_output"
+        return harmonic(fit, f"kappa_order_{fit.shape[0]:g}{of}", "1", scale=fit.known.K)

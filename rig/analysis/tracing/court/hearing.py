@@ -16,7 +16,8 @@ from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
-from rig.analysis.tracing.fit.search import Found, polished, reduced, search
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, polished, reduced, search, settled
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
@@ -26,6 +27,8 @@ from rig.model.effect import Array, Parameter, Reach
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
+
+ALONE_TRIED = 2  # suspects: the third has never been the true one
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""
@@ -78,6 +81,19 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
         return case
     other = heard(case.p, others, runs, covered)
     return case if other.loud else other
+
+
+def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
+    """Where nothing may be named and much is left: the loudest suspects, each alone. Many small ones that the search
+    put beside the true effect can drive it out. What one of them says counts when it explains everything."""
+    if case.solution.design.terms or case.p.own.line is not None or not case.loud:
+        return case
+    for scored in found.ranking[:ALONE_TRIED]:
+        s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
+        other = heard(case.p, replace(found, solution=s), runs, covered)
+        if other.solution.design.terms and not other.loud:
+            return other
+    return case
 
 
 Convicted = tuple[Solution, Design, list[Worth]]
