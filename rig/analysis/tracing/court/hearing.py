@@ -84,14 +84,15 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
 
 
 def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
-    """Where nothing may be named and much is left: the loudest suspects, each alone. Many small ones that the search
-    put beside the true effect can drive it out. What one of them says counts when it explains everything."""
-    if case.solution.design.terms or case.p.own.line is not None or not case.loud:
+    """Where much is left: the loudest suspects, each alone beside what stands. Many small ones that the search put
+    beside the true effect can drive it out. What one of them says counts when it explains everything."""
+    if case.p.own.line is not None or not case.loud:
         return case
-    for scored in found.ranking[:ALONE_TRIED]:
+    stay = {term.name for term in case.solution.design.terms}
+    for scored in [r for r in found.ranking[:ALONE_TRIED] if r.term.name not in stay]:
         s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
         other = heard(case.p, replace(found, solution=s), runs, covered)
-        if other.solution.design.terms and not other.loud:
+        if not other.loud and stay < {term.name for term in other.solution.design.terms}:
             return other
     return case
 

@@ -27,7 +27,10 @@ FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
 DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
 SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
 ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
-COARSE = 2 * np.pi / 10_000  # rad, a count; of 2000 counts J_m is 17 % off at 12 Hz and right at 7 Hz
+COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
+FINE = (
+    2 * np.pi / 10_000
+)  # rad, a count that needs no lower low-pass; of 2000 counts J_m is 17 % off at 12 Hz, right at 7
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -122,7 +125,7 @@ def _quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
     """Hz of low-pass that suits the motor encoder: a position loop answers the rounding of a coarse one with torque,
     and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
     step = 0.0 if theta_m is None else _count(theta_m, encoders)
-    return BANDWIDTH * COARSE / step if step > COARSE else BANDWIDTH
+    return BANDWIDTH * FINE / step if step > COARSE else BANDWIDTH
 
 
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
