@@ -127,35 +127,10 @@ def _shaken(run: Recording, alpha: Array) -> bool:
     """Whether ω̇_m (n,) of a run is the rounding of a coarse encoder and no more. A position loop answers that rounding
     with torque, so that J_m would come out too small, and no correction for noise that is independent could mend it."""
     noise = run.noise.get("theta_m", 0.0)
+    if noise * (12 * run.thinned) ** 0.5 < 0.99 * COARSE:
+        return False
     usual = float(np.nanmedian(np.abs(alpha))) / 0.6745  # the median does not see reversals
-    coarse = noise * (12 * run.thinned) ** 0.5 > 0.99 * COARSE
-    return coarse and usual < SHAKEN * noise * run.smoother.gain(2)
-
-
-def _derived(run: Recording, channel: str) -> bool:
-    """Whether this channel stands in for an angle that was not measured."""
-    needs = {"A": frozenset[str](), "L": {"theta_l"}}.get(channel, {"theta_m", "tau_l"})
-    return not needs <= run.knows
-
-
-def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
-    """Response (n,), baseline columns (n, b) and their places, all rows."""
-    make = {"A": _angle, "M": _motor, "R": _motor, "L": _load}[channel]
-    made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
-    y = np.concatenate([m[0] for m in made])
-    z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
-    names = tuple(made[0][1])
-    if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
-        z[:, names.index("J_m")] = 0.0
-    return y, z, tuple(INDEX[name] for name in names)
-
-
-def _shaken(run: Recording, alpha: Array) -> bool:
-    """Whether ω̇_m (n,) of a run is the rounding of its encoder and no more. A position loop answers that rounding with
-    torque, so that J_m would come out too small, and no correction for noise that is independent could mend it."""
-    noise = run.noise.get("theta_m", 0.0) * run.smoother.gain(2)
-    usual = float(np.nanmedian(np.abs(alpha))) / 0.6745  # the median does not see reversals
-    return usual < SHAKEN * noise
+    return usual < SHAKEN * noise * run.smoother.gain(2)
 
 
 def valid(piece: Signals, run: Recording, channel: str) -> Array:

@@ -28,9 +28,7 @@ DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the
 SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
 ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
 COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
-FINE = (
-    2 * np.pi / 10_000
-)  # rad, a count that needs no lower low-pass; of 2000 counts J_m is 17 % off at 12 Hz, right at 7
+FINE = 2 * np.pi / 10_000  # rad, a count that needs no lower low-pass; of 2000 J_m is 17 % off at 12 Hz, right at 7
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
