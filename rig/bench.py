@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from rig.config import BenchFile, DeviceSection, load_text, nearest, read_bench
+from rig.config import BenchFile, DeviceSection, load_text, read_bench
 from rig.control.filter import SpeedFilter
 from rig.control.pid import Gains
 from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.core.procedure import Setting
 from rig.core.sample import Mode
 from rig.guard import DEG, RPM, Limits
