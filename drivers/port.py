@@ -18,6 +18,7 @@ class Port:
 
     def __init__(self, path: str, baud: int, who: str, rts: bool = True, dtr: bool = True) -> None:
         self.path = path
+        self.baud = baud
         self.who = f"{who} on {path}"
         self.dead = ""  # why, in words
         self._made = serial.Serial()
