@@ -30,6 +30,7 @@ VERBS = {
     "reproduce": ["reproduce", "RUN", "--out"],
     "trace": ["trace", "RUN", "--out"],
     "identify": ["identify", "RUN", "-o"],
+    "tuning": ["tune", "--out"],
 }
 
 
@@ -44,6 +45,14 @@ def test_a_place_that_cannot_be_written_is_refused_alike_by_every_verb(
     assert "cannot write" in said.err
     assert "Not a directory; name another place with -" in said.err
     assert "about to turn" not in said.err
+    assert said.out == ""
+
+
+def test_gains_that_could_not_be_written_are_not_looked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tune", "--write", "/proc/gains.toml"]) == Exit.USAGE
+    said = capsys.readouterr()
+    assert "cannot write /proc" in said.err
+    assert said.err.endswith("name another place with --write\n")
     assert said.out == ""
 
 
