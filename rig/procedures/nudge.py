@@ -27,8 +27,9 @@ def nudge(setting: Setting, limit: float, rate: float, angle: float) -> Generato
         tau += rate * setting.period
         if tau > limit:
             raise NotReady(
-                f"the motor did not turn {angle:g}° with up to {limit:.2f} N·m ({moved / DEG:+.2f}°): "
-                "is it blocked, is the drive's torque scale right, is its encoder read?"
+                f"the motor did not turn {angle:g}° with up to {limit:.2f} N·m, of which the drive says it gave "
+                f"{sample.tau_m:.2f} N·m ({moved / DEG:+.2f}°): is it blocked, has the drive a limit or a torque scale "
+                "of its own, is its encoder read?"
             )
         sample = yield Torque(tau)
         if abs(sample.theta_l - load) > dead:
