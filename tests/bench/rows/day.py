@@ -23,7 +23,12 @@ TIMES = 10
 
 @final
 class Day(Row):
-    """An hour stands for the day and for the ten hours: the bench has ten minutes, growth shows over any ten."""
+    """An hour stands for the day and for the ten hours: the bench has ten minutes, growth shows over any ten.
+
+    Found and mended: an analysis held whole columns and what it made of them, 90 bytes a row. Columns of more than 17
+    minutes now lie in a file without a name and are gone through in stretches: those pages are in view of the process,
+    and the machine takes them back when it needs them.
+    """
 
     number: ClassVar[int] = 13
     name: ClassVar[str] = "a long day: one run of an hour, analysed; 10 000 runs listed"
