@@ -154,7 +154,7 @@ class Bus:
         """What follows a complaint about one device where no other was heard after `since` [s] either; else ""."""
         if any(frame.arrived > since for frame in self.frames.values()):
             return ""
-        return f"; nobody is heard on CAN bus '{self.name}': cable, power, bitrate? `hdrig devices` asks every node"
+        return f"; nobody is heard on CAN bus '{self.name}' (cable, power, bitrate?)"
 
     def discard(self) -> None:
         """Throw away what waits to be sent, where the adapter can: old targets must not follow a stop. Never raises."""

@@ -131,13 +131,16 @@ class Node:
         return Identity(model, str(serial or ""), version or f"{revision:#x}")
 
     def _await(self) -> None:
-        """Until it answers at all, or has had the time to boot."""
-        for _ in range(TRIES - 1):
+        """Until it answers at all. Raises NotReady when it has had the time to boot."""
+        said = ""
+        for _ in range(TRIES):
             try:
                 self.read(0x1000, 0, b"")
-            except NotReady:
+            except NotReady as why:
+                said = str(why)
                 continue
             return
+        raise NotReady(f"{said}; `hdrig devices` asks every node")
 
     def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
         """An object's bytes; `default` where the node will not tell, whatever code it says so with: nodes do not agree
