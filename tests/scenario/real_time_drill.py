@@ -39,10 +39,9 @@ from sim.wire.verbs import plant_verbs
 from tests.scenario.real_time import twin_at
 from tests.scenario.test_over_the_wire import Twin
 
-PATIENT = ("limits.stale_s=0.15", "devices.drive.watchdog=0.3")  # a busy machine is not the subject
 AFTERWARDS = 0.5  # s until the drive's own watchdog has acted
 REBOOT = 0.5  # s, for nodes that a fault has left half way
-TRIES = 3
+TRIES = 5
 GOOD, AWAY = "as it has to", "the machine was away"
 
 
@@ -51,7 +50,7 @@ class WireRig:
 
     def __init__(self, twin: Twin) -> None:
         self.twin, self.interrupts, self.rows = twin, Interrupts(), Rows()
-        self.bench = read(str(twin.bench("twin-canopen")), PATIENT)
+        self.bench = read(str(twin.bench("twin-canopen")))
         clock = WallClock()
         self.verbs = {name: self._verb(name, spoken) for name, spoken in spoken_verbs().items()}
         self.assembly = SimpleNamespace(agenda=SimpleNamespace(after=self._after))
