@@ -8,6 +8,7 @@ import termios
 import serial
 
 from drivers.claim import Claim, claim_port
+from drivers.unopened import first_line
 from rig.core.errors import NotReady
 
 GONE = (serial.SerialException, OSError, termios.error)  # pyserial 3.5 raises all three for the same pulled plug
@@ -38,7 +39,7 @@ class Port:
             self._made.reset_input_buffer()
         except GONE as why:
             self.close()
-            raise NotReady(f"{self.who} could not be opened: {why}") from None
+            raise NotReady(f"{self.who} could not be opened: {first_line(why)}") from None
         self.dead = ""
 
     def read(self) -> bytes:

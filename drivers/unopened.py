@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import re
 
 MISSING = {  # what stands behind words that say nothing to who has not written the backend
@@ -31,5 +32,7 @@ def why_unopened(interface: str, error: BaseException) -> str:
 
 
 def first_line(error: BaseException) -> str:
-    """What it says, without what follows; its kind where it says nothing."""
-    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    """What it says, without what follows; its kind where it says nothing; what pyserial says twice, once."""
+    told = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if number and told.count("[Errno") > 1 else told

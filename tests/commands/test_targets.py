@@ -48,8 +48,11 @@ def test_a_place_that_cannot_be_written_is_refused_alike_by_every_verb(
     assert said.out == ""
 
 
-def test_gains_that_could_not_be_written_are_not_looked_for(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tune", "--write", "/proc/gains.toml"]) == Exit.USAGE
+@pytest.mark.parametrize("verb", [["tune"], ["devices", "--channel", "can0"]])
+def test_a_bench_file_that_could_not_be_written_is_not_worked_for(
+    verb: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, "--write", "/proc/gains.toml"]) == Exit.USAGE
     said = capsys.readouterr()
     assert "cannot write /proc" in said.err
     assert said.err.endswith("name another place with --write\n")

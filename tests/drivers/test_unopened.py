@@ -7,7 +7,9 @@ import errno
 import can
 import pytest
 
+from drivers.port import Port
 from drivers.unopened import why_unopened
+from rig.core.errors import NotReady
 
 
 @pytest.mark.parametrize(
@@ -33,6 +35,11 @@ def test_the_reason_leads_to_the_mend(interface: str, error: BaseException, told
 
 def test_words_of_a_backend_that_say_it_themselves_stay_alone() -> None:
     assert why_unopened("slcan", OSError(errno.ENOENT, "no port")) == "[Errno 2] no port"
+
+
+def test_what_pyserial_says_twice_is_said_once() -> None:
+    with pytest.raises(NotReady, match=r"^torque sensor on /dev/none could not be opened: No such file or directory$"):
+        Port("/dev/none", 9600, "torque sensor").open()
 
 
 @pytest.mark.parametrize("interface", ["kvaser", "gs_usb", "socketcand"])
