@@ -27,15 +27,15 @@ def room(rows: int) -> Array:
     if rows <= LONG:
         return np.empty(rows)
     size = rows * 8
-    with tempfile.TemporaryFile() as file:
-        try:
+    try:
+        with tempfile.TemporaryFile() as file:
             os.posix_fallocate(file.fileno(), 0, size)  # now, in words: a page that finds no disk later kills us
-        except OSError as error:
-            raise DataError(
-                f"{tempfile.gettempdir()} has no room for a column of {rows} rows, {size / 1e6:.0f} MB "
-                f"({error.strerror}); TMPDIR names another place"
-            ) from error
-        return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=np.float64)
+            return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=np.float64)
+    except OSError as error:
+        raise DataError(
+            f"there is no room for a column of {rows} rows, {size / 1e6:.0f} MB, among the temporary files"
+            f"{f' in {tempfile.tempdir}' if tempfile.tempdir else ''} ({error.strerror}); TMPDIR names another folder"
+        ) from error
 
 
 def stretches(rows: int) -> Iterator[slice]:

@@ -41,7 +41,13 @@ def test_a_disk_without_room_is_said_before_anything_is_written(
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(rows.os, "posix_fallocate", full)
-    with pytest.raises(DataError, match=rf"{tmp_path} has no room .* 16 MB \(No space left on device\); TMPDIR names"):
+    with pytest.raises(DataError, match=rf"16 MB, .* in {tmp_path} \(No space left on device\); TMPDIR names"):
+        rows.room(2_000_000)
+
+
+def test_a_folder_for_temporary_files_that_is_gone_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "gone"))
+    with pytest.raises(DataError, match=rf"in {tmp_path}/gone \(No such file or directory\); TMPDIR names"):
         rows.room(2_000_000)
 
 
