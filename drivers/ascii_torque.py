@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import time
 from functools import reduce
+from typing import ClassVar
 
 from drivers.lines import Lines
 from drivers.port import Port
@@ -39,6 +40,7 @@ class AsciiTorque(TorqueSensor):
     """Read without waiting; its readings are as old as `delay` says when they arrive."""
 
     name = "torque_sensor"
+    keys: ClassVar[tuple[str, ...]] = ("port", "baud", "direction", "delay")
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.place = place

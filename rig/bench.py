@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from rig.bench_places import check_places
+from rig.bench_places import check_keys, check_places
 from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
 from rig.control.pid import Gains
@@ -203,7 +203,8 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
     bench = Bench(read_bench(text, str(path)), text, str(path))
     _check_together(bench)
     for role in ROLES:
-        bench.device(role)
+        if (made := bench.device(role)) is not None:
+            check_keys(bench.source, role, getattr(bench.file.devices, role), getattr(made, "keys", ()))
     return bench
 
 

@@ -1,10 +1,11 @@
-"""Where the devices of a bench file are: on buses that it has, and no two in one place."""
+"""Where the devices of a bench file are: on its own buses, no two in one place; and what their sections may hold."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
-from rig.config import BenchFile
+from rig.config import BenchFile, DeviceSection
 from rig.core.errors import UsageError
 
 
@@ -24,3 +25,10 @@ def check_places(source: str, f: BenchFile) -> None:
     for port, count in Counter(d.port for d in named.values() if d.port is not None).items():
         if count > 1:
             raise UsageError(f"{source}: two devices are on port {port}; every serial device has a port of its own")
+
+
+def check_keys(source: str, role: str, section: DeviceSection, known: Sequence[str]) -> None:
+    """Raises UsageError: a key of another kind of device, which would be passed over in silence."""
+    for key in sorted(section.model_fields_set - {"type", *known}):
+        takes = ", ".join(("type", *known))
+        raise UsageError(f"{source}: devices.{role}.{key} means nothing to a {section.type}; it has {takes}")
