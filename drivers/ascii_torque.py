@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import time
 from functools import reduce
+from typing import ClassVar
 
 from drivers.lines import Lines
 from drivers.port import Port
@@ -22,6 +23,7 @@ LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*N(?:[ .*-]|\xb7|\xc2\xb7)
 LONGEST = 48  # bytes of a line
 NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for the first good line
+EXAMPLE = "for example '-12.345 Nm'"
 
 
 def decode_line(line: bytes) -> float | None:
@@ -38,6 +40,7 @@ class AsciiTorque(TorqueSensor):
     """Read without waiting; its readings are as old as `delay` says when they arrive."""
 
     name = "torque_sensor"
+    keys: ClassVar[tuple[str, ...]] = ("port", "baud", "direction", "delay")
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.place = place
@@ -56,10 +59,15 @@ class AsciiTorque(TorqueSensor):
         until = time.monotonic() + PATIENCE
         while self.read().t == NEVER:
             if time.monotonic() > until:
-                got = f"{self.garbled} lines that say no torque" if self.garbled else "nothing that is a line"
-                raise NotReady(f"{self.port.who} sent {got} in {PATIENCE:g} s, expected for example '-12.345 Nm'")
+                raise NotReady(f"{self.port.who} sent {self._useless_words()} in {PATIENCE:g} s, expected {EXAMPLE}")
             time.sleep(0.005)
         return Identity("ASCII torque sensor", self.port.path)
+
+    def _useless_words(self) -> str:
+        if not self._useless:
+            return "nothing"
+        lines = f"{self.garbled} lines that say no torque" if self.garbled else "not one line"
+        return f"{self._useless} bytes, {lines} (is baud = {self.port.baud} right, is its unit N·m?)"
 
     def read(self) -> TorqueReading:
         """The newest line; never waits."""

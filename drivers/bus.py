@@ -13,6 +13,7 @@ import can
 
 from drivers.claim import connect_alone
 from drivers.queueing import Queueing
+from drivers.unopened import first_line, why_unopened
 from rig.core.clock import Clock
 from rig.core.errors import NotReady
 
@@ -89,7 +90,7 @@ class Bus:
         try:
             self._can = self._connect(interface=interface, channel=channel, **options)
         except (Exception, SystemExit) as why:  # noqa: BLE001  each backend of python-can raises what it likes
-            reason = str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__
+            reason = why_unopened(interface, why)
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
         self._poll = _poll_of(self._can)
         self.frames.clear()
@@ -145,9 +146,15 @@ class Bus:
         try:
             self._can.send(message)
         except GONE as why:
-            self.dead = f"CAN bus '{self.name}' takes no frames any more ({_reason(why)})"
+            self.dead = f"CAN bus '{self.name}' takes no frames any more ({first_line(why)})"
             return False
         return True
+
+    def silence(self, since: float) -> str:
+        """What follows a complaint about one device where no other was heard after `since` [s] either; else ""."""
+        if any(frame.arrived > since for frame in self.frames.values()):
+            return ""
+        return f"; nobody is heard on CAN bus '{self.name}' (cable, power, bitrate?)"
 
     def discard(self) -> None:
         """Throw away what waits to be sent, where the adapter can: old targets must not follow a stop. Never raises."""
@@ -187,7 +194,7 @@ class Bus:
             self.garbled += 1
             return True
         except GONE as why:
-            self.dead = f"CAN bus '{self.name}' is lost ({_reason(why)})"
+            self.dead = f"CAN bus '{self.name}' is lost ({first_line(why)})"
             return False
         if message is None:
             return False
@@ -254,7 +261,3 @@ def _poll_of(bus: can.BusABC) -> select.poll | None:
     found = select.poll()
     found.register(waiting, select.POLLIN)
     return found
-
-
-def _reason(why: BaseException) -> str:
-    return str(why).strip().splitlines()[0] if str(why).strip() else type(why).__name__

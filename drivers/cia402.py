@@ -60,6 +60,7 @@ class Cia402(Drive):
     """A drive at `node` on `bus`; the numbers of its object dictionary have to agree with the bench file's."""
 
     name = "drive"
+    keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant", "rated_step")
     answers: ClassVar[tuple[int, ...]] = (5, 4)  # data bytes of its frames after a SYNC
     commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick; 6 in velocity and position mode
 

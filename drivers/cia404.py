@@ -29,6 +29,7 @@ class Cia404(TorqueSensor):
     """A transducer at `node` on `bus`. Without 6131h and 6132h its numbers would mean nothing: refused."""
 
     name = "torque_sensor"
+    keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "unit_code")
     answers: ClassVar[tuple[int, ...]] = (4,)  # data bytes of its frame after a SYNC
 
     def __init__(self, wiring: Wiring, place: Place) -> None:

@@ -26,6 +26,7 @@ class Cia406(Encoder):
     """An encoder at `node` on `bus`; its resolution has to agree with the bench file's."""
 
     name = "load_encoder"
+    keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction")
     answers: ClassVar[tuple[int, ...]] = (4,)  # data bytes of its frame after a SYNC
 
     def __init__(self, wiring: Wiring, place: Place) -> None:

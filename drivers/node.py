@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import queue
 import struct
 from typing import Any, NamedTuple
@@ -130,13 +131,16 @@ class Node:
         return Identity(model, str(serial or ""), version or f"{revision:#x}")
 
     def _await(self) -> None:
-        """Until it answers at all, or has had the time to boot."""
-        for _ in range(TRIES - 1):
+        """Until it answers at all. Raises NotReady when it has had the time to boot."""
+        said = ""
+        for _ in range(TRIES):
             try:
                 self.read(0x1000, 0, b"")
-            except NotReady:
+            except NotReady as why:
+                said = str(why)
                 continue
             return
+        raise NotReady(f"{said}; `hdrig devices` asks every node")
 
     def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
         """An object's bytes; `default` where the node will not tell, whatever code it says so with: nodes do not agree
@@ -149,7 +153,8 @@ class Node:
                 return default  # type: ignore[no-any-return]
             raise Refused(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
         except (SdoCommunicationError, can.CanError) as why:
-            raise NotReady(f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})") from None
+            told = f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})"
+            raise NotReady(told + self.bus.silence(-math.inf)) from None
 
     def lacks(self, index: int) -> bool:
         """The node says, by the standard's own code, that there is no such object. Raises NotReady: it is silent."""
@@ -267,7 +272,8 @@ class Node:
         if not self.beats:
             return ""
         if now - self.heard > PATIENCE * PRODUCE / 1000:
-            return f"no heartbeat of {self.who} for {PATIENCE * PRODUCE:.0f} ms, expected one every {PRODUCE} ms"
+            told = f"no heartbeat of {self.who} for {PATIENCE * PRODUCE:.0f} ms, expected one every {PRODUCE} ms"
+            return told + self.bus.silence(now - 2 * PRODUCE / 1000)
         if self.state != OPERATIONAL:
             told = NMT_NAMES.get(self.state or 0, f"NMT state {self.state}")
             return f"{self.who} is {told}, expected operational"

@@ -40,6 +40,7 @@ class ODrive(Drive):
     """
 
     name = "drive"
+    keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant")
     answers: ClassVar[tuple[int, ...]] = (8, 8)  # data bytes of the frames read in a tick
     commands: ClassVar[tuple[int, ...]] = (4, 0, 0)  # torque, and two remote frames that ask for readings
 

@@ -8,6 +8,7 @@ import termios
 import serial
 
 from drivers.claim import Claim, claim_port
+from drivers.unopened import first_line
 from rig.core.errors import NotReady
 
 GONE = (serial.SerialException, OSError, termios.error)  # pyserial 3.5 raises all three for the same pulled plug
@@ -18,6 +19,7 @@ class Port:
 
     def __init__(self, path: str, baud: int, who: str, rts: bool = True, dtr: bool = True) -> None:
         self.path = path
+        self.baud = baud
         self.who = f"{who} on {path}"
         self.dead = ""  # why, in words
         self._made = serial.Serial()
@@ -37,7 +39,7 @@ class Port:
             self._made.reset_input_buffer()
         except GONE as why:
             self.close()
-            raise NotReady(f"{self.who} could not be opened: {why}") from None
+            raise NotReady(f"{self.who} could not be opened: {first_line(why)}") from None
         self.dead = ""
 
     def read(self) -> bytes:

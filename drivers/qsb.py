@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 import time
+from typing import ClassVar
 
 from drivers.lines import Lines
 from drivers.port import Port
@@ -40,6 +41,7 @@ class Qsb(Encoder):
     """The counter is 32 bits wide and streamed whenever it changes."""
 
     name = "load_encoder"
+    keys: ClassVar[tuple[str, ...]] = ("port", "baud", "direction", "delay")
 
     def __init__(self, wiring: Wiring, place: Place) -> None:
         self.place = place

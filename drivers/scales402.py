@@ -63,4 +63,7 @@ def _other_step(step: float, place: Place) -> str:
     tens = round(math.log10(step))
     if abs(step / 10.0**tens - 1) > TOLERANCE:
         return ""
+    if tens == 0:  # no drive counts in whole newton metres: the file's number is the drive's own
+        meant = place.torque_rated * MILLI
+        return f"; the file's number is in N·m: {place.torque_rated:g} mN·m would be torque_rated = {meant:g}"
     return f"; where its manual says that 6076h counts in steps of 1e{tens} N·m: {place.where}.rated_step = 1e{tens}"

@@ -52,13 +52,10 @@ class Wiring:
     _buses: dict[str, Bus] = field(default_factory=dict, init=False)
 
     def bus(self, place: Place, protocol: str = CANOPEN) -> Bus:
-        """The bus a device is on. Raises UsageError when the bench file has none such, or when the devices that are
+        """The bus a device is on. Raises UsageError when none is named, or when the devices that are
         on it already speak another protocol: the same identifiers mean something else there.
         """
         name = place.need("bus")
-        if name not in self.sections:
-            known = ", ".join(sorted(self.sections)) or "none"
-            raise UsageError(f"{place.where}.bus = '{name}': no such bus; the bench file has {known}")
         if name not in self._buses:
             section = self.sections[name]
             options = {**UNASKED.get(section["interface"], {}), **section.get("options", {})}

@@ -6,17 +6,19 @@ import importlib
 import importlib.util
 import math
 import tomllib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from rig.config import BenchFile, DeviceSection, load_text, nearest, read_bench
+from rig.bench_places import check_keys, check_places
+from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
 from rig.control.pid import Gains
 from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.core.procedure import Setting
 from rig.core.sample import Mode
 from rig.guard import DEG, RPM, Limits
@@ -201,7 +203,8 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
     bench = Bench(read_bench(text, str(path)), text, str(path))
     _check_together(bench)
     for role in ROLES:
-        bench.device(role)
+        if (made := bench.device(role)) is not None:
+            check_keys(bench.source, role, getattr(bench.file.devices, role), getattr(made, "keys", ()))
     return bench
 
 
@@ -292,21 +295,12 @@ def _check_together(bench: Bench) -> None:
             f"{bench.source}: loop.latch_lead = {f.loop.latch_lead:g} s is no shorter than the period of "
             f"{1 / f.loop.rate:g} s: devices would have to answer before the tick they are read in"
         )
-    _check_nodes(bench.source, devices)
+    check_places(bench.source, f)
     if f.torque_sensor and f.limits.shaft_torque > f.torque_sensor.range:
         raise UsageError(
             f"{bench.source}: limits.shaft_torque = {f.limits.shaft_torque:g} N·m is beyond the torque sensor's "
             f"range of {f.torque_sensor.range:g} N·m"
         )
-
-
-def _check_nodes(source: str, devices: Sequence[DeviceSection]) -> None:
-    """Two devices with one number would answer each other's questions."""
-    numbered = [(d.bus, d.node) for d in devices if d.bus is not None and d.node is not None]
-    twice = next((one for one in numbered if numbered.count(one) > 1), None)
-    if twice is not None:
-        bus, node = twice
-        raise UsageError(f"{source}: two devices are node {node} on bus '{bus}'; every node has a number of its own")
 
 
 def twin_parameters(f: BenchFile) -> Any:

@@ -16,10 +16,10 @@ from pydantic import BaseModel, Field, ValidationError, model_validator
 
 from rig.config_effects import EffectsSection
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.core.regular import regular
 from rig.quantities import NotNegative, Positive, quantity
 from rig.quantities import Strict as Strict  # these two also for readers of other files of the same kind
-from rig.quantities import nearest as nearest
 
 LONGEST = 2**20  # bytes: the longest bench that ships has under 20 000
 

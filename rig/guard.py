@@ -177,8 +177,11 @@ def load_travel(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     moved = sample.theta_l - guard.start.theta_l if guard.start else 0.0
     if limit is None or abs(moved) <= limit:
         return None
-    sentence = f"load {moved / DEG:.2f}° from the start, limit ±{limit / DEG:.2f}°: does the motor encoder count?"
-    return Trip("load_travel", sentence)
+    return Trip(
+        "load_travel",
+        f"load {moved / DEG:.2f}° from the start, limit ±{limit / DEG:.2f}°: does the motor encoder count, is "
+        "load_encoder.counts_per_turn right?",
+    )
 
 
 def asked_number(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
@@ -198,7 +201,7 @@ def following(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     return Trip(
         "following",
         f"motor {error / DEG:.1f}° behind its reference, limit ±{limit / DEG:.1f}° at this speed: "
-        "the gains are too weak (hdrig tune finds better ones) or something holds the motor",
+        "the gains are too weak or too strong (hdrig tune finds better ones), or something holds the motor",
     )
 
 

@@ -19,6 +19,8 @@ from rig.realtime import RealTime
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing import LoopTiming
 
+NEVER = -1e9  # s, before any tick
+MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
@@ -71,6 +73,7 @@ class Loop:
         self.setpoints = setpoints or AsTorque()
         self.tripped = tripped
         self.running = False
+        self.away = (NEVER, 0.0)  # when this program last came back late, and how late [s]
         self.rows = 0  # handed to the sink so far
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
@@ -126,6 +129,7 @@ class Loop:
                 skipped = int(lateness / period)
                 k += skipped
                 self.timing.skip(skipped)
+                self.away = (now, lateness)
             sample = read(now)
             if skipped:
                 sample = sample._replace(flags=sample.flags | Flag.MISSED)
@@ -198,8 +202,14 @@ class Loop:
             return trip
         late = self.instruments.overdue(now, self.guard.limits.stale)
         trip = stale(self.guard, sample._replace(flags=late), asked) or trip
-        told = self.instruments.silent()
-        return trip._replace(sentence=f"{trip.sentence}; {told}") if told else trip
+        told = [words for words in (self.instruments.silent(), self._held_up(now, sample.age)) if words]
+        return trip._replace(sentence="; ".join([trip.sentence, *told]))
+
+    def _held_up(self, now: float, age: float) -> str:
+        """That this program itself was away for most of the last `age` s: its devices may have spoken meanwhile."""
+        back, late = self.away
+        mostly = back > now - age and late > MOSTLY * age
+        return f"this program itself was held up for {late * 1e3:.1f} ms of it" if mostly else ""
 
     def _last_row(self, sample: Sample, asked: Setpoint) -> None:
         """What was seen when the torque had just been taken off."""

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any, TypeVar
 
-from rig.config import nearest
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 
 Made = TypeVar("Made")
 LARGEST = 1e100  # nothing on a rig is near, and its square is still a number

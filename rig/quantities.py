@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from rig.core.nearest import nearest
 
 PROVENANCE = ("paper", "catalogue", "assumed", "measured", "declared")
 QUANTITY_KEYS = {"value", "unit", "from", "note"}
@@ -58,10 +59,3 @@ class Strict(BaseModel):
                 raise ValueError(f"{key} has {len(str(abs(value)))} digits; expected a number in {wanted}")
             return float(value)
         return value
-
-
-def nearest(wrong: str, valid: Any) -> str:
-    """ "did you mean 'x'?", or the list of what exists."""
-    names = sorted(valid)
-    close = difflib.get_close_matches(wrong, names, n=1, cutoff=0.5)
-    return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"

@@ -49,6 +49,45 @@ def test_what_cannot_be_is_refused(assignments: list[str], words: list[str]) -> 
         assert word in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "assignments", "words"),
+    [
+        ("twin-canopen", ["devices.drive.bus=rigg"], ["devices.drive.bus = 'rigg': no such bus", "has rig"]),
+        ("twin-canopen", ["devices.load_encoder.node=1"], ["two devices are node 1 on bus 'rig'"]),
+        ("twin-odrive", ["devices.torque_sensor.port=/tmp/hdrig-twin/serial/qsb"], ["two devices are on port /tmp/"]),
+    ],
+)
+def test_a_place_that_is_not_there_or_taken_is_refused_as_soon_as_the_file_is_read(
+    name: str, assignments: list[str], words: list[str]
+) -> None:
+    with pytest.raises(UsageError) as refusal:
+        read(name, assignments)
+    for word in words:
+        assert word in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "role", "line", "words"),
+    [
+        (
+            "twin-canopen",
+            "load_encoder",
+            "watchdog = 0.2",
+            "load_encoder.watchdog means nothing to a can.cia406",
+        ),
+        ("twin-odrive", "load_encoder", 'bus = "rig"', "it has type, port, baud, direction, delay"),
+        ("twin", "drive", "direction = -1", "devices.drive.direction means nothing to a twin.drive; it has type"),
+    ],
+)
+def test_a_key_of_another_kind_of_device_is_refused_and_not_passed_over(
+    name: str, role: str, line: str, words: str, tmp_path: Path
+) -> None:
+    section = f"[devices.{role}]\n"
+    (tmp_path / "b.toml").write_text(read(name).text.replace(section, f"{section}{line}\n"), encoding="utf-8")
+    with pytest.raises(UsageError, match=words):
+        read(str(tmp_path / "b.toml"))
+
+
 def test_the_clock_is_the_world_or_the_wall_and_never_virtual_on_real_devices(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

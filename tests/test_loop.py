@@ -223,3 +223,18 @@ def test_lateness_quantiles_come_from_every_tick() -> None:
     assert abs(timing.quantile(0.5) - 500e-6) < 2e-6
     assert abs(timing.quantile(0.99) - 990e-6) < 3e-6
     assert timing.summary()["lateness_max"] == pytest.approx(999e-6)
+
+
+@pytest.mark.parametrize(
+    ("held", "words"), [(0.0, []), (0.002, []), (0.006, ["this program itself was held up for 5.0 ms of it"])]
+)
+def test_stale_data_say_whether_the_program_itself_was_away_meanwhile(held: float, words: list[str]) -> None:
+    bench = Bench()
+
+    def strike() -> None:
+        bench.world.silent_load = True
+        bench.world.clock.t += held  # the first of it is the tick's own
+
+    reason = bench.run(strike).reason
+    assert "no new load-encoder sample for" in reason
+    assert reason.split("; ")[1:] == words

@@ -9,7 +9,7 @@ from typing import Any
 
 from rig.analysis.intervals import against_limit
 from rig.analysis.result import Check, Estimate, Verdict
-from rig.quantities import nearest
+from rig.core.nearest import nearest
 
 WHERE = {
     Verdict.PASS: "the whole interval is inside",

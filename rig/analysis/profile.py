@@ -113,6 +113,14 @@ def _mean_curve(strokes: list[StrokeResult]) -> Array | None:
     return np.asarray(curve - curve.mean())
 
 
+def _scatter(side: list[StrokeResult]) -> float:
+    """Σ over the revolutions of one direction of (curve − mean curve)², mean over the grid; stroke by stroke."""
+    flat = [s.curves.mean(axis=1, keepdims=True) for s in side]
+    sums = [np.sum(s.curves - level, axis=0) for s, level in zip(side, flat, strict=True)]
+    mean = np.sum(sums, axis=0) / sum(s.curves.shape[0] for s in side)
+    return sum(float(np.mean(np.sum((s.curves - f - mean) ** 2, axis=0))) for s, f in zip(side, flat, strict=True))
+
+
 def combine(strokes: list[StrokeResult], added: Array) -> Profile:
     """Average the revolutions of all `strokes`, each direction by itself, then both with equal weight.
 
@@ -128,8 +136,7 @@ def combine(strokes: list[StrokeResult], added: Array) -> Profile:
         joined = np.concatenate([np.hstack((s.cosine, s.sine)) for s in side])
         means.append(joined.mean(axis=0))
         deviations += [np.hstack((s.cosine, s.sine)) - means[-1] for s in side]
-        curves = np.concatenate([s.curves - s.curves.mean(axis=1, keepdims=True) for s in side])
-        scatter += float(np.mean(np.sum((curves - curves.mean(axis=0)) ** 2, axis=0)))
+        scatter += _scatter(side)
     counts = [sum(s.cosine.shape[0] for s in side) for side in used]
     share = sum(1.0 / n for n in counts) / len(used) ** 2  # variance of the even part in units of one revolution's
     dof = sum(counts) - len(used)

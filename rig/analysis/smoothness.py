@@ -65,24 +65,32 @@ def _not_locked(theta: Array, deviation: Array) -> Array:
     return without(columns, deviation, fit(columns, deviation))
 
 
-def _hunting(parts: list[Array], step: float, variance: float) -> tuple[float, float]:
-    """(frequency [Hz], share of `variance`) of the strongest line of the angle-free deviations, over all strokes."""
-    longest = max(part.size for part in parts)
-    padded = 1 << int(np.ceil(np.log2(max(2 * longest, 16))))
-    power = np.zeros(padded // 2 + 1)
-    for part in parts:
+class _Ripple:
+    """The spectrum of the angle-free deviations, summed stroke by stroke."""
+
+    def __init__(self, longest: int) -> None:
+        self._longest = longest  # speed values of the longest stroke
+        self._padded = 1 << int(np.ceil(np.log2(max(2 * longest, 16))))
+        self._power = np.zeros(self._padded // 2 + 1)
+        self._rows = 0
+
+    def add(self, part: Array) -> None:
         window = np.hanning(part.size + 2)[1:-1]
-        power += np.abs(np.fft.rfft((part - part.mean()) * window, padded)) ** 2 / np.sum(window**2) * part.size
-    frequency = np.fft.rfftfreq(padded, step)
-    slow = frequency < 3.0 / (longest * step)  # slower than three periods a stroke is drift
-    power[slow] = 0.0
-    if variance <= 0 or not power.any():
-        return float("nan"), 0.0
-    peak = int(np.argmax(power))
-    wide = max(3 * padded // longest, 1)  # the line's own width under the window
-    rows = sum(part.size for part in parts)
-    share = 2.0 * float(np.sum(power[max(peak - wide, 0) : peak + wide + 1])) / padded / (rows * variance)
-    return float(frequency[peak]), min(share, 1.0)
+        found = np.abs(np.fft.rfft((part - part.mean()) * window, self._padded)) ** 2
+        self._power += found / np.sum(window**2) * part.size
+        self._rows += part.size
+
+    def hunting(self, step: float, variance: float) -> tuple[float, float]:
+        """(frequency [Hz], share of `variance`) of the strongest line, over all strokes."""
+        power, longest = self._power.copy(), self._longest
+        frequency = np.fft.rfftfreq(self._padded, step)
+        power[frequency < 3.0 / (longest * step)] = 0.0  # slower than three periods a stroke is drift
+        if variance <= 0 or not power.any():
+            return float("nan"), 0.0
+        peak = int(np.argmax(power))
+        wide = max(3 * self._padded // longest, 1)  # the line's own width under the window
+        share = 2.0 * float(np.sum(power[max(peak - wide, 0) : peak + wide + 1]))
+        return float(frequency[peak]), min(share / self._padded / (self._rows * variance), 1.0)
 
 
 def nominal_rpm(motion: Motion, strokes: list[Stroke], reference: Array | None) -> float:
@@ -105,22 +113,21 @@ def smoothness(
         return None
     speed = speed or motor_speed(motion.t, motion.theta_m)
     nominal = nominal_rpm(motion, strokes, reference)
-    parts, deviations, stuck, count = [], [], 0, 0
-    for s in strokes:
-        here = (speed.row >= s.start) & (speed.row < s.stop)
-        if here.sum() < 8:
-            continue
+    spans = [np.searchsorted(speed.row, (s.start, s.stop)) for s in strokes]
+    used = [(s, slice(*span)) for s, span in zip(strokes, spans, strict=True) if span[1] - span[0] >= 8]
+    if not used or not nominal > 0:
+        return None
+    ripple = _Ripple(max(here.stop - here.start for _, here in used))
+    square, stuck, count = 0.0, 0, 0
+    for s, here in used:
         rpm = speed.omega[here] * RPM * s.direction
         stuck += int(np.count_nonzero(np.abs(rpm) < STUCK_BELOW * nominal))
         count += rpm.size
         deviation = rpm - rpm.mean()
-        deviations.append(deviation)
-        theta = motion.theta_m[speed.row[here].astype(np.int64)]
-        parts.append(_not_locked(theta, deviation))
-    if not count or not nominal > 0:
-        return None
-    variance = float(np.mean(np.concatenate(deviations) ** 2))
-    hunting_hz, share = _hunting(parts, speed.window / 4, variance)
+        square += float(deviation @ deviation)
+        ripple.add(_not_locked(motion.theta_m[speed.row[here].astype(np.int64)], deviation))
+    variance = square / count
+    hunting_hz, share = ripple.hunting(speed.window / 4, variance)
     fast = fast_ripple(motion.t, motion.theta_m, strokes, speed.window)
     whole = variance + fast.variance * RPM**2
     share *= variance / whole if whole else 0.0

@@ -12,7 +12,9 @@ import numpy.typing as npt
 from rig.analysis.angle import ARCSEC, RPM, TURN, is_wrapped, transmission_error, unwrap
 from rig.analysis.result import Array
 from rig.core.channels import UNTRUSTED, Flag
+from rig.core.rows import picked, room, stretches
 
+Rows = npt.NDArray[np.int64]
 FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
 SLOWEST = 60.0  # s between rows: nothing that turns is recorded more slowly
 
@@ -54,7 +56,7 @@ class Motion:
     theta_m: Array
     theta_l: Array | None
     t: Array | None
-    rows: npt.NDArray[np.int64] | None  # which rows of the run these are; None: all
+    rows: Rows | None  # which rows of the run these are; None: all
     breaks: tuple[int, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -65,7 +67,7 @@ class Motion:
 
     def pick(self, column: Array | None) -> Array | None:
         """The same rows of another column of the run."""
-        return column if column is None or self.rows is None else column[self.rows]
+        return column if column is None or self.rows is None else picked(column, self.rows)
 
     def speed_rpm(self, lo: int, hi: int) -> float:
         """Mean motor speed between two rows, rpm, signed; NaN without time."""
@@ -96,32 +98,50 @@ def motion_of(run: Source) -> Motion | None:
     theta_m, theta_l = _angle(run, "m", notes), _angle(run, "l", notes)
     if theta_m is None:
         return None
-    t = run.column("t")
-    keep = np.isfinite(theta_m)
-    if theta_l is not None:
-        keep &= np.isfinite(theta_l)
-    if t is not None:
-        keep &= np.isfinite(t)
-    flags_column = run.column("flags")
-    breaks: tuple[int, ...] = ()
-    if flags_column is not None:
-        flags = np.nan_to_num(flags_column).astype(np.int64)
-        keep &= (flags & int(UNTRUSTED)) == 0
-        epochs = np.flatnonzero(flags & int(Flag.EPOCH))
-        breaks = tuple(int(b) for b in np.cumsum(keep)[epochs] - keep[epochs])
-    rows = None
-    if not keep.all():
-        rows = np.flatnonzero(keep)
-        lost = keep.size - rows.size
+    t, flags = run.column("t"), run.column("flags")
+    rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
+    if rows is not None:
         notes.append(
-            f"{lost} of {keep.size} rows left out: an angle was missing, stale or frozen, or the guard had tripped."
+            f"{theta_m.size - rows.size} of {theta_m.size} rows left out: an angle was missing, stale or frozen, or "
+            "the guard had tripped."
         )
-        theta_m, theta_l = theta_m[rows], None if theta_l is None else theta_l[rows]
-        t = None if t is None else t[rows]
-    if t is not None and t.size > 1 and not np.all(np.diff(t) > 0):
+        theta_m, theta_l = picked(theta_m, rows), None if theta_l is None else picked(theta_l, rows)
+        t = None if t is None else picked(t, rows)
+    if t is not None and not _increases(t):
         notes.append("The time column does not increase everywhere; it was not used.")
         t = None
     if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
         notes.append(f"The time column says {(t[-1] - t[0]) / (t.size - 1):.3g} s between rows; it was not used.")
         t = None
     return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+
+
+def _trusted(columns: list[Array], flags: Array | None) -> tuple[Rows | None, tuple[int, ...]]:
+    """The rows whose `columns` are all there and that no flag speaks against, None: all; and the breaks among them."""
+    breaks: list[int] = []
+    count, size = 0, columns[0].size
+
+    def bits(some: slice) -> Rows:
+        return np.zeros(1, np.int64) if flags is None else np.nan_to_num(flags[some]).astype(np.int64)
+
+    def kept(some: slice) -> npt.NDArray[np.bool_]:
+        there = np.all([np.isfinite(column[some]) for column in columns], axis=0)
+        return np.asarray(there & ((bits(some) & int(UNTRUSTED)) == 0))
+
+    for some in stretches(size):
+        keep = kept(some)
+        epochs = np.flatnonzero(bits(some) & int(Flag.EPOCH))
+        breaks += (count + np.cumsum(keep)[epochs] - keep[epochs]).tolist()
+        count += int(np.count_nonzero(keep))
+    if count == size:
+        return None, tuple(breaks)
+    rows, filled = room(count).view(np.int64), 0
+    for some in stretches(size):
+        found = np.flatnonzero(kept(some)) + some.start
+        rows[filled : filled + found.size] = found
+        filled += found.size
+    return rows, tuple(breaks)
+
+
+def _increases(t: Array) -> bool:
+    return all(np.all(np.diff(t[max(some.start - 1, 0) : some.stop]) > 0) for some in stretches(t.size))

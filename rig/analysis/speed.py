@@ -8,6 +8,7 @@ import numpy as np
 
 from rig.analysis.angle import RPM
 from rig.analysis.result import Array
+from rig.core.rows import room, stretches
 
 STEP = 0.010  # s    one speed value this often: hunting up to 50 Hz stays visible
 FEWEST = 2  # rows in a mean
@@ -36,14 +37,20 @@ def motor_speed(t: Array, theta_m: Array, step: float = STEP) -> Speed:
     size = max(round(step / period), FEWEST)
     if t.size < 5 * size:  # not one window of four steps
         return Speed(np.empty(0), np.empty(0), np.empty(0), 0.0)
-    starts = np.arange(0, t.size - size + 1, size)
+    count = t.size // size - 3
+    speed = Speed(room(count), room(count), room(count), 4 * size * period)
     # sums are taken from the middle of the run: the rounding error of long sums stays below a count
-    time = np.add.reduceat(t[: starts[-1] + size] - t[t.size // 2], starts) / size
-    angle = np.add.reduceat(theta_m[: starts[-1] + size] - theta_m[t.size // 2], starts) / size
-    two_t, two_a = time[1:] + time[:-1], angle[1:] + angle[:-1]
-    middle = 0.25 * (two_t[2:] + two_t[:-2]) + t[t.size // 2]
-    omega = (two_a[2:] - two_a[:-2]) / (two_t[2:] - two_t[:-2])
-    return Speed(middle, omega, starts[2:-1].astype(np.float64), 4 * size * period)
+    zero_t, zero_a = t[t.size // 2], theta_m[t.size // 2]
+    for some in stretches(count):
+        rows = slice(some.start * size, (some.stop + 3) * size)
+        starts = np.arange(0, rows.stop - rows.start, size)
+        time = np.add.reduceat(t[rows] - zero_t, starts) / size
+        angle = np.add.reduceat(theta_m[rows] - zero_a, starts) / size
+        two_t, two_a = time[1:] + time[:-1], angle[1:] + angle[:-1]
+        speed.t[some] = 0.25 * (two_t[2:] + two_t[:-2]) + zero_t
+        speed.omega[some] = (two_a[2:] - two_a[:-2]) / (two_t[2:] - two_t[:-2])
+        speed.row[some] = rows.start + starts[2:-1]
+    return speed
 
 
 def per_row_rpm(speed: Speed, t: Array) -> Array:

@@ -11,6 +11,7 @@ from rig.core.errors import DataError
 
 Array = npt.NDArray[np.float64]
 SKIP = 0.005  # s after each switch: the drive's torque loop and one tick of delay
+STEP = 0.9  # of the highest torque: what is less is no step, but the nudge before them
 COAST = 0.06  # s of the run-out used: long enough for the slope, short enough to stay above the Stribeck speed
 
 
@@ -50,7 +51,10 @@ def step_response(t: Array, theta_m: Array, tau: Array) -> StepResponse:
         inertia.append(J)
         friction.append(-J * off)
     if len(inertia) < 2:
-        raise DataError(f"the torque steps moved the motor {len(inertia)} times, expected at least 2: is it blocked?")
+        raise DataError(
+            f"the torque steps of {np.max(np.abs(tau)):.3g} N·m moved the motor {len(inertia)} times, "
+            "expected at least 2: is it blocked?"
+        )
     return StepResponse(
         float(np.mean(inertia)), float(np.std(inertia, ddof=1)),
         float(np.mean(friction)), float(np.std(friction, ddof=1)), len(inertia),
@@ -59,7 +63,7 @@ def step_response(t: Array, theta_m: Array, tau: Array) -> StepResponse:
 
 def _pulses(tau: Array) -> list[tuple[int, int]]:
     """Index pairs [begin, end) of the stretches with torque on."""
-    on = np.concatenate(([0], (np.abs(tau) > 0.5 * np.max(np.abs(tau))).astype(int), [0]))
+    on = np.concatenate(([0], (np.abs(tau) > STEP * np.max(np.abs(tau))).astype(int), [0]))
     edges = np.diff(on)
     return list(zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True))
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.result import Array
 from rig.analysis.source import Source
+from rig.core.rows import stretches
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
@@ -56,13 +57,15 @@ class Tame:
             return None
         if values is None:
             return None
-        absurd = np.abs(values) > (
-            FARTHEST if name.startswith("theta") else LARGEST
-        )  # infinite too; NaN compares false
-        if absurd.any():
-            self.notes.append(f"{int(absurd.sum())} values of {name} are infinite or absurdly large: taken as missing.")
-            values = np.where(absurd, np.nan, values)
-        return values if values.size == 0 or np.isfinite(values).any() else None
+        most = FARTHEST if name.startswith("theta") else LARGEST
+        absurd = [some.start + np.flatnonzero(np.abs(values[some]) > most) for some in stretches(values.size)]
+        count = sum(rows.size for rows in absurd)  # infinite too; NaN compares false
+        if count:
+            self.notes.append(f"{count} values of {name} are infinite or absurdly large: taken as missing.")
+            values = values.copy()
+            values[np.concatenate(absurd)] = np.nan
+        usable = any(np.isfinite(values[some]).any() for some in stretches(values.size))
+        return values if usable or not values.size else None
 
     def _tables(self, manifest: Any) -> dict[str, Any]:
         out = dict(manifest) if isinstance(manifest, Mapping) else {}

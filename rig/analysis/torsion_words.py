@@ -10,13 +10,14 @@ from rig.analysis.orders import Line
 from rig.analysis.result import Array, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.torsion import LOAD_HARMONICS, Torsion, torsion
+from rig.core.rows import stretches
 
 DRAWN = 4000  # points of the loop
 
 
 def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
     """Add what torsion against torque says, when the shaft torque moves over a sweep; whether it did."""
-    if tau_l is None or not np.isfinite(tau_l).all():
+    if tau_l is None or not all(np.isfinite(tau_l[some]).all() for some in stretches(tau_l.size)):
         return False
     step = 2.0 / motion.ratio  # errors that ride on the other gear wheel stand this far from the whole order
     r = torsion(motion, tau_l, [1.0, 2.0 - step, 2.0, 2.0 + step, 4.0])

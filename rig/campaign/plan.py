@@ -12,8 +12,9 @@ from typing import Annotated, Any, Literal
 import tomlkit
 from pydantic import Field, ValidationError
 
-from rig.config import Strict, load_text, nearest, sentence
+from rig.config import Strict, load_text, sentence
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 
 PLANS = Path(__file__).parents[1] / "plans"  # plans that ship with hdrig
 Moment = Literal["start", "middle", "end"]

@@ -9,8 +9,8 @@ from typing import Any, Literal
 from rig.campaign.plan import PlanFile, StepSection
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
-from rig.config import nearest
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
 from rig.parameters import make

@@ -12,6 +12,7 @@ from typing import Any
 from rig.catalogue.remembered import Remembered
 from rig.catalogue.row import number, text
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.runfile.manifest import contents
 
 NAME = "result.json"
@@ -54,8 +55,6 @@ def names_of(word: str) -> tuple[str, ...]:
 def refuse_unknown(word: str, seen: set[str]) -> None:
     """Raises UsageError for a figure that is neither a word nor in any of the runs looked at."""
     if not seen & set(names_of(word)):
-        from rig.quantities import nearest  # it brings pydantic, which a trend need not wait for
-
         others = {*WORDS, *seen} - {word}  # a word people use that none of these runs can answer
         raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}")
 

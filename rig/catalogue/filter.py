@@ -10,6 +10,7 @@ from typing import Any
 
 from rig.catalogue.row import UNREADABLE, Row, moment
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 
 VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "MEASURED", "none")
 STATUSES = ("running", "completed", "stopped", "tripped", "interrupted", UNREADABLE)
@@ -95,8 +96,6 @@ def _one_of(what: str, word: str, known: tuple[str, ...]) -> str:
         if word.lower() == name.lower():
             return name
     if word:
-        from rig.quantities import nearest  # it brings pydantic, which a list need not wait for
-
         raise UsageError(f"there is no {what} '{word}'; {nearest(word, known)}")
     return ""
 

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rig.commands.targets import refuse_unwritable, writing
 from rig.core.errors import Exit, NotReady, UsageError
 
 if TYPE_CHECKING:
@@ -31,14 +32,14 @@ def run(args: argparse.Namespace) -> int:
     """Nodes, ports, and the file; exit 3 when a bus was asked for and nobody is on it."""
     from rig.first_bench import adapter_options, scan_bus, scan_ports
 
+    if args.write:
+        _refuse_taken(args.write, args.channel)
     ports = scan_ports()
     for port in ports:
         print(f"serial  {port.path}: {port.what}" + (f", serial number {port.serial}" if port.serial else ""))
     if not ports:
         print("serial  no ports")
     if not args.channel:
-        if args.write:
-            raise UsageError("--write needs --channel: the drive is found on a CAN bus")
         return Exit.PASS
     options = adapter_options(args.option)
     nodes = scan_bus(args.interface, args.channel, args.bitrate, options)
@@ -51,11 +52,19 @@ def run(args: argparse.Namespace) -> int:
     if args.write:
         from rig.first_bench import first_bench
 
-        if args.write.exists():
-            raise UsageError(f"{args.write} exists; nothing is overwritten")
-        args.write.write_text(first_bench(args.interface, args.channel, args.bitrate, nodes, options), encoding="utf-8")
+        text = first_bench(args.interface, args.channel, args.bitrate, nodes, options)
+        with writing(args.write, "--write"):
+            args.write.write_text(text, encoding="utf-8")
         print(f"wrote {args.write}: replace every number that is assumed, then hdrig doctor --bench {args.write}")
     return Exit.PASS
+
+
+def _refuse_taken(path: Path, channel: str) -> None:
+    if not channel:
+        raise UsageError("--write needs --channel: the drive is found on a CAN bus")
+    if path.exists():
+        raise UsageError(f"{path} exists; nothing is overwritten")
+    refuse_unwritable(path.parent, "--write")
 
 
 def _plate(node: Found) -> str:

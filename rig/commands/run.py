@@ -23,8 +23,8 @@ from rig.commands.options import (
 from rig.commands.perform import Job, clear, let_be, perform
 from rig.commands.show.show import showing
 from rig.commands.viewing import view, view_argument
-from rig.config import nearest
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.core.procedure import Procedure
 from rig.parameters_told import told
 from rig.procedures import CATALOGUE, procedure_class

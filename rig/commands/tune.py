@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from rig.bench import Bench, override
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.perform import response_of
+from rig.commands.targets import refuse_unwritable, writing
 from rig.config import read_bench
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.interrupts import Interrupts
@@ -47,6 +48,9 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"{args.write} exists already; give the name of a new file")
     if args.write is not None and not args.write.parent.is_dir():
         raise UsageError(f"{args.write.parent} is no folder; the bench file could not be written there")
+    refuse_unwritable(args.out)
+    if args.write is not None:
+        refuse_unwritable(args.write.parent, "--write")
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
@@ -57,7 +61,8 @@ def run(args: argparse.Namespace) -> int:
         print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
         best = _search(session, candidates)
         if best is not None and args.write is not None:
-            args.write.write_text(best[0].text, encoding="utf-8")
+            with writing(args.write, "--write"):
+                args.write.write_text(best[0].text, encoding="utf-8")
             changed = f", with the changes of --set ({', '.join(args.set)})" if args.set else ""
             print(f"bench file with the gains found written to {args.write}{changed}: use it with --bench {args.write}")
         print(f"before: {describe(bench, _before(session, bench))}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from rig.core.errors import NotReady
 from rig.core.sample import Mode, Setpoint
@@ -59,6 +59,7 @@ class Device(ABC):
     """Anything the bench can open."""
 
     name: str
+    keys: ClassVar[tuple[str, ...]] = ()  # of its section in the bench file that mean something to it, beside `type`
     remarks: Sequence[str] = ()  # what a person should know of it once it is connected, one sentence each
     trouble: str = ""  # what is wrong with the device itself, in words, as of the last reading; a drive says it there
 

@@ -54,7 +54,7 @@ def drill(cause: Cause, phase: Phase, made: Callable[[], DrillRig] = CanopenRig)
         reaction = max(commands, default=since) - since
         allowed = cause.detection + PERIODS * rig.bench.setting(lambda text: None).period + 1e-9
         over = rig.wire.now()
-        wrong = [*_as_expected(cause, phase, ended), *_in_time(cause, phase, ended, reaction, allowed)]
+        wrong = [*as_expected(cause, phase, ended), *_in_time(cause, phase, ended, reaction, allowed)]
         wrong += _rows_kept(rig, since) if phase.name not in ("idle", "enabling") else []
         rig.wire.wait_until(over + AFTERWARDS)
         wrong += _stays_off(rig, over, ended)
@@ -73,7 +73,8 @@ def _run(rig: DrillRig, phase: Phase) -> tuple[str, str]:
     return ending.status, ending.reason
 
 
-def _as_expected(cause: Cause, phase: Phase, ended: str) -> list[str]:
+def as_expected(cause: Cause, phase: Phase, ended: str) -> list[str]:
+    """What is wrong with a run that `ended` so, in words; nothing where that is how it has to end."""
     good = {"completed", "stopped"}
     if cause.expected is Expected.GO_ON:
         # before a run starts, being refused is always right

@@ -13,13 +13,11 @@ from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
+from rig.procedures.nudge import DEG, nudge, refuse_held
 
-DEG = math.pi / 180
 TURN = 2 * math.pi
 RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
 BLOCKS = 8  # stretches of the turn whose mean shaft torques tell how sure their mean is
-DEAD = 5.0  # times the motion looked for, by the load encoder: then the motor encoder should have shown it
-HELD = 0.1  # of what the load should have moved: less is a load that does not follow at all
 STEADY = 0.1  # of the nominal speed: a motor that nearly stops leaves any torque in the shaft
 SIGMAS = 5.0  # a torque difference counts as seen beyond this many standard errors
 
@@ -78,40 +76,12 @@ class SignAndScale(Procedure):
 
     def steps(self, setting: Setting) -> Steps:
         """Returns a Proof. Raises NotReady, with what was measured, when the rig is not what the bench file says."""
-        breakaway = yield from self._nudge(setting)
+        limit = self.nudge_share * setting.control.torque_limit
+        # before a whole turn could wind up a gear whose output somebody has locked
+        breakaway = yield from nudge(setting, limit, self.nudge_rate, self.nudge_deg)
         forward = yield from self._leg(setting, +1)
         reverse = yield from self._leg(setting, -1)
         return judge(forward, reverse, breakaway, setting)
-
-    def _nudge(self, setting: Setting) -> Generator[Setpoint, Sample, float]:
-        """Ramp the torque until the motor moves; the right way, or not at all."""
-        sample = yield Torque(0.0)
-        home, limit, tau = sample.theta_m, self.nudge_share * setting.control.torque_limit, 0.0
-        load, dead = sample.theta_l, DEAD * self.nudge_deg * DEG / setting.ratio
-        while abs(moved := sample.theta_m - home) < self.nudge_deg * DEG:
-            tau += self.nudge_rate * setting.period
-            if tau > limit:
-                raise NotReady(
-                    f"the motor did not turn {self.nudge_deg:g}° with up to {limit:.2f} N·m ({moved / DEG:+.2f}°): "
-                    "is it blocked, is the drive's torque scale right, is its encoder read?"
-                )
-            sample = yield Torque(tau)
-            if abs(sample.theta_l - load) > dead:
-                raise NotReady(
-                    f"the load turned by {(sample.theta_l - load) / DEG:+.2f}° while the motor encoder shows "
-                    f"{(sample.theta_m - home) / DEG:+.2f}°: is the motor encoder read at all?"
-                )
-        if moved < 0:
-            raise NotReady(
-                f"{tau:.2f} N·m of positive torque turned the motor by {moved / DEG:+.1f}°, expected a positive angle: "
-                "motor encoder or torque command has the wrong sign"
-            )
-        begin = sample.t
-        while sample.t - begin < 0.3:  # friction brings it to rest
-            sample = yield Torque(0.0)
-        # before a whole turn could wind up a gear whose output somebody has locked
-        refuse_held(self.nudge_deg * DEG, sample.theta_l - load, setting.ratio)
-        return tau
 
     def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
         """One turn under the position loop; the shaft torque is averaged in the middle half, at constant speed."""
@@ -130,15 +100,6 @@ class SignAndScale(Procedure):
             sample = yield Torque(tau, theta_ref, omega_ref)
         means = tuple(total / n for total, n in zip(sums, counts, strict=True))
         return Leg(sample.theta_m - first.theta_m, sample.theta_l - first.theta_l, means, slowest)
-
-
-def refuse_held(motor: float, load: float, ratio: float) -> None:
-    """Raises NotReady when the load [rad] hardly moved while the motor did [rad]."""
-    if not abs(load) > HELD * abs(motor) / ratio:
-        raise NotReady(
-            f"the load encoder moved {load / DEG:.3f}° while the motor turned {motor / DEG:.1f}°, "
-            f"expected {motor / ratio / DEG:.2f}°: is the output locked or the encoder unplugged?"
-        )
 
 
 def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Proof:

@@ -1,4 +1,7 @@
-"""Short torque steps both ways from rest: what inertia and friction the position loop has to deal with."""
+"""Short torque steps both ways from rest: what inertia and friction the position loop has to deal with.
+
+A slow nudge comes first: a step against a locked output would wind the gear up beyond its limits, guard or not.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,10 @@ from typing import ClassVar
 
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.procedures.nudge import REST, nudge
+
+NUDGE_RATE = 1.0  # N·m/s
+NUDGE_DEG = 5.0  # deg of the motor that count as moved: 0.1° of a locked output, 12.5 N·m at 7160 N·m/rad
 
 
 @dataclass(frozen=True)
@@ -29,7 +36,7 @@ class StepTest(Procedure):
 
     def envelope(self, setting: Setting) -> Envelope:
         """Bounds with friction and load inertia left out."""
-        duration = 2 * self.repeats * (self.on + self.off)
+        duration = self.torque / NUDGE_RATE + REST + 2 * self.repeats * (self.on + self.off)
         return Envelope(duration, 4 * 2 * math.pi, 0.6 * 600 * math.pi / 30, self.torque, coupled=False)
 
     def conditions(self) -> dict[str, object]:
@@ -37,7 +44,8 @@ class StepTest(Procedure):
         return {"output_locked": False, "note": f"torque steps of ±{self.torque:g} N·m"}
 
     def steps(self, setting: Setting) -> Steps:
-        """Forward, reverse, forward …"""
+        """Forward, reverse, forward … Raises NotReady when the nudge does not move motor and load."""
+        yield from nudge(setting, self.torque, NUDGE_RATE, NUDGE_DEG)
         sample = yield Torque(0.0)
         for k in range(2 * self.repeats):
             begin, tau = sample.t, self.torque if k % 2 == 0 else -self.torque

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 
 from rig.core.errors import UsageError
+from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
 from rig.runfile.samples import Samples, open_samples
@@ -158,11 +159,16 @@ def _refuse_backward_time(run: Run) -> None:
     t = run.column("t")
     if t is None:
         return
-    t = t[np.isfinite(t)]
-    back = np.flatnonzero(np.diff(t) < 0)
-    if back.size:
-        i = int(back[0])
-        raise UsageError(
-            f"{run.samples.path}: time runs backwards after row {i} ({t[i]:.6f} s, then {t[i + 1]:.6f} s); "
-            "expected rows in the order they were measured"
-        )
+    row, last = 0, -math.inf
+    for some in stretches(t.size):
+        there = t[some][np.isfinite(t[some])]
+        back = np.flatnonzero(np.diff(there, prepend=last) < 0)
+        if back.size:
+            i = int(back[0])
+            before = there[i - 1] if i else last
+            raise UsageError(
+                f"{run.samples.path}: time runs backwards after row {row + i - 1} ({before:.6f} s, then "
+                f"{there[i]:.6f} s); expected rows in the order they were measured"
+            )
+        row += there.size
+        last = there[-1] if there.size else last

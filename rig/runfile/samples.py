@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 from rig.core.channels import CHANNEL
 from rig.core.errors import DataError, UsageError
 from rig.core.regular import regular
+from rig.core.rows import room
 from rig.runfile.archive import NAME
 from rig.runfile.columns import Array, as_float
 from rig.runfile.importing.units import known
@@ -55,8 +56,12 @@ class Archive(Samples):
         self.rows = self._about.num_rows
 
     def column(self, name: str) -> Array:
+        out, row = room(self.rows), 0
         with _read(self.path):
-            return as_float(self._open().read(columns=[name]).column(name))
+            for batch in self._open().iter_batches(batch_size=BATCH, columns=[name]):
+                out[row : row + batch.num_rows] = as_float(pa.chunked_array(batch.columns))
+                row += batch.num_rows
+        return out
 
     def empty(self, name: str) -> bool:
         groups = [self._about.row_group(i) for i in range(self._about.num_row_groups)]
@@ -77,7 +82,8 @@ class Archive(Samples):
                 yield file.read_row_group(i)
 
     def _open(self) -> pq.ParquetFile:
-        return pq.ParquetFile(self.path, metadata=self._about)  # the footer is read once, no file is held open
+        # the footer is read once, no file is held open; what was read is let go, not kept to the end of the file
+        return pq.ParquetFile(self.path, metadata=self._about, pre_buffer=False)
 
 
 class Journal(Samples):

@@ -16,10 +16,13 @@ from tests.bench.built import Unavailable
 
 @dataclass(frozen=True)
 class Cost:
-    """`cpu` and `wall` in s, `peak_mib` the most memory it had."""
+    """`cpu` and `wall` in s. The most memory it had: `own_mib` of its own, `peak_mib` with the pages of files it had in
+    view, which the machine takes back when it needs them.
+    """
 
     cpu: float
     wall: float
+    own_mib: float
     peak_mib: float
 
 
@@ -39,9 +42,9 @@ def cost(command: Sequence[str], folder: Path | None = None, allowed: tuple[int,
             cwd=folder,
             env=environment | {"OPENBLAS_NUM_THREADS": "1"},
         )
-        peak = 0.0
+        own = peak = 0.0
         while not (ended := os.wait4(process.pid, os.WNOHANG))[0]:
-            peak = max(peak, _most(process.pid))
+            own, peak = max(own, _memory(process.pid, "RssAnon")), max(peak, _memory(process.pid, "VmHWM"))
             time.sleep(LOOK)
         _, status, usage = ended
         process.returncode = os.waitstatus_to_exitcode(status)  # reaped here: Popen must not look for it again
@@ -49,15 +52,15 @@ def cost(command: Sequence[str], folder: Path | None = None, allowed: tuple[int,
             said.seek(0)
             last = (said.read().decode(errors="replace").strip().splitlines() or ["no word"])[-1]
             raise Unavailable(f"{' '.join(command[-3:])} ended with {process.returncode}: {last}")
-    return Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began, peak)
+    return Cost(usage.ru_utime + usage.ru_stime, time.perf_counter() - began, own, peak)
 
 
-def _most(pid: int) -> float:
-    """The most memory a process had so far [MiB]; 0 when it has ended. Not `ru_maxrss`, which begins with what this
-    process has: a child of a large bench would never show less.
+def _memory(pid: int, what: str) -> float:
+    """A figure of a process [MiB]; 0 when it has ended. Not `ru_maxrss`, which begins with what this process has: a
+    child of a large bench would never show less.
     """
     try:
         with open(f"/proc/{pid}/status", encoding="ascii", errors="replace") as file:
-            return next((int(line.split()[1]) / 1024 for line in file if line.startswith("VmHWM")), 0.0)
+            return next((int(line.split()[1]) / 1024 for line in file if line.startswith(what)), 0.0)
     except OSError:
         return 0.0

@@ -30,6 +30,7 @@ VERBS = {
     "reproduce": ["reproduce", "RUN", "--out"],
     "trace": ["trace", "RUN", "--out"],
     "identify": ["identify", "RUN", "-o"],
+    "tuning": ["tune", "--out"],
 }
 
 
@@ -44,6 +45,17 @@ def test_a_place_that_cannot_be_written_is_refused_alike_by_every_verb(
     assert "cannot write" in said.err
     assert "Not a directory; name another place with -" in said.err
     assert "about to turn" not in said.err
+    assert said.out == ""
+
+
+@pytest.mark.parametrize("verb", [["tune"], ["devices", "--channel", "can0"]])
+def test_a_bench_file_that_could_not_be_written_is_not_worked_for(
+    verb: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, "--write", "/proc/gains.toml"]) == Exit.USAGE
+    said = capsys.readouterr()
+    assert "cannot write /proc" in said.err
+    assert said.err.endswith("name another place with --write\n")
     assert said.out == ""
 
 

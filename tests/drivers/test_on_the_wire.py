@@ -10,7 +10,9 @@ import pytest
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Torque
+from sim.wire.faults import fault_verbs
 from sim.wire.frame import Frame
+from sim.wire.reactor import Reactor
 from sim.wire.states402 import DriveState
 from tests.drivers.running import run
 from tests.drivers.virtual import Wired, wired
@@ -78,8 +80,29 @@ def test_a_node_of_another_profile_is_refused():
 
 
 def test_a_node_that_is_not_there_is_a_sentence():
-    with pytest.raises(NotReady, match=r"node 9 on CAN bus 'rig'\) does not answer"):
+    with pytest.raises(
+        NotReady, match=r"node 9 on CAN bus 'rig'\) does not answer \(.*\); `hdrig devices` asks every node$"
+    ):
         connected("devices.torque_sensor.node=9")
+
+
+def test_a_bus_on_which_nobody_speaks_is_told_as_such():
+    with pytest.raises(
+        NotReady, match=r"does not answer \(.*\); nobody is heard on CAN bus 'rig' \(cable, power, bitrate\?\)"
+    ):
+        connected("devices.drive.node=9")
+
+
+@pytest.mark.parametrize(("station", "more"), [("hosts", "; nobody is heard on CAN bus 'rig'"), ("node 1", "")])
+def test_a_heartbeat_that_stays_away_is_told_from_a_bus_that_does(station: str, more: str):
+    w = connected("limits.stale_s=0.5", "devices.drive.watchdog=0.6")
+    cut = fault_verbs(w.twin, Reactor(w.twin.agenda), {}, {})["cut"]
+    w.twin.agenda.after(1.0, lambda: cut(station))
+    reason = run(w)[0].reason
+    assert "no heartbeat of drive" in reason
+    assert (
+        reason.partition("one every 50 ms")[2].partition(" (cable")[0].startswith(more or "; the drive did not confirm")
+    )
 
 
 def test_a_unit_that_is_no_torque_is_refused():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from rig.core.errors import NotReady
@@ -29,6 +31,14 @@ def test_a_scale_that_is_another_is_refused_with_both_numbers(index: int, sub: i
     w.instruments.drive.place.options["torque_constant"] = 0.5  # N·m/A
     w.twin.drive.objects.find(index, sub).value = value
     with pytest.raises(NotReady, match=told):
+        w.instruments.connect()
+
+
+def test_a_rated_torque_that_the_file_gives_in_millinewton_metres_is_told_so() -> None:
+    w = wired()
+    place = w.instruments.drive.place
+    w.instruments.drive.place = replace(place, torque_rated=1e3 * place.torque_rated)
+    with pytest.raises(NotReady, match=r"the file's number is in N·m: 3000 mN·m would be torque_rated = 3$"):
         w.instruments.connect()
 
 

@@ -190,3 +190,21 @@ def test_a_slow_line_that_lives_is_not_named_beside_the_one_that_fell_silent(ben
     bench.torque.every = 3
     bench.world.clock.at[200] = lambda: setattr(bench.encoder, "mute", True)
     assert bench.run().reason.startswith("no new load-encoder sample for")
+
+
+@pytest.mark.slow  # a second of patience each
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (b"", "sent nothing in 1 s, expected for example '-12.345 Nm'"),
+        (b"\x80\xfe\x18", r"sent \d+ bytes, not one line \(is baud = 9600 right, is its unit N·m\?\) in 1 s"),
+        (b"1.25 lbf\r\n", r"sent \d+ bytes, \d+ lines that say no torque \(is baud = 9600 right, is its unit N·m\?\)"),
+    ],
+)
+def test_a_torque_sensor_that_makes_no_sense_is_told_from_one_that_says_nothing(line: bytes, told: str) -> None:
+    peer = Peer(line)
+    sensor = AsciiTorque(Wiring(FakeClock()), Place("torque_sensor", {"port": peer.path, "baud": 9600}, range=50.0))
+    with saying(peer), pytest.raises(NotReady, match=told):
+        sensor.connect()
+    sensor.close()
+    peer.close()

@@ -100,3 +100,8 @@ def test_a_reversed_torque_sensor_is_refused() -> None:
 
     with pytest.raises(NotReady, match="torque sensor has the wrong sign"):
         prove(reversed_sensor)
+
+
+def test_a_drive_that_holds_its_torque_back_is_told_by_what_it_gives() -> None:
+    with pytest.raises(NotReady, match=r"up to 2\.00 N·m, of which the drive says it gave 2\.00 N·m \(\+0\.00°\)"):
+        prove(lambda w: setattr(w, "drag", 4.0))

@@ -177,6 +177,16 @@ def test_time_that_runs_backwards_is_refused_with_where(tmp_path: Path) -> None:
         Run.open(foreign(tmp_path / "x", t=t, theta_m=T))
 
 
+def test_time_that_runs_backwards_where_two_stretches_of_rows_meet_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rig.core.rows.STRETCH", 41)
+    t = T.copy()
+    t[3], t[41] = np.nan, 0.039
+    with pytest.raises(UsageError, match=r"backwards after row 39 \(0\.040000 s, then 0\.039000 s\)"):
+        Run.open(foreign(tmp_path / "x", t=t, theta_m=T))
+
+
 def test_time_that_stands_still_or_lacks_here_and_there_is_not(tmp_path: Path) -> None:
     t = pa.array([0.0, 0.0, None, 0.001, 0.001])
     assert Run.open(foreign(tmp_path / "x", t=t, theta_m=np.arange(5.0))).rows == 5

@@ -181,6 +181,14 @@ def test_an_emergency_and_a_trip(op: Operator) -> None:
     assert int(op.host.get(1, 0x6041, 0, "H")) & 0x4F == 0x40
 
 
+def test_slow_answers_are_healed(op: Operator) -> None:
+    asked = 0.45  # s, longer than a host waits
+    op.do("slow_sdo", device="drive", seconds=asked)
+    assert op.host.twin.drive.sdo_turnround == asked
+    op.do("heal")
+    assert op.host.twin.drive.sdo_turnround == op.host.twin.encoder.sdo_turnround < 0.01
+
+
 def test_sto_and_a_stuck_mode(op: Operator) -> None:
     op.host.enable(CST)
     op.do("sto")

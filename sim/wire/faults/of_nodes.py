@@ -10,7 +10,7 @@ from sim.wire.assembly import Assembly
 from sim.wire.cia404 import TorqueTransducer
 from sim.wire.cia406 import AbsoluteEncoder
 from sim.wire.faults.words import named, number
-from sim.wire.node import Node
+from sim.wire.node import SDO_TURNROUND, Node
 from sim.wire.objects import Abort, Entry
 
 DOUBLES: dict[str, type[AbsoluteEncoder | TorqueTransducer]] = {"encoder": AbsoluteEncoder, "torque": TorqueTransducer}
@@ -25,11 +25,13 @@ class NodeFaults:
         self._doubles: list[Node] = []
 
     def heal(self) -> None:
-        """No doubles, inputs of the drive as they should be."""
+        """No doubles, no slow answers, inputs of the drive as they should be."""
         for node in self._doubles:
             node.leave()
         self._doubles = []
-        drive = self._assembly.drive
+        drive, encoder, torque = self._assembly.drive, self._assembly.encoder, self._assembly.torque
+        for node in (drive, encoder, torque):
+            node.sdo_turnround = SDO_TURNROUND
         drive.mode_stuck = drive.incurable = False
         if drive.sto_active:
             drive.sto(False, False)

@@ -28,8 +28,9 @@ class Commands(Row):
     """`--help` lists the verbs from a table and imports none of them; each verb imports what it needs.
 
     Found and mended: an analysis loaded scipy.interpolate, scipy.optimize and numba for springs and simulations it did
-    not make, 40 % of its time; pyarrow imported pandas, where that is installed, for columns it only had to hand over.
-    What is left is two thirds matplotlib: its import, and six figures, each in two widths, as SVG.
+    not make, 40 % of its time; pyarrow imported pandas, where that is installed, for columns it only had to hand over;
+    pydantic came with one function that needs none of it; Python searched what was imported for garbage, again and
+    again. What is left is two thirds matplotlib: its import, and six figures, each in two widths, as SVG.
     """
 
     number: ClassVar[int] = 12

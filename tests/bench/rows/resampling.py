@@ -34,8 +34,11 @@ class Resampling(Row):
     """hdrig interpolates nothing where rows are plenty: it averages the rows in each bin, so noise averages down too.
 
     Found and mended: the bins were counted over whole arrays, whose fresh pages cost more than the counting; by blocks
-    that stay in the cache it is a steady 11 ns a row and needs no memory beside the bins. The spectrum (an FFT padded
-    to a power of two) costs two and a half times that, and is set here against the spline's resampling alone.
+    that stay in the cache it is a steady 10 to 13 ns a row and needs no memory beside the bins. The spectrum (an FFT
+    padded to a power of two) costs two and a half times that, and is set here against the spline's resampling alone.
+
+    Most of the spline's time is not its own: of arithmetic it has 34 to 42 ns a row (ours is then 0.3 of it), and the
+    system takes 40 to 280 ns more, from one round to the next, to give it fresh memory. That is what moves the ratio.
     """
 
     number: ClassVar[int] = 8

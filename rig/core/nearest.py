@@ -1,0 +1,13 @@
+"""What was meant by a name that does not exist: a file of its own, for nothing here costs start-up."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+def nearest(wrong: str, valid: Iterable[str]) -> str:
+    """ "did you mean 'x'?", or the list of what exists."""
+    names = sorted(valid)
+    close = difflib.get_close_matches(wrong, names, n=1, cutoff=0.5)
+    return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"

@@ -1,0 +1,57 @@
+"""The step test on the twin: no blow against an output that somebody has locked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from rig.bench import read
+from rig.core.errors import NotReady
+from rig.guard import Guard
+from rig.interrupts import Interrupts
+from rig.loop import Loop
+from rig.procedures.step_test import StepTest
+from rig.supervisor import Act, Supervisor
+from rig.timing import LoopTiming
+from tests.fakes import ListSink
+
+MOST = 20.0  # N·m at the shaft: 5° of the motor against 7160 N·m/rad are 12.5, and it runs on a little
+
+
+def steps(prepare: Callable[[Any], None], torque: float = 1.25) -> ListSink:
+    """Rows of a step test on the twin after `prepare` has been at its world; those before a refusal are in its args."""
+    bench, supervisor, sink = read("twin"), Supervisor(), ListSink()
+    rig, setting, procedure = bench.open("virtual"), bench.setting(lambda text: None), StepTest(torque=torque)
+    rig.connect()
+    prepare(rig.clock)
+    supervisor.act(Act.CONNECT)
+    supervisor.act(Act.CHECK)
+    guard, timing = Guard(bench.limits, procedure.envelope(setting), setting.ratio), LoopTiming(0.001, virtual=True)
+    loop = Loop(rig, supervisor, guard, sink, Interrupts(), timing)
+    try:
+        assert loop.run(procedure, setting).status == "completed"
+    except NotReady as why:
+        why.args = (*why.args, sink)
+        raise
+    finally:
+        rig.close()
+    return sink
+
+
+def test_a_locked_output_is_found_before_a_step_could_wind_it_up() -> None:
+    with pytest.raises(NotReady, match="is the output locked") as refusal:
+        steps(lambda world: world.lock_output())
+    sink = refusal.value.args[1]
+    assert 3.0 < max(abs(sample.tau_l) for sample, *_ in sink.rows) < MOST
+
+
+def test_a_torque_that_friction_eats_is_refused_with_that_torque() -> None:
+    with pytest.raises(NotReady, match=r"did not turn 5° with up to 0\.30 N·m"):
+        steps(lambda world: None, torque=0.3)
+
+
+def test_a_free_output_gets_its_steps_both_ways() -> None:
+    asked = {tau for _, tau, *_ in steps(lambda world: None).rows}
+    assert {1.25, -1.25, 0.0} <= asked
