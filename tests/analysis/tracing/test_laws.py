@@ -10,15 +10,16 @@ from scipy.integrate import solve_ivp
 
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Fit, Moved, Port, Signals
+from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
-from rig.model.effects.nonlinear_stiffness import CUBIC, NonlinearStiffness
+from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
-from tests.contract.test_effects import KNOWN, N, motion
+from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
 
@@ -114,6 +115,26 @@ def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> Non
     wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04, 0.0))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
     inside = slice(5, -5)
     np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
+
+
+@pytest.mark.parametrize("side", [MOTOR, OUTPUT])
+def test_a_modulated_spring_pushes_the_shaft_whose_angle_it_follows(side: float) -> None:
+    """−∂/∂θ of ½·T²/K(θ) at constant torque, by finite differences: what resists is its negative."""
+    s, h, kappa = motion(), 1e-6, 0.05 / KNOWN.K
+    port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
+    theta = s.theta_m if side == MOTOR else s.theta_l
+    energy = [0.5 * s.torque**2 * kappa * np.cos(2.0 * (theta + by)) for by in (h, -h)]
+    columns = AngleDependentStiffness().columns(s, (2.0, 1.0, side))
+    np.testing.assert_allclose(kappa * columns[port][:, 0], -(energy[0] - energy[1]) / (2 * h), atol=1e-7)
+    np.testing.assert_allclose(columns[Port.WIND_UP][:, 0], s.torque * np.cos(2.0 * theta), atol=1e-12)
+
+
+def test_a_knee_at_no_torque_is_a_gap_and_no_spring() -> None:
+    effect = NonlinearStiffness()
+    least = effect.bounds(REACH)[1][0]
+    assert effect.beyond((KNEE, least), REACH)
+    assert not effect.beyond((KNEE, 3.0), REACH)
+    assert not effect.beyond((CUBIC, least), REACH)
 
 
 def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:

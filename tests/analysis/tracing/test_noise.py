@@ -9,16 +9,25 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
-from rig.analysis.tracing.floor.noise import Measured, floor_of, leniency
+from rig.analysis.tracing.floor.noise import Measured, floor_of, leniency, own_offset
 from rig.analysis.tracing.thresholds import LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated
 JITTER = 5e-5  # N·m per rad/s
 
 
+LOADS = (5.0, 5.0, 10.0, 10.0, 20.0, 20.0, 40.0, 0.1)  # N·m; the last two were never repeated
+GAIN = 2e-3  # relative
+
+
+def run_at(speed: float, load: float) -> Any:
+    pieces = (SimpleNamespace(torque=np.full(9, load)),)
+    said = f"speed {speed} load {load}"
+    return SimpleNamespace(procedure="speed", said=said, turning=speed, locked=False, has=(), pieces=pieces)
+
+
 def campaign() -> Any:
-    runs = [SimpleNamespace(procedure="speed", said=f"speed {w}", turning=w, locked=False, has=()) for w in SPEEDS]
-    return SimpleNamespace(runs=runs, rows={})
+    return SimpleNamespace(runs=[run_at(w, 0.0) for w in SPEEDS], rows={})
 
 
 def measured(freedom: float, jitter: float = JITTER) -> Measured:
@@ -37,6 +46,34 @@ def floor(of: Measured, run: int) -> float:
 def test_a_clock_that_jitters_is_carried_to_speeds_that_were_never_repeated() -> None:
     assert floor(measured(500.0), 6) == pytest.approx(np.hypot(1e-3, 40 * JITTER), rel=1e-3)
     assert floor(measured(500.0), 7) == pytest.approx(1e-3, rel=1e-2)
+
+
+def test_the_gain_of_a_torque_sensor_is_carried_to_loads_that_were_never_repeated() -> None:
+    runs = [run_at(12.0, load) for load in LOADS]
+    by_run = {(i, "L"): float(np.hypot(0.03, GAIN * load)) for i, load in enumerate(LOADS[:6])}
+    of = Measured(Noise({"L": 0.02}, {"L": 1.0}, {"L": 1e-3}), by_run, {}, {}, dict.fromkeys(by_run, 500.0))
+    for run, floor_there in ((6, np.hypot(0.03, GAIN * 40.0)), (7, 0.03)):
+        runs[run].counts_m = 0.0
+        rows = {(run, "L"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool))}
+        eq: Any = SimpleNamespace(runs=runs, rows=rows)
+        assert floor_of(of, eq, (run, "L")) == pytest.approx(floor_there, rel=1e-2)
+
+
+@pytest.mark.parametrize("wanders", [1e-6, 0.06, np.inf])
+def test_how_far_a_zero_wanders_is_read_the_same_whatever_is_believed_of_it(wanders: float) -> None:
+    """A residual has lost as much of its mean as the offset is believed to wander; the rows have not."""
+    zeros, rng = (0.05, -0.03, 0.08, -0.06, 0.02, -0.07), np.random.default_rng(3)
+    rows = {
+        (i, "L"): SimpleNamespace(y=zero + 0.01 * rng.standard_normal(500), z=np.zeros((500, 1)), at=(0,))
+        for i, zero in enumerate(zeros)
+    }
+    runs = [SimpleNamespace(ratio=50.0) for _ in zeros]
+    noise = Noise({"L": 0.01}, {"L": 1.0}, {"L": wanders})
+    eq = SimpleNamespace(rows=rows, own={}, runs=runs, noise=noise)
+    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), x=np.zeros(1))
+    pairs: Any = [SimpleNamespace(pair=(i, i + 1), rows=500) for i in (0, 2, 4)]
+    want = np.sqrt(np.mean([(zeros[i] - zeros[i + 1]) ** 2 / 2 for i in (0, 2, 4)]))
+    assert own_offset(s, "L", pairs, 1e-4) == pytest.approx(want, rel=0.05)
 
 
 def test_noise_that_does_not_grow_stays_as_it_is() -> None:

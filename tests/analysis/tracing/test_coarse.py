@@ -1,0 +1,44 @@
+"""A coarse motor encoder: what one count is, what rounding does to the noise, the low-pass and J_m."""
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.runs.recording import COARSE, _noise, _quiet, smallest_step
+from rig.analysis.tracing.thresholds import BANDWIDTH
+
+COUNTS = 2000
+COUNT = 2 * np.pi / COUNTS
+DECLARED = {"motor_counts_per_rev": COUNTS}
+
+
+def read(speed: float, count: float = COUNT) -> np.ndarray:
+    """An encoder at `speed` rad/s, rows 2.4 ms apart."""
+    return np.asarray(count * np.round((0.1 + speed * 2.4e-3 * np.arange(5000)) / count))
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.0, 7.0, 45.0])
+def test_one_count_is_seen_at_any_speed(speed: float) -> None:
+    assert smallest_step(read(speed)) == pytest.approx(COUNT, rel=1e-6)
+
+
+def test_a_reading_that_stands_still_has_no_step() -> None:
+    assert smallest_step(np.full(100, 3.0)) == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.5, 45.0])
+def test_a_slow_coarse_encoder_is_as_noisy_as_its_rounding(speed: float) -> None:
+    assert _noise("theta_m", read(speed), DECLARED) == pytest.approx(COUNT / 12**0.5, rel=1e-6)
+
+
+def test_an_encoder_finer_than_declared_has_the_noise_it_shows() -> None:
+    fine = read(1.0, COUNT / 1000)
+    assert _noise("theta_m", fine, DECLARED) < COUNT / 500
+
+
+def test_the_low_pass_is_lower_for_a_coarse_encoder_alone() -> None:
+    assert _quiet(read(1.0), DECLARED) == pytest.approx(BANDWIDTH / 5)
+    fine = 8192
+    assert 2 * np.pi / fine < COARSE
+    assert _quiet(read(1.0, 2 * np.pi / fine), {"motor_counts_per_rev": fine}) == BANDWIDTH
+    assert _quiet(read(1.0), {}) == BANDWIDTH
+    assert _quiet(None, DECLARED) == BANDWIDTH
