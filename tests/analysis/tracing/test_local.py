@@ -1,9 +1,13 @@
 """Jumps are found where they are, and drift, waves and noise are no jumps."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor.local import _heights, _jumps
+from rig.analysis.tracing.fit.equations import Equations, Noise
+from rig.analysis.tracing.floor.local import Steps, _heights, _jumps, explained, lost_counts
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)
@@ -35,3 +39,33 @@ def test_a_line_stands_out_of_its_surroundings_at_its_frequency() -> None:
     heights = _heights(t, np.sin(2 * np.pi * 7.99 * t) + RNG.standard_normal(t.size), grid)
     assert grid[int(np.argmax(heights))] == pytest.approx(7.99, abs=0.05)
     assert np.mean(_heights(t, RNG.standard_normal(t.size), grid) > 15.0) < 1e-2
+
+
+def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
+    """Eight runs over `turns` of the output of a gear of ratio 50, each with a jump at one of its motor `angles`."""
+    theta = np.linspace(0.0, 2 * np.pi * 50 * turns, 20000)
+    runs = [SimpleNamespace(ratio=50.0)] * len(angles)
+    rows = {(i, "A"): SimpleNamespace(theta_m=theta) for i in range(len(angles))}
+    at = {i: (int(np.searchsorted(theta, angle)),) for i, angle in enumerate(angles)}
+    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)))
+
+
+def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts() -> None:
+    turn = 2 * np.pi * 50
+    assert not lost_counts(*jumped([0.3 * turn + 0.1 * i + turn * (i % 2) for i in range(8)], 2.0), [])
+    assert lost_counts(*jumped([float(a) for a in RNG.uniform(0, 2 * turn, 8)], 2.0), [])
+
+
+def test_jumps_in_runs_that_saw_a_few_degrees_of_the_output_may_be_lost_counts() -> None:
+    assert lost_counts(*jumped([1.0, 9.0, 4.0, 12.0, 2.7, 7.0, 10.1, 5.5], 0.05), [])
+
+
+def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_torques() -> None:
+    n = np.arange(1000)
+    step = (n > 400) * 1.0
+    noise = Noise({"A": 5e-6, "M": 2e-3}, {"A": 1.0, "M": 1.0}, {"A": np.inf, "M": np.inf})
+    run: Any = SimpleNamespace(locked=False)
+    eq = Equations((run,), {}, noise)
+    e = {(0, "A"): 5e-5 * (step - step.mean()), (0, "M"): 5e-3 * RNG.standard_normal(1000)}
+    columns = {(0, "A"): step[:, None], (0, "M"): np.eye(1000)[:, 400:401]}
+    assert explained(eq, e, columns) > 0.9

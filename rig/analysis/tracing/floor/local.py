@@ -22,6 +22,8 @@ IN_SHORT = {name: effect.in_short for name, effect in EACH_RUN.items()}
 ZOOM = 4  # finer than a run's own resolution
 WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
 APART = 5.0  # usual steps between two rows: something was left out there
+SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
+ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
 EDGE = 3  # rows over which the low-pass spreads a step
 
 
@@ -254,15 +256,25 @@ def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) 
 
 
 def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -> bool:
-    """Whether the jumps are lost counts: there are some, and repeats do not jump at the same angle as a tooth would."""
+    """Whether the jumps are lost counts: there are some, and repeats do not jump at the same angle as a tooth would,
+    nor all runs at one angle of a shaft as a scale with a fault would."""
     count = sum(len(r) for r in steps.rows.values())
-    if count == 0:
+    if count == 0 or any(_at_one_angle(eq, steps, per_turn) for per_turn in (1.0, eq.runs[0].ratio)):
         return False
     same = 0
     for a, b in pairs:
         x, y = (eq.rows[i, "A"].theta_m[list(steps.rows.get(i, ()))] for i in (a, b))
         same += int(sum(np.min(np.abs(y - v)) < STEP_ALIKE for v in x)) if y.size else 0
     return same * 4 < count
+
+
+def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:
+    """Whether the jumps lie nearer together on a shaft that turns once in `per_turn` turns of the motor than chance
+    does once in a hundred times (Rayleigh's test), and not because the runs saw no more of that shaft."""
+    thetas = [eq.rows[run, "A"].theta_m for run in steps.rows]
+    jumps = np.concatenate([theta[list(rows)] for theta, rows in zip(thetas, steps.rows.values(), strict=True)])
+    seen, found = (float(abs(np.mean(np.exp(1j * x / per_turn)))) for x in (np.concatenate(thetas), jumps))
+    return seen < SEEN_ROUND and jumps.size * found**2 > ONE_ANGLE
 
 
 def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
@@ -272,8 +284,9 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
 
 
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:
-    """Share of the excess over the floor that columns of their own take, in the blocks of `e` that have some."""
-    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items()}
+    """Share of the excess over the floor in A that columns of their own take, in the blocks of `e` that have some.
+    What a step does to the torques is no measure: it has another unit, and is hardly seen there."""
+    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items() if key[1] == "A"}
     keys = [key for key in own if key in e]
     excess = sum(float(e[k] @ e[k]) - e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
     return sum(float(np.sum((own[k].T @ e[k]) ** 2)) for k in keys) / max(excess, 1e-300)
