@@ -23,6 +23,7 @@ class AngleDependentStiffness(Effect):
     name: ClassVar[str] = "angle_dependent_stiffness"
     in_short: ClassVar[str] = "stiffness modulated by angle"
     source: ClassVar[str] = "ghorbel2001"
+    backbone: ClassVar[bool] = True  # over a stroke the output's angle goes with the time since it began
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
