@@ -38,7 +38,8 @@ class TorsionalMode(Effect):
 
     The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ
     that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever
-    is that of the other angle. Of a mode above what the equations are compared at that is all there is to see.
+    is that of the other angle. Of a mode above what the equations are compared at that is all there is to see. A soft
+    one swings: ψ = H·(τ/k + ω̇_m/ω²), J_2 = k/ω² being the wave generator's inertia, and the motor feels −J_2·ψ̈.
 
     A hub before the torque sensor is turned by the gear and not by what the sensor reads: the gear carries
     J_2·(ω̇_l + T̈/k) more, k being the sensor's spring.
@@ -84,7 +85,7 @@ class TorsionalMode(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
-        two, for J_2 and for J_2/k."""
+        two, for J_2 and for J_2/k; of a soft coupling three, for 1/k, 1/ω² and J_2/ω²."""
         side, frequency, zeta, about = shape
         if side == HUB:
             return self._hub(signals)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.runs.recording import COARSE, _noise, _quiet, smallest_step
+from rig.analysis.tracing.runs.recording import COARSE, SLOWEST, _noise, _quiet, smallest_step
 from rig.analysis.tracing.thresholds import BANDWIDTH
 
 COUNTS = 2000
@@ -37,6 +37,7 @@ def test_an_encoder_finer_than_declared_has_the_noise_it_shows() -> None:
 
 def test_the_low_pass_is_lower_for_a_coarse_encoder_alone() -> None:
     assert _quiet(read(1.0), DECLARED) == pytest.approx(BANDWIDTH / 5)
+    assert _quiet(read(1.0, 2 * np.pi / 42), {"motor_counts_per_rev": 42}) == SLOWEST  # Hall sensors
     fine = 8192
     assert 2 * np.pi / fine < COARSE
     assert _quiet(read(1.0, 2 * np.pi / fine), {"motor_counts_per_rev": fine}) == BANDWIDTH

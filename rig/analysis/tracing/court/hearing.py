@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
-ALONE_TRIED = 2  # suspects: the third has never been the true one
+ALONE_TRIED = 2  # suspects: each costs a hearing
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""

@@ -29,6 +29,7 @@ SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two
 ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
 COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
 FINE = 2 * np.pi / 10_000  # rad, a count that needs no lower low-pass; of 2000 J_m is 17 % off at 12 Hz, right at 7
+SLOWEST = 3.0  # Hz, the lowest low-pass: with it a piece of 3 s is still ten times as long as the filter
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -123,7 +124,7 @@ def _quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
     """Hz of low-pass that suits the motor encoder: a position loop answers the rounding of a coarse one with torque,
     and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
     step = 0.0 if theta_m is None else _count(theta_m, encoders)
-    return BANDWIDTH * FINE / step if step > COARSE else BANDWIDTH
+    return max(SLOWEST, BANDWIDTH * FINE / step) if step > COARSE else BANDWIDTH
 
 
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
