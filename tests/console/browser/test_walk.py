@@ -92,10 +92,12 @@ def _may(page: Page) -> set[str]:
 
 
 def _at_rest(page: Page) -> None:
-    """Hold, stop and halt are taken where nothing moves, and move nothing."""
+    """Hold, stop and halt are taken where nothing moves, and move nothing. What the drive says of a halt takes the
+    place of the answer, at once where it is quick."""
     for what in ("hold", "stop", "halt"):
         _press(page, what)
-        page.wait_for_selector(f"#answer[data-ok=true]:has-text('{what.capitalize()}: ')")
+        told = f":has-text('{what.capitalize()}: '), :has-text('halted while nothing ran')"
+        page.wait_for_selector(f"#answer[data-ok=true]:is({told})")
 
 
 def _press(page: Page, what: str) -> None:
