@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Final
@@ -26,16 +26,6 @@ OTHER_NAMES: Final = {"constant-speed": "constant-torque"}  # what other rigs ca
 OF_THE_RIG: Final = ("output_locked", "assembly", "note", "settle_s")  # conditions that are no wish of their own
 LOCK_STEPS: Final = (5.0, 20.0)  # N·m: nested amplitudes, one within what soft wind-up and gaps fill, one far beyond
 ONCE: Final = (1.0,)  # of the lock test's usual rate: it sticks and slips, and every stay is one reading
-ALONG: Final[Sequence[tuple[frozenset[str], str, Mapping[str, float | bool | str], str]]] = (
-    (
-        frozenset({"speed", "time", "temperature", "direction"}),
-        "friction",
-        {"speeds_rpm": "15,30,60,120,200,310,400,500", "output_deg": 4.0, "breakaways": 1},
-        "every speed both ways within three minutes",
-    ),
-    (frozenset({"load", "memory"}), "stiffness_lock", {}, "nested amplitudes against the lock pin"),
-    (frozenset({"load_angle", "motor_angle"}), "full_turn", {}, "a whole turn of the output"),
-)  # where the trace itself asks for nothing
 
 
 @dataclass(frozen=True)
@@ -111,14 +101,6 @@ def duration(campaign: Campaign, items: tuple[Item, ...]) -> float:
     checks = [check for deed in todo if isinstance(deed, ByHand) for check in checks_of(deed.change)]
     setting = campaign.bench.setting(lambda text: None)
     return sum(campaign.envelope(i).duration for i in items) + sum(c.envelope(setting).duration for c in checks)
-
-
-def elsewhere(coordinate: str | None) -> NextRun | None:
-    """The run that shows most of what nobody can name: along the coordinate it lives in. None where none is known."""
-    for coordinates, procedure, conditions, why in ALONG:
-        if coordinate in coordinates:
-            return NextRun(procedure, dict(conditions), f"what is left lives in {coordinate}: {why}".replace("_", " "))
-    return None
 
 
 def same(a: NextRun | None, b: Mapping[str, Any] | None) -> bool:

@@ -10,7 +10,7 @@ from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
-from rig.closing.advice import Advice, advised, elsewhere, same
+from rig.closing.advice import Advice, advised, same
 from rig.closing.grow import grown
 from rig.closing.story import End, Round, Story, told_by, write_story
 from rig.core.errors import Exit, NotReady, UsageError
@@ -63,7 +63,7 @@ class Closing:
     def _advise(self, found: Round) -> None:
         """Put the run asked for behind the others, or end with the reason why not."""
         before = self.story.rounds[-1].asked if self.story.rounds else None
-        asked = _asked(found) or (elsewhere(found.coordinate) if found.status is Status.UNKNOWN else None)
+        asked = _asked(found)
         if asked is None:
             self._with(found)
             end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED

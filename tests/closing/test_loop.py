@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from rig.analysis.tracing.court.next_run import along
 from rig.analysis.tracing.outcome.result import Before, Errors, NextRun, Status, Trace, Verdict
 from rig.bench import read
 from rig.campaign.journal import Journal, new_journal, read_journal
@@ -87,9 +88,7 @@ def test_a_run_that_did_not_decide_is_not_made_for_ever(tmp_path: Path) -> None:
 
 
 def test_what_is_unknown_is_looked_for_along_the_coordinate_it_lives_in(tmp_path: Path) -> None:
-    unknown = saying(Status.UNKNOWN)
-    unknown = replace(unknown, verdict=replace(unknown.verdict, coordinate="load_angle"))
-    _, closing = loop(tmp_path, iter([unknown]), budget=1.0)
+    _, closing = loop(tmp_path, iter([saying(Status.UNKNOWN, along("load_angle"))]), budget=1.0)
     assert closing.story.rounds[0].asked is not None
     assert closing.story.rounds[0].asked["procedure"] == "full_turn"
     assert closing.story.end is End.BUDGET

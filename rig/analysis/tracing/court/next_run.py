@@ -1,8 +1,8 @@
-"""Rivals of a named effect, and the run that would decide between them."""
+"""Rivals of a named effect, and the run that would decide between them; the run that shows most of what has no name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -94,15 +94,40 @@ def _by_table(pair: set[str]) -> NextRun:
     """What is known to separate some effects where no run of the catalogue is expected to by its numbers."""
     for members, procedure, conditions, why in DECIDERS:
         if len(members & pair) >= 2:
-            return NextRun(procedure, conditions, f"separates {' from '.join(sorted(pair))}: {why}")
+            return NextRun(procedure, dict(conditions), f"separates {' from '.join(sorted(pair))}: {why}")
     return NextRun("constant_torque", {"speed_rpm": 500.0}, f"separates {' from '.join(sorted(pair))} by speed")
 
 
-DECIDERS: Sequence[tuple[frozenset[str], str, dict[str, float | bool | str], str]] = (
+def along(coordinate: str) -> NextRun | None:
+    """The run that shows most of what nobody can name: along the `coordinate` of the report's list it lives in."""
+    for coordinates, procedure, conditions, why in ALONG:
+        if coordinate in coordinates:
+            return NextRun(procedure, dict(conditions), f"what is left lives in {coordinate}: {why}".replace("_", " "))
+    return None
+
+
+EVERY_SPEED: Final[Mapping[str, float | bool | str]] = {
+    "speeds_rpm": "15,30,60,120,200,310,400,500",
+    "output_deg": 4.0,
+    "breakaways": 1,
+}
+ALONG: Final[Sequence[tuple[frozenset[str], str, Mapping[str, float | bool | str], str]]] = (
+    (
+        frozenset({"speed", "time", "temperature", "direction"}),
+        "friction",
+        EVERY_SPEED,
+        "every speed both ways within three minutes",
+    ),
+    (frozenset({"load", "memory"}), "stiffness_lock", {}, "nested amplitudes against the lock pin"),
+    (frozenset({"load_angle", "motor_angle"}), "full_turn", {}, "a whole turn of the output"),
+    (frozenset({"time_periodic"}), "standstill", {}, "what comes from outside stays when nothing turns"),
+)
+
+DECIDERS: Final[Sequence[tuple[frozenset[str], str, Mapping[str, float | bool | str], str]]] = (
     (
         frozenset({"thermal_friction_drift", "quadratic_drag", "stribeck_friction"}),
         "friction",
-        {"speeds_rpm": "15,30,60,120,200,310,400,500", "output_deg": 4.0, "breakaways": 1},
+        EVERY_SPEED,
         "every speed from creep to fast within three minutes, rising and falling: at two or three speeds, minutes "
         "apart, falling friction, drag and warming bend the same curve",
     ),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from rig.analysis.tracing.court.judge import Worth
-from rig.analysis.tracing.court.next_run import deciding
+from rig.analysis.tracing.court.next_run import along, deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
@@ -81,7 +81,7 @@ def decide(
     names = _beside(best.coordinate, _clean(shared, worths)) if line is None and (known or total <= EXPLAINED) else ()
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
-    return Ruling(verdict, best, _lives(where), None)
+    return Ruling(verdict, best, _lives(where), along(best.coordinate))
 
 
 def _is_loud(total: float, single: float, names: Sequence[str]) -> bool:
@@ -99,7 +99,7 @@ def _cast(shadow: Shadow, names: Sequence[str]) -> Ruling:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
     stand = _beside(shadow.coordinate, names)
     verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
-    return Ruling(verdict, None, (shadow.coordinate,), None)
+    return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
 
 
 def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
