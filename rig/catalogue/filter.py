@@ -50,10 +50,12 @@ class Filter:
         )
 
     def of(self, found: Iterable[Row]) -> list[Row]:
-        """Those that pass, in order; equal ones by time and name."""
-        order = ORDERS[self.sort]
-        passed = [row for row in found if self.passes(row)]
-        return sorted(passed, key=lambda r: (order(r), r.started or EARLIEST, r.path.name), reverse=self.reverse)
+        """Those that pass, in order."""
+        return sorted(filter(self.passes, found), key=self.key, reverse=self.reverse)
+
+    def key(self, row: Row) -> tuple[Any, datetime, str]:
+        """What `row` is sorted by; equal ones by time and name."""
+        return ORDERS[self.sort](row), row.started or EARLIEST, row.path.name
 
     def _in_time(self, row: Row) -> bool:
         if self.since is None and self.until is None:

@@ -23,9 +23,15 @@ def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
 
     Raises UsageError without such a folder.
     """
-    if not Path(root).is_dir():
-        raise UsageError(f"there is no folder {root}; give the folder that holds the runs")
+    _refuse_no_folder(root)
     return filter.of(rows(str(root)))
+
+
+def passing(root: Path | str, filter: Filter = ALL) -> Iterator[Row]:
+    """The same runs one by one, as they lie on disk; none is kept or remembered. Raises UsageError at once."""
+    _refuse_no_folder(root)
+    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in run_folders(str(root)))
+    return (row for row in found if filter.passes(row))
 
 
 def rows(root: str) -> Iterator[Row]:
@@ -35,7 +41,16 @@ def rows(root: str) -> Iterator[Row]:
 
 def row(folder: Path | str) -> Row:
     """The run in `folder`; never raises."""
-    found, process = _read(f"{folder}/{manifest.NAME}")
+    return _now(*_read(f"{folder}/{manifest.NAME}"))
+
+
+def _refuse_no_folder(root: Path | str) -> None:
+    if not Path(root).is_dir():
+        raise UsageError(f"there is no folder {root}; give the folder that holds the runs")
+
+
+def _now(found: Row, process: dict[str, Any]) -> Row:
+    """A run as its manifest had it, and as its process is at this moment."""
     if found.status == RUNNING and not is_being_made(process):  # asked each time: it may have died since
         why = found.reason or "found dead; hdrig recover makes it readable"
         return replace(found, status="interrupted", reason=why)

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from rig.catalogue.filter import ORDERS, STATUSES, VERDICTS, asked
 from rig.catalogue.row import UNREADABLE, Row
-from rig.catalogue.scan import runs
+from rig.catalogue.scan import passing
+from rig.core.in_order import in_order
 
 HEAD = f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run"
 
@@ -31,18 +32,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """One line a run, oldest first unless told otherwise; a damaged manifest has a line that says what is wrong."""
     names = ("gear", "procedure", "verdict", "status", "since", "until", "sort", "reverse")
-    rows = runs(args.root, asked(**{name: getattr(args, name) for name in names}))
-    if args.json:
-        for row in rows:
-            print(json.dumps(row.as_json(), allow_nan=False))  # ASCII: names of folders may be anything
-        return 0
-    if not rows:
+    filter = asked(**{name: getattr(args, name) for name in names})
+    line_of, tell = (_json, print) if args.json else (_line, say)
+    count = 0
+    # of each run nothing is kept but its line: years of runs take no more memory than a day's
+    for line in in_order(((filter.key(row), line_of(row)) for row in passing(args.root, filter)), filter.reverse):
+        if not count and not args.json:
+            say(HEAD)
+        tell(line)
+        count += 1
+    if not count and not args.json:
         print(f"no such runs in {args.root}")
-        return 0
-    say(HEAD)
-    for row in rows:
-        say(_line(row))
     return 0
+
+
+def _json(row: Row) -> str:
+    """ASCII: names of folders may be anything."""
+    return json.dumps(row.as_json(), allow_nan=False)
 
 
 def _line(row: Row) -> str:

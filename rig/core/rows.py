@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.core.errors import DataError
+from rig.core.temporary import room_for
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -27,15 +27,9 @@ def room(rows: int) -> Array:
     if rows <= LONG:
         return np.empty(rows)
     size = rows * 8
-    try:
-        with tempfile.TemporaryFile() as file:
-            os.posix_fallocate(file.fileno(), 0, size)  # now, in words: a page that finds no disk later kills us
-            return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=np.float64)
-    except OSError as error:
-        raise DataError(
-            f"there is no room for a column of {rows} rows, {size / 1e6:.0f} MB, among the temporary files"
-            f"{f' in {tempfile.tempdir}' if tempfile.tempdir else ''} ({error.strerror}); TMPDIR names another folder"
-        ) from error
+    with room_for(f"a column of {rows} rows, {size / 1e6:.0f} MB,"), tempfile.TemporaryFile() as file:
+        os.posix_fallocate(file.fileno(), 0, size)  # now, in words: a page that finds no disk later kills us
+        return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=np.float64)
 
 
 def stretches(rows: int) -> Iterator[slice]:

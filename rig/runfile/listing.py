@@ -15,12 +15,13 @@ def run_folders(root: str, depth: int = 3) -> Iterator[str]:
     except OSError:  # not ours to look into
         return
     with entries:
-        folders = [e.path for e in entries if not e.name.startswith(".") and _is_folder(e)]
-    for folder in folders:
-        if os.path.exists(f"{folder}/{NAME}"):
-            yield folder
-        elif depth > 1:
-            yield from run_folders(folder, depth - 1)
+        for entry in entries:
+            if entry.name.startswith(".") or not _is_folder(entry):
+                continue
+            if os.path.exists(f"{entry.path}/{NAME}"):
+                yield entry.path
+            elif depth > 1:
+                yield from run_folders(entry.path, depth - 1)
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

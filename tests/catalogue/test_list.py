@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from rig.catalogue import remembered, runs
 from rig.catalogue.filter import asked
 from rig.cli import main
+from rig.core import in_order
 from rig.core.errors import UsageError
 from tests.catalogue.folders import MANIFEST, run
 
@@ -156,6 +157,26 @@ def test_five_thousand_manifests_are_opened_once_each(tmp_path: Path, monkeypatc
     read = manifest.read
     monkeypatch.setattr(manifest, "read", lambda path: opened.append(path) or read(path))
     assert len(runs(tmp_path)) == len(opened) == 50
+
+
+def test_a_long_list_is_printed_in_order_each_manifest_opened_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from rig.runfile import manifest
+
+    for k in range(30):
+        run(tmp_path, f"2026-11-{k % 7 + 1:02d}", k, gear={"serial": f"SN{k % 3}"})
+    monkeypatch.setattr(in_order, "PIECE", 8)  # several pieces, as of thousands
+    opened: list[Path] = []
+    read = manifest.read
+    monkeypatch.setattr(manifest, "read", lambda path: opened.append(path) or read(path))
+    for options in ([], ["--sort", "gear"], ["--sort", "gear", "--reverse"]):
+        opened.clear()
+        assert main(["list", str(tmp_path), "--json", *options]) == 0
+        listed = [json.loads(line)["path"] for line in capsys.readouterr().out.splitlines()]
+        assert len(opened) == 30
+        words = {"sort": "gear" if options else "started", "reverse": "--reverse" in options}
+        assert listed == [str(row.path) for row in runs(tmp_path, asked(**words))]
 
 
 def test_no_word_of_a_manifest_steers_a_terminal_or_a_figure(tmp_path: Path) -> None:
