@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.result import Array
 
-BLOCK = 8192  # rows at a time: 40 columns of them (2.6 MB) stay in the cache
+BLOCK = 8000  # rows at a time: 40 columns of them (2.6 MB) stay in the cache; no power of two (tests/bench/rows/fit.py)
 
 
 @dataclass
