@@ -32,6 +32,7 @@ NAMED: Final = 0.6  # of the held-out excess an effect must remove; true ones 0.
 EXPLAINED: Final = 1.3  # held-out RMS over floor below which nothing more is looked for
 MOST: Final = 10  # terms: a rig with more effects than that is not explained by adding another
 SMALLEST: Final = 0.35  # of the floor, RMS where it matters most: smaller ones move no error by 6 %
+PLAIN_TO_SEE: Final = 0.7  # the same where the baseline alone is at the floor: half of a floor's variance
 QUIET: Final = 1.1  # RMS over floor: a floor from a dozen repeats is not known better
 REAL: Final = 0.6  # of its own sum of squares an effect must take away on unseen runs; 1 when it is what it says
 UNREAL: Final = 1.4  # the same from above: unseen runs want it a fifth larger than the seen ones did, so it is not that
@@ -43,6 +44,7 @@ PLAIN_ENOUGH: Final = (
 )
 # memories have many bins, and predict a part of whatever differs from run to run
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
+TURNED: Final = 2.0  # the same at reversals beside what was named; presliding that was missed leaves five and more
 ALONE: Final = (
     2.0  # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
 )
@@ -63,3 +65,5 @@ STEP: Final = 7.0  # times the usual difference of neighbouring windows: above a
 STEP_AGAIN: Final = 4.0  # the same for steps of a size that is known by then
 STEP_ALIKE: Final = 0.05  # rad of the motor: two repeats that jump so near each other jump because of the angle
 OWN: Final = 0.5  # of the excess of the runs that jump, which their jumps must take to be called lost counts
+WANDERS: Final = 1.3  # RMS over what neighbouring turns differ by: above it repeats are off by more than noise
+FORETOLD: Final = 0.6  # of that excess in unseen runs: what a wave of the campaign's clock must foretell to be said

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import heard, heard_again, heard_alone
+from rig.analysis.tracing.court.hearing import beyond_doubt, heard, heard_again, heard_alone
 from rig.analysis.tracing.court.judge import Court, court
 from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
@@ -55,16 +55,17 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
     start = fit(design(p.eq, (), runs))
-    found = Found(start, ())
-    bank: Bank | None = None
-    if not still(start, p.floors):
-        covered = with_lines(covered, start, runs)
-        suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
-        bank = fill(p.eq, suspects, runs, covered)
-        found = search(start.design, bank, runs, start.keys, covered, p.floors)
-        p, found = _looked_again(p, found, bank, covered)
-    case = heard(p, found, runs, covered)
-    if bank is not None:
+    quiet = still(start, p.floors)
+    covered = with_lines(covered, start, runs)
+    suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
+    bank = fill(p.eq, suspects, runs, covered)
+    found = search(start.design, bank, runs, start.keys, covered, p.floors, quiet=quiet)
+    again, found = _looked_again(p, found, bank, covered)
+    case = heard(again, found, runs, covered)
+    if quiet and not beyond_doubt(case):
+        found = Found(start, found.ranking)
+        case = heard(p, found, runs, covered)
+    elif not quiet:
         case = heard_again(case, found, bank, runs, covered)
         case = heard_alone(case, found, runs, covered)
     found = replace(found, ranking=of_the_library(found.ranking))

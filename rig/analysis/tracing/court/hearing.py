@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rig.analysis.tracing.court.judge import Court, Worth, convicted, court, unresolved, unseen
-from rig.analysis.tracing.court.shadows import unmasked
+from rig.analysis.tracing.court.judge import FAIRLY, Court, Worth, convicted, court, unresolved, unseen
+from rig.analysis.tracing.court.shadows import cast, unmasked
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
@@ -21,7 +21,7 @@ from rig.analysis.tracing.fit.search import Found, polished, reduced, search, se
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
-from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED
+from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE
 from rig.model.effect import Array, Parameter, Reach
 
 if TYPE_CHECKING:
@@ -97,6 +97,14 @@ def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) 
     return case
 
 
+def beyond_doubt(case: Heard) -> bool:
+    """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
+    few repeats, and can be too high. Every name must be large and explain what it acts on, and nothing unnamed be
+    needed beside it."""
+    plain = case.worths and not cast(case.solution) and not case.loud
+    return bool(plain) and all(w.size > PLAIN_TO_SEE and abs(w.true - 1) < FAIRLY for w in case.worths)
+
+
 Convicted = tuple[Solution, Design, list[Worth]]
 """As `convicted` gives it."""
 
@@ -129,8 +137,7 @@ def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
 
 def is_loud(at: Court, s: Solution, held: Design) -> bool:
     """Whether more is left on the held-out runs than may be."""
-    total, single = at.worst(at.residuals(s, held))
-    return total > EXPLAINED or single > MISSING
+    return at.loud(at.residuals(s, held), MISSING, bool(s.design.terms))
 
 
 def _own_convicted(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:

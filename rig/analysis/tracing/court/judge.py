@@ -21,6 +21,7 @@ from rig.analysis.tracing.thresholds import (
     QUIET,
     REAL,
     SMALLEST,
+    TURNED,
     UNREAL,
     UNSTEADY,
 )
@@ -56,6 +57,15 @@ class Court:
         """RMS over floor of some blocks."""
         total, n = self.excess(e, keys)
         return float(np.sqrt(total / max(n, 1)))
+
+    def loud(self, e: Mapping[Key, Array], single: float, named: bool = True) -> bool:
+        """Whether a channel, or by more than `single` one run beside what chance does to it, has more left than may be.
+        Reversals are few rows, whose floor no repeats tell: beside what is `named` they may have a little left."""
+        turned = {key: x for key, x in e.items() if key[1] == "R"}
+        if named and turned and self.worst(turned)[0] < TURNED:
+            e = {key: x for key, x in e.items() if key[1] != "R"}
+        most, one = self.worst(e)
+        return most > EXPLAINED or one > single
 
     def worst(self, e: Mapping[Key, Array]) -> tuple[float, float]:
         """Largest RMS over floor of a channel, and of a single run in a channel beside what chance does to it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 
 SIGMAS: Final = 3.0  # standard deviations, at least
+NEARLY: Final = 0.95  # of what the best explains: with less the data do tell them apart
 HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
 
 
@@ -30,8 +31,9 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
     best = next((r for r in found.ranking if r.term.name == names[0]), None)
     if best is None or len(names) > 1:
         return (), None
-    others = [r for r in found.ranking if r.term.name not in names]
-    close = [r for r in others if r.evidence > CLOSE * best.evidence or _as_good(p, r, best)]
+    others = [r for r in found.ranking if r.term.name not in names and r.evidence > HALF * best.evidence]
+    mine = _alone(p, best) if others else None
+    close = [r for r in others if mine is not None and _as_good(_alone(p, r), mine)]
     rivals = tuple(r.term.name for r in close)
     if not rivals:
         return (), None
@@ -39,18 +41,33 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
     return rivals, asked or _by_table({names[0], *rivals})
 
 
-def _as_good(p: Prepared, rival: Scored, best: Scored) -> bool:
-    """Whether a rival far behind in the bank's shape explains everything alone once its shape is fitted."""
-    if rival.evidence < HALF * best.evidence:
-        return False
+@dataclass(frozen=True)
+class Alone:
+    """One suspect alone beside the baseline, its shape fitted: what it explains of the fitted runs, and the RMS over
+    floor it leaves in the worst channel and the worst single run of the held-out ones."""
+
+    gain: float
+    channel: float
+    single: float
+
+
+def _alone(p: Prepared, suspect: Scored) -> Alone | None:
+    """None where its law cannot be such an effect's."""
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
-    s = refine(p.baseline.design, rival.term, runs, covered)[1]
+    s = refine(p.baseline.design, suspect.term, runs, covered)[1]
     term = s.design.terms[0]
     if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
+        return None
+    worst = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
+    return Alone(s.gain - p.baseline.gain, *worst)
+
+
+def _as_good(rival: Alone | None, best: Alone) -> bool:
+    """Whether a rival explains nearly as much alone, and leaves no more of unseen runs than the best or the floor."""
+    if rival is None or rival.gain < NEARLY * best.gain:
         return False
-    total, single = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
-    return total < QUIET and single < STILL_RUN
+    return rival.channel < max(QUIET, best.channel) and rival.single < max(STILL_RUN, best.single)
 
 
 def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:

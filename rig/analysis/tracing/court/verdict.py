@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Final
 from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import along, deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
+from rig.analysis.tracing.court.suspects import IN_WORDS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
+from rig.analysis.tracing.rest.clock import by_the_clock_of_the_campaign
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
@@ -52,19 +54,21 @@ def decide(
 ) -> Ruling:
     """From held-out ratios and the effects that may be named, `weighed`, the one that does most first; those shared by
     all runs have `worths`."""
-    total, single = p.court.worst(after)
+    total, _ = p.court.worst(after)
     first, _ = p.court.worst(before)
     line, shadows = p.own.line, cast(s)
     names = tuple(name for name in weighed if name not in SHADOWS)
     if shadows:
         return _cast(shadows[0], _clean(names, worths))
-    loud = _is_loud(total, single, names) or line is not None
+    one = MISSING if names else ALONE
+    loud = p.court.loud(after, one, bool(names)) or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
-        return _settled(p, names, found, first, total)
-    elsewhere = p.court.worst({key: e for key, e in after.items() if key[1] != "R"})
+        by_clock = None if names else _by_the_clock(p, s, after, floors)
+        return by_clock or _settled(p, names, found, *_falls(p, before, after))
+    elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
     where = [WHERE_IT_TURNS_BACK]
-    if line is not None or _is_loud(*elsewhere, names):
+    if line is not None or p.court.loud(elsewhere, one):
         where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
@@ -84,9 +88,28 @@ def decide(
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
 
 
-def _is_loud(total: float, single: float, names: Sequence[str]) -> bool:
-    """Whether a channel, or a single run beside what chance does to it, has more left than may be."""
-    return total > EXPLAINED or single > (MISSING if names else ALONE)
+def _by_the_clock(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
+    """Nothing is above the floor, but the floor itself follows the campaign's clock; None where it does not."""
+    left = {key: s.residual(key) for key in s.keys}
+    home = by_the_clock_of_the_campaign(p.eq, left, after, {**floors, **p.court.floors})
+    if home is None or home.frequency_hz is None:
+        return None
+    sentence = (
+        f"Repeats differ in {IN_WORDS[home.channel]} because of something that comes and goes every "
+        f"{1 / home.frequency_hz:.0f} s of the campaign's clock ({home.share:.0%} of what unseen runs have beyond what "
+        "neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
+    )
+    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
+    return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
+    """RMS over floor of the worst channel without and with what was found; without reversals where they have a little
+    left."""
+    total, _ = p.court.worst(after)
+    if total > EXPLAINED:
+        before, after = ({key: x for key, x in e.items() if key[1] != "R"} for e in (before, after))
+    return p.court.worst(before)[0], p.court.worst(after)[0]
 
 
 def _clean(names: Sequence[str], worths: Sequence[Worth]) -> tuple[str, ...]:

@@ -91,15 +91,17 @@ def search(
     floors: Mapping[Key, float],
     ranking: tuple[Scored, ...] = (),
     refused: frozenset[str] = frozenset(),
+    quiet: bool = False,
 ) -> Found:
     """Add the best term again and again, then drop what the later ones made needless. `ranking` is that of the first
-    round when this is no first search; effects `refused` are not tried."""
+    round when this is no first search; effects `refused` are not tried; `quiet`: one term is tried even if nothing is
+    above the floor."""
     s = fit(d)
     fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered, refused)
     u = cross(bank, d, keys, 0)
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
-        if still(s, floors):
+        if still(s, floors) and not (quiet and not s.design.terms):
             break
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)

@@ -29,7 +29,8 @@ SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda
 
 
 def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
-    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold."""
+    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold. In any form
+    that comes back with it, where that does better: a dent in a race is a sharp one."""
     r = h.rest
     x = r.at[name]
     good = np.isfinite(x)
@@ -44,7 +45,13 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     near = np.array([fine, max(round(fine), 1)])
     k = float(near[1] if np.divide(*_height(x, e, near)) < 1 / AS_WELL else fine)
     read = in_columns(lambda rest: waves(rest.at[name], k) * sense(rest)[:, None])
-    return Home(name, channel, share(h, read), order=k, read=read)
+    wave = Home(name, channel, share(h, read), order=k, read=read)
+
+    def phase(rest: Rest) -> Index:
+        return both(turned(k * rest.at[name], PHASES), (sense(rest) + 1).astype(int))
+
+    any_form = Home(name, channel, score(h, phase(r)) / h.total, order=k, read=in_bins(phase))
+    return max(wave, any_form, key=lambda home: home.share)
 
 
 def _sharpened(x: Array, e: Array, order: float, step: float) -> float:

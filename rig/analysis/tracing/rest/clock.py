@@ -1,0 +1,122 @@
+"""What follows the campaign's clock and makes repeats differ: it is in the floor, and so never above it.
+
+A room that warms and cools moves an encoder's mount in one run up and in its repeat down. Against what neighbouring
+turns of one run differ by it is large; and a wave read in the fitted runs foretells the others, as no wander does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.noise import neighbours
+from rig.analysis.tracing.rest.binned import solved
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.joined import Rest, rest
+from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
+from rig.analysis.tracing.rest.readings import Reading, in_columns, waves
+from rig.analysis.tracing.rest.unknown import smooth_term
+from rig.analysis.tracing.thresholds import FORETOLD, WANDERS
+from rig.model.effect import Array
+
+TURN: Final = 2 * np.pi
+TWICE: Final = 2.0  # periods at least within the campaign: less is a trend, as gains and zeros have it
+FINE: Final = 8  # frequencies tried for every whole wave more in the campaign
+HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
+FEWEST: Final = 4  # runs
+
+
+def by_the_clock_of_the_campaign(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Home | None:
+    """The wave of the campaign's time that the fitted runs show and the held-out ones follow; None where there is none.
+
+    `fitted`, `unseen`: residuals (n,) by block; `floors` of all of them.
+    """
+    found = [_in_channel(eq, fitted, unseen, floors, channel) for channel in WHOLE]
+    return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
+
+
+def _in_channel(
+    eq: Equations,
+    fitted: Mapping[Key, Array],
+    unseen: Mapping[Key, Array],
+    floors: Mapping[Key, float],
+    channel: str,
+) -> Home | None:
+    still = _within_runs(eq, fitted, floors, channel)
+    keys = [key for key in unseen if key[1] == channel]
+    train = rest(eq, fitted, still, channel) if still else None
+    if train is None or np.unique(train.run).size < FEWEST or not keys:
+        return None
+    before, n = _square(unseen, still, keys)
+    if before < n * WANDERS**2:
+        return None
+    homes = []
+    for sense in SENSES:
+        read, frequency = _waves(train, sense)
+        home = Home("time_periodic", channel, 0.0, frequency_hz=frequency, read=read, own_zeros=train.own_zeros)
+        after, _ = _square(smooth_term(eq, fitted, unseen, still, home), still, keys)
+        homes.append((1 - max(after - n, 0.0) / (before - n), home))
+    share, best = max(homes, key=lambda found: found[0])
+    return (
+        Home("time_periodic", channel, share, None, best.frequency_hz, best.read, best.own_zeros)
+        if (share > FORETOLD)
+        else None
+    )
+
+
+def _within_runs(
+    eq: Equations, fitted: Mapping[Key, Array], floors: Mapping[Key, float], channel: str
+) -> dict[Key, float]:
+    """Floors with what differs from turn to turn within runs in the place of what differs from repeat to repeat."""
+    seen = [s.rms / floors[key] for key in fitted if key[1] == channel and (s := neighbours(eq, fitted, key))]
+    if not seen:
+        return {}
+    by = min(1.0, float(np.median(seen)))
+    return {key: floor * by for key, floor in floors.items() if key[1] == channel}
+
+
+def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float]:
+    """The reading of the wave that explains most against the `sense` of the motion, and its frequency, Hz."""
+    t, run, e, way = _by_seconds(r, sense(r))
+    slow = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
+    runs = (run[:, None] == np.unique(run)) * slow[:, None]
+
+    def without_zeros(x: Array) -> Array:
+        return np.asarray(x - runs @ (runs.T @ x / np.maximum(runs.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
+
+    step = 1.0 / float(np.ptp(t)) / FINE
+    tried = np.arange(TWICE * FINE * step, SLOWEST, step)
+    y = without_zeros(e)
+    tall = [_explained(without_zeros(waves(TURN * t, f) * way[:, None]), y) for f in tried]
+    best = float(tried[int(np.argmax(tall))])
+
+    def columns(rest: Rest) -> Array:
+        time = TURN * rest.at["time"]
+        made = np.hstack([waves(time, k * best) for k in range(1, HARMONICS + 1)])
+        return np.asarray(made * sense(rest)[:, None])
+
+    return in_columns(columns), best
+
+
+def _by_seconds(r: Rest, way: Array) -> tuple[Array, Array, Array, Array]:
+    """Time, run, rest and sense of the motion, means over seconds of a run; (n,) each."""
+    second = np.floor(r.at["time"]).astype(int)
+    _, first, place = np.unique(second * (1 + r.run.max()) + r.run, return_index=True, return_inverse=True)
+    count = np.bincount(place)
+    t, e, w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, way))
+    return t, r.run[first], e, w
+
+
+def _explained(z: Array, y: Array) -> float:
+    """Sum of squares of `y` (n,) that columns `z` (n, k) explain."""
+    return float((z.T @ y) @ solved(z.T @ z, z.T @ y))
+
+
+def _square(e: Mapping[Key, Array], floors: Mapping[Key, float], keys: Sequence[Key]) -> tuple[float, int]:
+    return float(sum(e[k] @ e[k] / floors[k] ** 2 for k in keys)), sum(e[k].size for k in keys)
