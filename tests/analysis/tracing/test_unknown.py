@@ -61,6 +61,10 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a cable that winds up": ("load_angle", lambda at: at["load_angle"] + 0.1 * at["load_angle"] ** 2),
     "a motor angle's seventh wave": ("motor_angle", lambda at: np.cos(7 * at["motor_angle"])),
     "a ball bearing's order, which is no whole one": ("motor_angle", lambda at: np.cos(12.437 * at["motor_angle"])),
+    "a dent in a race, sharp and of no whole order": (
+        "motor_angle",
+        lambda at: at["direction"] * np.exp(-((np.mod(5.537 * at["motor_angle"], 6.283) - 2) ** 2) / 0.02),
+    ),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
     "a knee in the load": ("load", lambda at: np.abs(at["load"])),
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
@@ -87,6 +91,7 @@ def test_order_and_frequency_are_said_with_it() -> None:
     at = coordinates(rng)
     run = np.repeat(np.arange(RUNS), ROWS)
     for law, of in (
+        (np.exp(8 * np.cos(5.537 * at["motor_angle"]) - 8), lambda h: (h.order, 5.537, 0.002)),
         (np.cos(12.437 * at["motor_angle"]), lambda h: (h.order, 12.437, 0.002)),
         (1.0 * (np.mod(at["time"], 9.7) < 1.4), lambda h: (h.frequency_hz, 1 / 9.7, 0.002)),
     ):

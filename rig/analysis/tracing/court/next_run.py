@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 
 SIGMAS: Final = 3.0  # standard deviations, at least
-NEARLY: Final = 0.95  # of what the best explains: with less the data do tell them apart
 HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
 
 
@@ -65,13 +64,14 @@ def _alone(p: Prepared, suspect: Scored) -> Alone | None:
 
 def _as_good(rival: Alone | None, best: Alone) -> bool:
     """Whether a rival explains nearly as much alone, and leaves no more of unseen runs than the best or the floor."""
-    if rival is None or rival.gain < NEARLY * best.gain:
+    if rival is None or rival.gain < CLOSE * best.gain:
         return False
     return rival.channel < max(QUIET, best.channel) and rival.single < max(STILL_RUN, best.single)
 
 
 def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:
-    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; None when none is.
+    """The cheapest run of the catalogue that is expected to make every rival's evidence fall behind; where none is, the
+    one that tells most; None when none tells anything.
 
     A rival is one while it has CLOSE of the best one's evidence: what the run tells, in nats, has to be more than that.
     """
@@ -83,15 +83,17 @@ def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextR
         for f, g in ((best.term, other.term), (other.term, best.term)):
             told = np.minimum(told, sigmas(p.baseline, f, g, p.split.fitted, proposed))
     told = told * np.sqrt([_fitted(p, run) for run in proposed])
-    able = [i for i in range(len(proposed)) if told[i] > need]
+    most = int(np.argmax(told))
+    able = [i for i in range(len(proposed)) if told[i] > need] or ([most] if told[most] > SIGMAS else [])
     if not able:
         return None
     cost = [run.cost(eq.runs[0].pieces[0].dt) for run in proposed]
     first = min(able, key=lambda i: (cost[i], -told[i]))
     names = " from ".join(sorted({best.term.name, *(r.term.name for r in close)}))
+    rank = f"the cheapest of {len(able)} runs that would" if told[first] > need else "the most that any run would"
     because = (
-        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), the cheapest of "
-        f"{len(able)} runs that would: {cost[first]:.0f} s of rig time with its repeat"
+        f"separates {names} by {told[first]:.0f} standard deviations expected ({need:.0f} are needed), {rank}: "
+        f"{cost[first]:.0f} s of rig time with its repeat"
     )
     return NextRun(proposed[first].procedure, dict(proposed[first].conditions), because)
 

@@ -24,6 +24,7 @@ WINDOW = 40  # rows before and after a step: a third of a second, shorter than t
 APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
+IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
 EDGE = 3  # rows over which the low-pass spreads a step
 
 
@@ -173,8 +174,9 @@ def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
     return {(i, c): m for i in runs for c, m in made[i].items() if np.any(m)}
 
 
-def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
-    """Sharp permanent jumps of A in each run of `e`."""
+def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -> Steps:
+    """Sharp permanent jumps of A in each run of `e`, but for those the torque sensor shows as well: a torque that comes
+    and goes winds the gear of `compliance` [rad/(N·m)] up, or seems to."""
     keys = [k for k in e if k[1] == "A"]
     onward = {key: _onward(eq, key) for key in keys}
     sure = [abs(size) for key in keys for _, size in _jumps(e[key], onward[key], STEP, (0.0, np.inf))]
@@ -184,10 +186,23 @@ def find_steps(eq: Equations, e: Mapping[Key, Array]) -> Steps:
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
         found = _jumps(e[key], onward[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
         if found:
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
     return Steps(rows, sizes, side_of(eq, e, rows))
+
+
+def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, size: float, compliance: float) -> bool:
+    """Whether the torque jumps to stay with the angle. Lost counts seem to accelerate the load for a moment alone."""
+    other = (key[0], "L")
+    if compliance <= 0 or other not in e:
+        return False
+    at = int(np.searchsorted(clock(eq, other), clock(eq, key)[row]))
+    before, after = e[other][max(0, at - EDGE - WINDOW) : max(0, at - EDGE)], e[other][at + EDGE : at + EDGE + WINDOW]
+    if min(before.size, after.size) < WINDOW // 2:
+        return False
+    return abs(float(after.mean() - before.mean())) * compliance > IN_THE_TORQUE * abs(size)
 
 
 def side_of(eq: Equations, e: Mapping[Key, Array], rows: Mapping[int, Sequence[int]]) -> float:

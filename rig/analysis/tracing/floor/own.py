@@ -47,19 +47,20 @@ class Own:
 def find(s: Solution, parts: Split) -> Own:
     """In the residuals of `s`, a fit to the fitted runs without columns of their own."""
     eq, e = s.design.eq, {key: s.residual(key) for key in s.keys}
+    compliance = s.value("compliance")
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
     shaken = find_vibration(eq, e)
     line = None
-    if shaken is not None and shaken.of_the_load(1 / s.value("compliance") if s.value("compliance") > 0 else np.inf):
+    if shaken is not None and shaken.of_the_load(1 / compliance if compliance > 0 else np.inf):
         made["external_vibration"] = vibration_columns(eq, shaken.frequency_hz)
         words["external_vibration"] = shaken.parameters()
     else:
         held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
         line = find_interference(eq, e, {key: held.residual(key, s.x) for key in held.y})
-    if lost_counts(eq, find_steps(eq, e), repeats(eq.runs, parts.fitted)):
+    if lost_counts(eq, find_steps(eq, e, compliance), repeats(eq.runs, parts.fitted)):
         held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
-        everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y})
+        everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y}, compliance)
         columns = step_columns(eq, everywhere)
         if explained(eq, e, columns) > OWN:
             made["missed_counts"] = columns

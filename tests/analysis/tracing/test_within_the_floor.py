@@ -1,0 +1,84 @@
+"""What is not above the floor of repeats and is there all the same: it is named, or where it lives is."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from rig.analysis.tracing.court.next_run import Alone, _as_good
+from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.trace import trace
+
+Columns = dict[str, np.ndarray]
+PERIOD = 230.0  # s, between the shortest run and the campaign
+EVERY = 84.0  # s
+RATIO = 50
+STIFFNESS = 7200.0  # N·m/rad, the campaign's
+
+
+def spiked(to: Path, campaign: Path, law: Callable[[Columns, float], Columns]) -> Trace:
+    """A campaign traced with columns changed by `law`, which gets a run's columns and when it began [s]."""
+    started: dict[str, float] = {}
+    for run in sorted(campaign.iterdir()):
+        manifest = json.loads((run / "manifest.json").read_text())
+        began = np.datetime64(manifest["started_utc"][:19]).astype(float)
+        table = pq.read_table(run / "samples.parquet")
+        columns = {name: table[name].to_numpy() for name in table.column_names}
+        started[run.name] = began
+        shutil.copytree(run, to / run.name)
+        changed = columns | law(columns, began)
+        pq.write_table(pa.table(changed), to / run.name / "samples.parquet")
+    return trace(to)
+
+
+def breathing(c: Columns, began: float) -> Columns:
+    wave = 6e-5 * np.sin(2 * np.pi * (began + c["t"]) / PERIOD)  # rad
+    return {"theta_l": c["theta_l"] + wave}
+
+
+def rubbing(c: Columns, began: float) -> Columns:
+    on = np.mod(began + c["t"], EVERY) < EVERY / 3
+    torque = 0.3 * on * np.sign(np.gradient(c["theta_m"]))  # N·m, which winds the gear up
+    return {
+        "tau_l": c["tau_l"] + torque,
+        "theta_l": c["theta_l"] - torque / STIFFNESS,
+        "tau_m": c["tau_m"] + torque / RATIO,
+    }
+
+
+def loaded(c: Columns, began: float) -> Columns:
+    return {"tau_m": c["tau_m"] + 2.4e-3 * np.abs(c["tau_l"]) / RATIO * np.sign(np.gradient(c["theta_m"]))}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("law", "period"), [(breathing, PERIOD), (rubbing, EVERY)])
+def test_what_follows_the_clock_makes_the_floor_and_is_told(
+    tmp_path: Path, shared: Path, law: Callable[[Columns, float], Columns], period: float
+) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", law).verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
+    assert verdict.frequency_hz is not None
+    assert 1 / verdict.frequency_hz == pytest.approx(period, rel=0.03)
+
+
+@pytest.mark.slow
+def test_an_effect_that_stays_below_the_floor_is_named_when_it_is_plain(tmp_path: Path, shared: Path) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", loaded)
+    assert found.verdict.effects == ("load_dependent_friction",)
+    mu = next(p for p in found.effects[0].parameters if p.name == "mu_L")
+    assert mu.ci95[0] <= 2.4e-3 <= mu.ci95[1]
+
+
+def test_a_rival_explains_as_much_and_leaves_no_more() -> None:
+    best = Alone(1000.0, 0.93, 1.0)
+    assert _as_good(Alone(990.0, 0.95, 1.1), best)
+    assert not _as_good(Alone(600.0, 0.98, 1.1), best)  # the floor is too high to show it: the evidence does
+    assert not _as_good(Alone(1700.0, 6.5, 7.2), best)  # explains more, of something else
+    assert not _as_good(None, best)
