@@ -16,8 +16,8 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
-from rig.analysis.tracing.rest.clock import by_the_clock_of_the_campaign
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.model.effect import Array
@@ -64,8 +64,8 @@ def decide(
     loud = p.court.loud(after, one, bool(names)) or line is not None
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
-        by_clock = None if names else _by_the_clock(p, s, after, floors)
-        return by_clock or _settled(p, names, found, *_falls(p, before, after))
+        hidden = None if names else _in_the_floor(p, s, after, floors)
+        return hidden or _settled(p, names, found, *_falls(p, before, after))
     elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
     where = [WHERE_IT_TURNS_BACK]
     if line is not None or p.court.loud(elsewhere, one):
@@ -88,16 +88,20 @@ def decide(
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
 
 
-def _by_the_clock(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
-    """Nothing is above the floor, but the floor itself follows the campaign's clock; None where it does not."""
+def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
+    """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
     left = {key: s.residual(key) for key in s.keys}
-    home = by_the_clock_of_the_campaign(p.eq, left, after, {**floors, **p.court.floors})
-    if home is None or home.frequency_hz is None:
+    home = in_the_floor(p.eq, left, after, {**floors, **p.court.floors})
+    if home is None:
         return None
+    what = (
+        f"something that comes and goes every {1 / home.frequency_hz:.0f} s of the campaign's clock"
+        if home.frequency_hz
+        else "the angle the output has gone"
+    )
     sentence = (
-        f"Repeats differ in {IN_WORDS[home.channel]} because of something that comes and goes every "
-        f"{1 / home.frequency_hz:.0f} s of the campaign's clock ({home.share:.0%} of what unseen runs have beyond what "
-        "neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
+        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({home.share:.0%} of what unseen runs have "
+        "beyond what neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
     return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))

@@ -1,12 +1,14 @@
-"""What follows the campaign's clock and makes repeats differ: it is in the floor, and so never above it.
+"""What makes repeats differ and yet can be foretold: it is in the floor, and so never above it.
 
-A room that warms and cools moves an encoder's mount in one run up and in its repeat down. Against what neighbouring
-turns of one run differ by it is large; and a wave read in the fitted runs foretells the others, as no wander does.
+A room that warms and cools moves an encoder's mount in one run up and in its repeat down; a cable pulls otherwise where
+a run begins a few turns on. Against what neighbouring turns of one run differ by it is large; and what is read in the
+fitted runs foretells the others, as no wander does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -18,7 +20,7 @@ from rig.analysis.tracing.rest.binned import solved
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
-from rig.analysis.tracing.rest.readings import Reading, in_columns, waves
+from rig.analysis.tracing.rest.readings import Reading, in_columns, powers, waves
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.thresholds import FORETOLD, WANDERS
 from rig.model.effect import Array
@@ -30,10 +32,11 @@ HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the 
 FEWEST: Final = 4  # runs
 
 
-def by_the_clock_of_the_campaign(
+def in_the_floor(
     eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float]
 ) -> Home | None:
-    """The wave of the campaign's time that the fitted runs show and the held-out ones follow; None where there is none.
+    """The wave of the campaign's time, or the way the output has gone, that the fitted runs show and the held-out ones
+    follow; None where there is none.
 
     `fitted`, `unseen`: residuals (n,) by block; `floors` of all of them.
     """
@@ -56,18 +59,23 @@ def _in_channel(
     before, n = _square(unseen, still, keys)
     if before < n * WANDERS**2:
         return None
-    homes = []
-    for sense in SENSES:
-        read, frequency = _waves(train, sense)
-        home = Home("time_periodic", channel, 0.0, frequency_hz=frequency, read=read, own_zeros=train.own_zeros)
+
+    def foretold(home: Home) -> float:
         after, _ = _square(smooth_term(eq, fitted, unseen, still, home), still, keys)
-        homes.append((1 - max(after - n, 0.0) / (before - n), home))
-    share, best = max(homes, key=lambda found: found[0])
-    return (
-        Home("time_periodic", channel, share, None, best.frequency_hz, best.read, best.own_zeros)
-        if (share > FORETOLD)
-        else None
-    )
+        return (before - max(after, n)) / (before - n)
+
+    bare = foretold(Home("time", channel, 0.0, read=in_columns(lambda r: np.zeros((r.e.size, 0)))))
+    homes = [replace(home, share=foretold(home) - bare) for home in _readings(train, channel)]
+    best = max(homes, key=lambda home: home.share)
+    return best if best.share > FORETOLD else None
+
+
+def _readings(train: Rest, channel: str) -> list[Home]:
+    waved = [_waves(train, sense) for sense in SENSES]
+    homes = [Home("time_periodic", channel, 0.0, frequency_hz=f, read=read) for read, f in waved]
+    if np.isfinite(train.at["load_angle"]).all():
+        homes.append(Home("load_angle", channel, 0.0, read=in_columns(lambda r: powers(r.at["load_angle"]))))
+    return [replace(home, own_zeros=train.own_zeros) for home in homes]
 
 
 def _within_runs(
