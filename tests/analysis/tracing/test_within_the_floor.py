@@ -45,7 +45,15 @@ def breathing(c: Columns, began: float) -> Columns:
 
 def rubbing(c: Columns, began: float) -> Columns:
     on = np.mod(began + c["t"], EVERY) < EVERY / 3
-    torque = 0.3 * on * np.sign(np.gradient(c["theta_m"]))  # N·m, which winds the gear up
+    return under(c, 0.3 * on * np.sign(np.gradient(c["theta_m"])))
+
+
+def pulled(c: Columns, began: float) -> Columns:
+    return under(c, 0.06 * c["theta_l"])
+
+
+def under(c: Columns, torque: np.ndarray) -> Columns:
+    """With a torque [N·m] more on the output, which winds the gear up."""
     return {
         "tau_l": c["tau_l"] + torque,
         "theta_l": c["theta_l"] - torque / STIFFNESS,
@@ -66,6 +74,12 @@ def test_what_follows_the_clock_makes_the_floor_and_is_told(
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
     assert verdict.frequency_hz is not None
     assert 1 / verdict.frequency_hz == pytest.approx(period, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_cable_that_pulls_along_the_way_gone_is_told(tmp_path: Path, shared: Path) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", pulled).verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "load_angle")
 
 
 @pytest.mark.slow
