@@ -6,11 +6,21 @@ the true one was never asked.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rig.analysis.tracing.court.judge import FAIRLY, Court, Worth, convicted, court, unresolved, unseen
+from rig.analysis.tracing.court.judge import (
+    FAIRLY,
+    Court,
+    Worth,
+    convicted,
+    court,
+    holds_zero,
+    scales,
+    unresolved,
+    unseen,
+)
 from rig.analysis.tracing.court.shadows import cast, unmasked
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.covariance import covariance, scatter
@@ -28,6 +38,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
+KNOWN = 1 / 3  # of itself: half a 95 % interval
 ALONE_TRIED = 2  # suspects: each costs a hearing
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -65,7 +76,23 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
         least = min((w for w in worths if w.name in vague), key=lambda w: min(w.share, 1.0) * w.size).name
         gone = [i for i, term in enumerate(solution.design.terms) if term.name == least]
         solution, held, worths = convicted(polished(fit(reduced(solution.design, gone)), runs, covered), p.court)
-    return Heard(p, solution, held, worths, _in_words(solution, runs, covariance))
+    case = Heard(p, solution, held, worths, _in_words(solution, runs, covariance))
+    return _without_doubtful(case, runs, covered)
+
+
+def _without_doubtful(case: Heard, runs: Sequence[int], covered: Reach) -> Heard:
+    """Without names beside others whose size may as well be zero, unless something is left to explain without them."""
+    doubtful = [w for w in case.worths if (words := case.words.get(w.name)) and holds_zero(words[0])]
+    if len(case.worths) < 2 or not doubtful:
+        return case
+    least = min(doubtful, key=lambda w: w.work).name
+    s = case.solution
+    gone = [i for i, term in enumerate(s.design.terms) if term.name == least]
+    s, held, worths = convicted(polished(fit(reduced(s.design, gone)), runs, covered), case.p.court)
+    other = Heard(case.p, s, held, worths, _in_words(s, runs, covariance))
+    if other.loud or len(worths) < len(case.worths) - 1:
+        return case
+    return _without_doubtful(other, runs, covered)
 
 
 def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Heard:
@@ -80,7 +107,7 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
     if not set(others.names) - stay:
         return case
     other = heard(case.p, others, runs, covered)
-    return case if other.loud else other
+    return other if _settles(other, stay) else case
 
 
 def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
@@ -92,9 +119,17 @@ def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) 
     for scored in [r for r in found.ranking[:ALONE_TRIED] if r.term.name not in stay]:
         s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
         other = heard(case.p, replace(found, solution=s), runs, covered)
-        if not other.loud and stay < {term.name for term in other.solution.design.terms}:
+        if stay < {term.name for term in other.solution.design.terms} and _settles(other, stay):
             return other
     return case
+
+
+def _settles(other: Heard, stay: Collection[str]) -> bool:
+    """Whether a second choice explains everything, and the numbers that scale its laws (a frequency, a torque) are
+    known to a third of themselves: more is asked of it than that they are not zero."""
+    new = {term.name for term in other.solution.design.terms if term.name not in stay}
+    known = [p for name in new for p in scales(other.solution, name, other.words)]
+    return not other.loud and all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
 
 
 def beyond_doubt(case: Heard) -> bool:

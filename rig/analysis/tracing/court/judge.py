@@ -228,18 +228,19 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
     difference between some runs and others, which many laws make.
     """
     names = dict.fromkeys(term.name for term in s.design.terms)
-    zero = [name for name in names if (found := _scales(s, name, words)) and all(map(_holds_zero, found))]
+    zero = [name for name in names if (found := scales(s, name, words)) and all(map(holds_zero, found))]
     return [*zero, *(name for name in names if name not in zero and _out_of_reach(s, name, covered))]
 
 
-def _scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:
+def scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:
     """The first shape parameter that is fitted, of every term of an effect: the second one's is numbered."""
     effect = next(term.effect for term in s.design.terms if term.name == name)
     first = [n for n, free in zip(effect.shape_names, effect.loose, strict=True) if free][:1]
     return [p for p in words.get(name, ()) for n in first if p.name == n or p.name.removeprefix(f"{n}_").isdigit()]
 
 
-def _holds_zero(p: Parameter) -> bool:
+def holds_zero(p: Parameter) -> bool:
+    """Whether its interval does."""
     return p.ci95[0] <= 0 <= p.ci95[1]
 
 
