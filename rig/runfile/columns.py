@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from rig.core.channels import CHANNEL, CHANNELS, Channel
+from rig.core.channels import CHANNEL, CHANNELS
 from rig.core.ring import NO_COUNTS
 from rig.runfile.manifest import SCHEMA
 
@@ -28,6 +28,7 @@ COMMANDED = {  # by the drive's mode, what the columns of torques are in truth: 
 }
 _PLACE = {channel.name: i for i, channel in enumerate(CHANNELS)}
 _TYPES = {"float64": pa.float64(), "int64": pa.int64(), "uint32": pa.uint32()}
+_KINDS = tuple(_TYPES[channel.dtype] for channel in CHANNELS)
 
 
 def schema_of(about: Mapping[str, Any]) -> pa.Schema:
@@ -60,8 +61,11 @@ def batch_of_rows(rows: Array, layout: pa.Schema) -> pa.RecordBatch:
     words = np.ascontiguousarray(rows).view(np.int64).reshape(len(rows), len(CHANNELS))
     words = np.ascontiguousarray(words.T)  # (channels, n): every field of a row has 8 bytes
     absent = _not_measured(words)
-    missing = np.count_nonzero(absent, axis=1).tolist()
-    columns = [_column(words[i], channel, absent[i], missing[i]) for i, channel in enumerate(CHANNELS)]
+    missing = absent.sum(axis=1).tolist()
+    memory, size = pa.py_buffer(words), words[0].nbytes  # taken hold of once for all columns
+    values = [memory.slice(i * size, size) for i in range(len(CHANNELS) - 1)]
+    values.append(pa.py_buffer(words[-1].astype(np.uint32)))  # flags, the last
+    columns = [_column(kind, v, absent[i], missing[i]) for i, (kind, v) in enumerate(zip(_KINDS, values, strict=True))]
     return pa.RecordBatch.from_arrays(columns, schema=layout)
 
 
@@ -80,25 +84,23 @@ def _not_measured(words: Array) -> Array:
     return np.asarray(absent)
 
 
-def _column(words: Array, channel: Channel, absent: Array, missing: int) -> pa.Array:
+def _column(kind: pa.DataType, values: pa.Buffer, absent: Array, missing: int) -> pa.Array:
     """The bytes as they lie in memory, null where `absent`, which is so of `missing`.
 
     Not pa.array: that looks for pandas first, and importing pandas costs more than recording a run.
     """
-    values = words.astype(np.uint32) if channel.dtype == "uint32" else words
     validity = pa.py_buffer(np.packbits(~absent, bitorder="little")) if missing else None
-    return pa.Array.from_buffers(_TYPES[channel.dtype], len(values), [validity, pa.py_buffer(values)], missing)
+    return pa.Array.from_buffers(kind, absent.size, [validity, values], missing)
 
 
 def checksum(batch: pa.RecordBatch, first: int) -> int:
     """CRC-32 over `first`, the index of the first row, then validity and values of every column."""
-    crc = zlib.crc32(b"%d" % first)
-    for column in batch.columns:
+    crc, rows = zlib.crc32(b"%d" % first), batch.num_rows
+    for column in batch.columns if rows else ():
         validity, values = column.buffers()
         if column.null_count:
-            crc = zlib.crc32(memoryview(validity)[: (len(column) + 7) // 8], crc)
-        if len(column):
-            crc = zlib.crc32(memoryview(values)[: len(column) * column.type.byte_width], crc)
+            crc = zlib.crc32(validity.slice(0, (rows + 7) // 8), crc)
+        crc = zlib.crc32(values.slice(0, rows * column.type.byte_width), crc)
     return crc
 
 
