@@ -41,6 +41,7 @@ class JournalWriter:
         """`first` is the index in the run of the first row to come. Raises OSError."""
         self.path = folder / f"journal-{_last_number(folder) + 1:04d}.arrows"
         self.rows = first  # index of the next row
+        self._layout = layout
         self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
         self._end = 0  # bytes that are whole
         self._buffer = io.BytesIO()
@@ -56,9 +57,11 @@ class JournalWriter:
             self.path.unlink(missing_ok=True)
             raise
 
-    def append(self, batch: pa.RecordBatch) -> None:
+    def append(self, columns: list[pa.Array]) -> None:
         """Hand one batch to the operating system. Raises OSError; then the file ends where it did before."""
-        self._stream.write_batch(batch, custom_metadata={FIRST: str(self.rows), CRC: str(checksum(batch, self.rows))})
+        about = {FIRST: str(self.rows), CRC: str(checksum(columns, self.rows))}
+        batch = pa.RecordBatch.from_arrays(columns, schema=self._layout)
+        self._stream.write_batch(batch, custom_metadata=about)
         self._flush()
         self.rows += batch.num_rows
 
@@ -151,7 +154,7 @@ def _batches(source: pa.NativeFile) -> Iterator[tuple[pa.RecordBatch, int | None
                 yield batch, None
                 continue
             first = int(about[FIRST])
-            if int(about[CRC]) != checksum(batch, first):
+            if int(about[CRC]) != checksum(batch.columns, first):
                 return
             yield batch, first
     except (StopIteration, ValueError, OSError, pa.ArrowException):
