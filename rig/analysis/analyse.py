@@ -8,21 +8,13 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from rig.analysis.angle import TURN
-from rig.analysis.coast_down import add_coast_down
-from rig.analysis.constant_torque import add_constant_torque
-from rig.analysis.decomposition_words import add_decomposition
 from rig.analysis.findings import Findings, conclude
-from rig.analysis.friction import add_friction
-from rig.analysis.full_turn import add_full_turn
 from rig.analysis.latch_skew_words import LABEL as SKEW
 from rig.analysis.latch_skew_words import add_latch_skew
 from rig.analysis.overview import add_overview
 from rig.analysis.result import Result
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.speed import Speed, motor_speed
-from rig.analysis.speed_convergence import add_speed_convergence
-from rig.analysis.standstill import add_standstill
-from rig.analysis.stiffness import add_stiffness
 from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
 
@@ -39,6 +31,7 @@ UNFORESEEN = (
 """What arithmetic on a damaged run can raise; a run must end in a sentence, whatever it holds."""
 
 Part = Callable[[Findings, Source, Motion, Speed | None], None]
+"""Imports what it analyses with when it is asked: a run is of one procedure, and a person waits."""
 
 
 def _slow(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
@@ -50,29 +43,47 @@ def _at_speed(found: Findings, run: Source, motion: Motion, speed: Speed | None)
 
 
 def _constant_torque(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.constant_torque import add_constant_torque
+
     add_constant_torque(found, run, motion)
 
 
 def _full_turn(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.full_turn import add_full_turn
+
     add_turning(found, run, motion, speed, slow=True)
     if not found.rejected:
         add_full_turn(found, run, motion)
 
 
 def _coast_down(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.coast_down import add_coast_down
+
     add_coast_down(found, run, motion)
 
 
 def _speed_convergence(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.speed_convergence import add_speed_convergence
+
     add_speed_convergence(found, run, motion)
 
 
 def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.standstill import add_standstill
+
     add_standstill(found, run, motion)
 
 
-def _lock(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    add_stiffness(found, run, motion, reference=None)
+def _lock(found: Findings, run: Source, motion: Motion, reference: Source | None) -> None:
+    from rig.analysis.stiffness import add_stiffness
+
+    add_stiffness(found, run, motion, reference)
+
+
+def _split(found: Findings, run: Source, motion: Motion, reference: Source | None) -> None:
+    from rig.analysis.decomposition_words import add_decomposition
+
+    add_decomposition(found, run, motion, reference)
 
 
 def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
@@ -85,7 +96,7 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
     if turns >= 1.0:
         _at_speed(found, run, motion, speed)
     elif run.conditions.get("output_locked"):
-        _lock(found, run, motion, speed)
+        _lock(found, run, motion, None)
     elif turns < 0.01:
         _standstill(found, run, motion, speed)
     else:
@@ -93,6 +104,8 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
 
 
 def _friction(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
+    from rig.analysis.friction import add_friction
+
     add_friction(found, run, motion)
 
 
@@ -159,12 +172,12 @@ def _analyse(run: Tame, reference: Source | None) -> Result:
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
     if run.procedure == "stiffness_lock":
-        add_stiffness(found, run, motion, reference)
+        _lock(found, run, motion, reference)
     elif run.manifest.get("label") == SKEW:
         add_latch_skew(found, run, motion)
     else:
         PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
     if run.procedure in AT_SPEED and not found.rejected:
-        add_decomposition(found, run, motion, reference)
+        _split(found, run, motion, reference)
     found.cannot += run.notes
     return conclude(found, run.procedure, run.manifest)

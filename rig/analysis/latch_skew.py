@@ -27,6 +27,7 @@ K_SHARE = 0.1  # how well the stiffness of the wind-up is taken to be known, rel
 MESH_SHARE = 1 / 3  # how well the declared B_ml is: `hdrig identify` takes it to a third as well
 ORDERS = (1, 2, 3, 4, 6)  # of the motor, where strain-wave gears shake their load
 CLEAR = 8.0  # times its standard error an amplitude stands out, or its phase says nothing
+ROUNDING = 1e-13  # of the largest value: a smaller standard error is that of arithmetic, not of a sensor
 
 
 @dataclass(frozen=True)
@@ -211,4 +212,5 @@ def _amplitudes(design: Array, y: Array) -> tuple[list[complex], float]:
     found, *_ = np.linalg.lstsq(design, y, rcond=None)
     rest = y - design @ found
     u = float(np.sqrt(rest @ rest / max(y.size - found.size, 1) * 2.0 / y.size))
+    u = max(u, ROUNDING * float(np.abs(y).max()))
     return [complex(a, -b) for a, b in zip(found[2::2], found[3::2], strict=True)], u

@@ -115,12 +115,16 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
     def slow_columns(theta: Array) -> Array:
         return legendre((theta - base) / span - 1.0, degree)
 
+    room = np.empty((fast.stop, BLOCK))  # for the columns of every block: fresh memory would cost as much as they do
+
     def sums(lo: int, hi: int) -> Sums:
         total = Sums(np.zeros((fast.stop, fast.stop)), np.zeros(fast.stop), 0.0, 0)
         for a in range(lo, hi, BLOCK):
             b = min(a + BLOCK, hi)
             theta = motion.theta_m[a:b]
-            columns = np.concatenate((slow_columns(theta), harmonics(theta, terms)))
+            columns = room[:, : b - a]
+            columns[: fast.start] = slow_columns(theta)
+            harmonics(theta, terms, columns[fast])
             total = total + Sums.of(columns, motion.error_arcsec(a, b) - zero)
         return total
 

@@ -58,7 +58,7 @@ def _record(folder: Path, ring: Ring) -> None:
         raise HdrigError(f"{folder} is {about['status']}: nothing more can be recorded into it")
     layout = schema_of(about)
     journal = JournalWriter(folder, layout, first=max(rows_in_journal(folder), ring.oldest))
-    service = Service(ring, journal, layout, time.monotonic())
+    service = Service(ring, journal, time.monotonic())
     ring.tell_reader(os.getpid(), started(os.getpid()))
     orphan = _serve(ring, service)
     service.finish()

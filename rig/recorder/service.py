@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pyarrow as pa
-
 from rig.core.ring import Ring
-from rig.runfile.columns import batch_of_rows
+from rig.runfile.columns import columns_of_rows
 from rig.runfile.journal import JournalWriter
 
 POLL = 0.02  # s between looks at the ring; with FLUSH it bounds what a kill can lose: 0.22 s of the 0.5 s promised
@@ -17,10 +15,9 @@ SHARE = 4  # a faster producer is followed by ring fill: a batch, and a sync, fo
 class Service:
     """Moves rows on when they are due. `written` and `acked` in the ring say how far it has come."""
 
-    def __init__(self, ring: Ring, journal: JournalWriter, layout: pa.Schema, now: float) -> None:
+    def __init__(self, ring: Ring, journal: JournalWriter, now: float) -> None:
         self._ring = ring
         self._journal = journal
-        self._layout = layout
         self._flushed = self._synced = now  # s, on the caller's clock
         ring.tell_written(journal.rows)
 
@@ -48,7 +45,7 @@ class Service:
     def _write(self) -> None:
         rows = self._ring.read(self._journal.rows, self._ring.head)
         if len(rows):
-            self._journal.append(batch_of_rows(rows, self._layout))
+            self._journal.append(columns_of_rows(rows))
             self._ring.tell_written(self._journal.rows)
 
     def _sync(self) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from rig.core.channels import CHANNEL, CHANNELS, Channel
+from rig.core.channels import CHANNEL, CHANNELS
 from rig.core.ring import NO_COUNTS
 from rig.runfile.manifest import SCHEMA
 
@@ -28,6 +28,7 @@ COMMANDED = {  # by the drive's mode, what the columns of torques are in truth: 
 }
 _PLACE = {channel.name: i for i, channel in enumerate(CHANNELS)}
 _TYPES = {"float64": pa.float64(), "int64": pa.int64(), "uint32": pa.uint32()}
+_KINDS = tuple(_TYPES[channel.dtype] for channel in CHANNELS)
 
 
 def schema_of(about: Mapping[str, Any]) -> pa.Schema:
@@ -55,20 +56,34 @@ def schema(backend: str, columns: dict[str, tuple[str, str]] | None = None) -> p
     return pa.schema(fields, metadata={"schema": SCHEMA, "backend": backend, "simulated": simulated})
 
 
-def batch_of_rows(rows: Array, layout: pa.Schema) -> pa.RecordBatch:
-    """Rows of the ring, shape (n,), as one batch. NaN, and counts that were not measured, become null."""
-    words = np.ascontiguousarray(rows).view(np.int64).reshape(len(rows), len(CHANNELS))
+def columns_of_rows(rows: Array) -> list[pa.Array]:
+    """Rows of the ring, shape (n,), as columns. NaN, and counts that were not measured, become null.
+
+    The bytes as they lie in memory. Not by pa.array: that looks for pandas first, and importing pandas costs more than
+    recording a run.
+    """
+    n = len(rows)
+    words = np.ascontiguousarray(rows).view(np.int64).reshape(n, len(CHANNELS))
     words = np.ascontiguousarray(words.T)  # (channels, n): every field of a row has 8 bytes
     absent = _not_measured(words)
-    missing = np.count_nonzero(absent, axis=1).tolist()
-    columns = [_column(words[i], channel, absent[i], missing[i]) for i, channel in enumerate(CHANNELS)]
-    return pa.RecordBatch.from_arrays(columns, schema=layout)
+    missing = absent.sum(axis=1).tolist()
+    memory, size = pa.py_buffer(words), 8 * n  # taken hold of once for all columns
+    values = [memory.slice(i * size, size) for i in range(len(CHANNELS) - 1)]
+    values.append(pa.py_buffer(words[-1].astype(np.uint32)))  # flags, the last
+    validity = [_bitmap(absent[i]) if count else None for i, count in enumerate(missing)]
+    parts = zip(_KINDS, validity, values, missing, strict=True)
+    return [pa.Array.from_buffers(kind, n, [there, v], count) for kind, there, v, count in parts]
 
 
-def no_rows(layout: pa.Schema) -> pa.RecordBatch:
-    """A batch of `layout` without rows."""
+def _bitmap(absent: Array) -> pa.Buffer:
+    """What Arrow calls validity: a bit for each value that is there."""
+    return pa.py_buffer(np.packbits(~absent, bitorder="little"))
+
+
+def no_rows(layout: pa.Schema) -> list[pa.Array]:
+    """The columns of `layout` without rows."""
     nothing = [None, pa.py_buffer(b"")]
-    return pa.RecordBatch.from_arrays([pa.Array.from_buffers(f.type, 0, nothing) for f in layout], schema=layout)
+    return [pa.Array.from_buffers(f.type, 0, nothing) for f in layout]
 
 
 def _not_measured(words: Array) -> Array:
@@ -80,25 +95,15 @@ def _not_measured(words: Array) -> Array:
     return np.asarray(absent)
 
 
-def _column(words: Array, channel: Channel, absent: Array, missing: int) -> pa.Array:
-    """The bytes as they lie in memory, null where `absent`, which is so of `missing`.
-
-    Not pa.array: that looks for pandas first, and importing pandas costs more than recording a run.
-    """
-    values = words.astype(np.uint32) if channel.dtype == "uint32" else words
-    validity = pa.py_buffer(np.packbits(~absent, bitorder="little")) if missing else None
-    return pa.Array.from_buffers(_TYPES[channel.dtype], len(values), [validity, pa.py_buffer(values)], missing)
-
-
-def checksum(batch: pa.RecordBatch, first: int) -> int:
+def checksum(columns: Sequence[pa.Array], first: int) -> int:
     """CRC-32 over `first`, the index of the first row, then validity and values of every column."""
-    crc = zlib.crc32(b"%d" % first)
-    for column in batch.columns:
+    crc, rows = zlib.crc32(b"%d" % first), len(columns[0])
+    for column in columns if rows else ():
         validity, values = column.buffers()
         if column.null_count:
-            crc = zlib.crc32(memoryview(validity)[: (len(column) + 7) // 8], crc)
-        if len(column):
-            crc = zlib.crc32(memoryview(values)[: len(column) * column.type.byte_width], crc)
+            crc = zlib.crc32(validity.slice(0, (rows + 7) // 8), crc)
+        size = rows * column.type.byte_width  # behind it a file has padding
+        crc = zlib.crc32(values if values.size == size else values.slice(0, size), crc)
     return crc
 
 

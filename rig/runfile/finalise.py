@@ -16,7 +16,7 @@ from rig.core.errors import DataError, UsageError
 from rig.core.regular import regular
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
-from rig.runfile.columns import batch_of_rows, schema_of
+from rig.runfile.columns import columns_of_rows, schema_of
 from rig.runfile.journal import JournalReader, JournalWriter, journal_files, rows_in_journal
 from rig.runfile.process import sole_writer, this_process
 
@@ -152,10 +152,9 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
     have = rows_in_journal(folder)
     left = ring.head - max(have, ring.oldest)
     if left > 0:
-        layout = schema_of(about)
-        journal = JournalWriter(folder, layout, first=max(have, ring.oldest))
+        journal = JournalWriter(folder, schema_of(about), first=max(have, ring.oldest))
         try:
-            journal.append(batch_of_rows(ring.read(journal.rows, ring.head), layout))
+            journal.append(columns_of_rows(ring.read(journal.rows, ring.head)))
         finally:
             journal.close()
     ring.unlink()

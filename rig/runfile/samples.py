@@ -58,7 +58,8 @@ class Archive(Samples):
     def column(self, name: str) -> Array:
         out, row = room(self.rows), 0
         with _read(self.path):
-            for batch in self._open().iter_batches(batch_size=BATCH, columns=[name]):
+            # one column keeps one thread busy: to hand it to Arrow's others would cost as much as reading it
+            for batch in self._open().iter_batches(batch_size=BATCH, columns=[name], use_threads=False):
                 out[row : row + batch.num_rows] = as_float(pa.chunked_array(batch.columns))
                 row += batch.num_rows
         return out

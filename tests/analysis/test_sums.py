@@ -50,3 +50,12 @@ def test_blocks_add_up_to_the_whole() -> None:
     assert np.allclose(without(columns, y, plain), y - plain @ x)
     sums = Sums.of(x, y)
     assert np.isclose(sums.residual(plain), np.sum((y - plain @ x) ** 2))
+
+
+def test_harmonics_go_into_the_room_they_are_given() -> None:
+    theta, room = np.linspace(-3.0, 40.0, 50), np.full((8, 64), np.nan)
+    given = harmonics(theta, 3, room[1:7, :50])
+    assert np.shares_memory(given, room)
+    assert np.array_equal(room[1:7, :50], harmonics(theta, 3))
+    assert np.isnan(room[[0, 7]]).all()
+    assert np.isnan(room[:, 50:]).all()

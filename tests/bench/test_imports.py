@@ -20,7 +20,19 @@ def loaded(statement: str) -> set[str]:
 
 @pytest.mark.slow
 def test_an_analysis_and_its_report_load_no_scipy_and_no_compiler() -> None:
-    assert not loaded("import rig.commands.analyse, rig.analysis.analyse, rig.report.page") & {"scipy", "numba"}
+    parts = "coast_down constant_torque decomposition_words friction full_turn speed_convergence standstill stiffness"
+    each = [f"rig.analysis.{part}" for part in parts.split()]
+    statement = ", ".join(["import rig.commands.analyse, rig.analysis.analyse, rig.report.page", *each])
+    assert not loaded(statement) & {"scipy", "numba"}
+
+
+@pytest.mark.slow
+def test_an_analysis_loads_no_other_procedure_s() -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", "import rig.analysis.analyse, sys; print('rig.analysis.stiffness' in sys.modules)"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert told.stdout == "False\n"
 
 
 @pytest.mark.slow
@@ -35,13 +47,13 @@ def test_rows_are_written_and_read_without_a_look_for_pandas(tmp_path: Path) -> 
     statement = (
         "import numpy as np, pyarrow as pa, rig.recorder.__main__, pathlib\n"
         "from rig.core.channels import CHANNELS\n"
-        "from rig.runfile.columns import as_float, batch_of_rows, schema\n"
+        "from rig.runfile.columns import as_float, columns_of_rows, schema\n"
         "from rig.runfile.journal import JournalReader, JournalWriter\n"
         "kinds = {'float64': 'f8', 'int64': 'i8', 'uint32': 'i8'}\n"
         "rows = np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS])\n"
         f"folder = pathlib.Path({str(tmp_path)!r})\n"
         "journal = JournalWriter(folder, schema('sim'), first=0)\n"
-        "journal.append(batch_of_rows(rows, schema('sim')))\n"
+        "journal.append(columns_of_rows(rows))\n"
         "journal.close()\n"
         "table = pa.Table.from_batches(JournalReader(folder))\n"
         "[as_float(table.column(c.name)) for c in CHANNELS]"

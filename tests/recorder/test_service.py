@@ -27,7 +27,7 @@ class Rig:
         self.folder = new_folder(root)
         self.ring = Ring.create(capacity)
         self.journal = JournalWriter(self.folder, schema("sim"), 0)
-        self.service = Service(self.ring, self.journal, schema("sim"), 0.0)
+        self.service = Service(self.ring, self.journal, 0.0)
         self.now = 0.0
 
     def live(self, seconds: float, step: float = POLL) -> Iterator[None]:
@@ -95,7 +95,7 @@ def test_a_restarted_recorder_goes_on_where_the_journal_ends(rig: Rig) -> None:
     for _ in rig.live(0.5):
         pass
     second = JournalWriter(rig.folder, schema("sim"), rig.ring.written)
-    Service(rig.ring, second, schema("sim"), rig.now).finish()
+    Service(rig.ring, second, rig.now).finish()
     assert second.path.name == "journal-0002.arrows"
     assert_prefix(rig.folder, rig.ring.head)
 

@@ -12,7 +12,7 @@ import numpy as np
 from rig.core.channels import CHANNELS, Flag
 from rig.core.ring import Ring
 from rig.core.sample import NAN, Sample
-from rig.runfile.columns import batch_of_rows, schema
+from rig.runfile.columns import columns_of_rows, schema
 from rig.runfile.folder import create
 from rig.runfile.journal import JournalWriter
 from rig.runfile.run import Run
@@ -61,11 +61,10 @@ def new_folder(root: Path, **more: Any) -> Path:
 
 def write_journal(folder: Path, start: int, stop: int, batch: int = 50, close: bool = False) -> Path:
     """Rows start..stop in a new journal of `folder`, `batch` rows at a time."""
-    layout = schema("sim")
     ring = ring_of(stop)
-    journal = JournalWriter(folder, layout, start)
+    journal = JournalWriter(folder, schema("sim"), start)
     for first in range(start, stop, batch):
-        journal.append(batch_of_rows(ring.read(first, min(first + batch, stop)), layout))
+        journal.append(columns_of_rows(ring.read(first, min(first + batch, stop))))
     if close:
         journal.close()
     ring.unlink()

@@ -22,7 +22,7 @@ from rig.live.view.rerun_canvas import Gone, RerunCanvas, Stalled
 from rig.live.view.scene import Scene
 from rig.live.view.server import Server
 
-BEAT = 0.05  # s: what moves is seen to move; 50 rows a block at 1 kHz, and a block costs as much as its rows
+BEAT = 0.1  # s: of the 30 s that curves show it is 2 px or 3; a block costs the same whether it has 50 rows or 100
 CHECK = 0.5  # s between looks whether the viewer takes what it is sent
 PROBE = 1.0  # s between looks at one that does not: the SDK keeps a note of each
 PATIENCE = 0.25  # s such a look may last; what a frozen viewer is sent between two looks is 0.1 MB

@@ -9,28 +9,31 @@ import io
 
 import matplotlib as mpl
 
-from rig.report.figures import (
-    coast_down,
-    convergence,
-    creep,
-    decomposition,
-    friction,
-    full_turn,
-    kinematic_error,
-    loads,
-    local_stiffness,
-    lock,
-    loop_rate,
-    orders,
-    spectrum,
-    speed_convergence,
-    split,
-    timeline,
-    torsion,
-)
-from rig.report.figures.canvas import STYLE, Curves, Drawing, Frame
-from rig.report.figures.svg import dress
 from rig.report.palette import LIGHT
+from rig.report.without_help import without_help
+
+with without_help():
+    from rig.report.figures import (
+        coast_down,
+        convergence,
+        creep,
+        decomposition,
+        friction,
+        full_turn,
+        kinematic_error,
+        loads,
+        local_stiffness,
+        lock,
+        loop_rate,
+        orders,
+        spectrum,
+        speed_convergence,
+        split,
+        timeline,
+        torsion,
+    )
+    from rig.report.figures.canvas import STYLE, Curves, Drawing, Frame
+    from rig.report.figures.svg import dress
 
 __all__ = ["CATALOGUE", "Drawing", "Frame", "png", "svg"]
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 from functools import cache
 
 import numpy as np
@@ -31,7 +30,7 @@ def dress(raw: str, prefix: str, label: str, themed: bool) -> str:
     """
     ET.register_namespace("", SVG)
     root = ET.fromstring(raw)
-    referred = set(re.findall(r'(?:href="#|url\(#)([^")]+)', raw))
+    referred = {*re.findall(r'href="#([^"]+)', raw), *re.findall(r"url\(#([^)]+)", raw)}
     for child in list(root):
         if child.tag.endswith("metadata") or (child.tag.endswith("defs") and child.find(f"{{{SVG}}}style") is not None):
             root.remove(child)
@@ -91,21 +90,24 @@ def steps(path: str) -> str:
         return " ".join(NUMBER.sub(_short, path).split())
     out, here = list[str](), np.zeros(2)
     for piece in path.split("M")[1:]:
-        points = np.array(piece.replace("L", "").replace("z", "").split(), dtype=np.float64).reshape(-1, 2)
+        points = np.fromstring(piece.replace("L", "").replace("z", ""), sep=" ").reshape(-1, 2)
         tenths = np.rint(10.0 * points)
-        out.extend(_relative(np.diff(tenths, axis=0, prepend=here[None])))
+        out.append(_relative(np.diff(tenths, axis=0, prepend=here[None])))
         closed = "z" in piece
         out.extend("z" * closed)
         here = tenths[0 if closed else -1]
     return "".join(out)
 
 
-def _relative(moved: Array) -> Iterator[str]:
+def _relative(moved: Array) -> str:
     """One m and what is drawn from there, each step [0.1 px] (n, 2); steps of nothing after the first are left out."""
-    (x, y), *lines = moved[np.append([True, True], moved[2:].any(axis=1))[: len(moved)]].astype(int).tolist()
-    yield f"m{_tenths(x)}{_joined(y)}"
-    for i, (x, y) in enumerate(lines):  # the l is not said again; after an m the numbers alone would mean a line too
-        yield _joined(x) + _joined(y) if i else f"l{_tenths(x)}{_joined(y)}"
+    kept = moved[np.append([True, True], moved[2:].any(axis=1))[: len(moved)]]
+    x, y, *lines = kept.ravel().astype(int).tolist()
+    start = f"m{_tenths(x)}{_joined(y)}"
+    if not lines:
+        return start
+    # the l is not said again; after an m the numbers alone would mean a line too
+    return f"{start}l{_tenths(lines[0])}{''.join(map(_joined, lines[1:]))}"
 
 
 @cache

@@ -30,7 +30,11 @@ class Commands(Row):
     Found and mended: an analysis loaded scipy.interpolate, scipy.optimize and numba for springs and simulations it did
     not make, 40 % of its time; pyarrow imported pandas, where that is installed, for columns it only had to hand over;
     pydantic came with one function that needs none of it; Python searched what was imported for garbage, again and
-    again. What is left is two thirds matplotlib: its import, and six figures, each in two widths, as SVG.
+    again. Harmonics of a block were made in fresh memory, whose pages cost five times the arithmetic, and so were the
+    columns of each revolution (a third of the analysis); matplotlib wrote a page of help for every kind of artist as it
+    was imported (0.1 s); analyses of other procedures were imported with those of the run's own. Page and result are
+    the same to the byte, CPU time 0.88 of before in twelve rounds. What is left is matplotlib: half of all in six
+    figures, each in two widths (ticks 40 % of that), a sixth in its import.
     """
 
     number: ClassVar[int] = 12

@@ -1,0 +1,22 @@
+"""matplotlib imported without its pages of help has them again afterwards."""
+
+from __future__ import annotations
+
+from matplotlib import artist
+
+from rig.report.without_help import without_help
+
+
+def test_help_is_left_out_only_meanwhile() -> None:
+    usual = artist.kwdoc
+    with without_help():
+
+        class Dot(artist.Artist):
+            """An artist like those that are imported."""
+
+    assert artist.kwdoc is usual
+    assert artist.kwdoc(Dot)
+    assert "alpha" not in (Dot.set.__doc__ or "")
+    dot = Dot()
+    dot.set(alpha=0.5)
+    assert dot.get_alpha() == 0.5
