@@ -26,7 +26,7 @@ STIFFNESS = 7200.0  # N·m/rad, the campaign's
 def spiked(to: Path, campaign: Path, law: Callable[[Columns, float], Columns]) -> Trace:
     """A campaign traced with columns changed by `law`, which gets a run's columns and when it began [s]."""
     started: dict[str, float] = {}
-    for run in sorted(campaign.iterdir()):
+    for run in sorted(p for p in campaign.iterdir() if p.is_dir()):
         manifest = json.loads((run / "manifest.json").read_text())
         began = np.datetime64(manifest["started_utc"][:19]).astype(float)
         table = pq.read_table(run / "samples.parquet")
