@@ -22,7 +22,7 @@ from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit
+from rig.core.errors import Exit, UsageError
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.outcome.result import Trace
@@ -47,6 +47,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Begin or go on, round after round; then the story as JSON and as a page."""
+    if not args.budget_minutes > 0:
+        raise UsageError(f"--budget-minutes {args.budget_minutes:g}: expected minutes of rig time above 0")
     return _resume(args) if args.resume else _begin(args)
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 SLOW = 9.6  # rpm, of the slow measurement      [ghorbel2001]
 REVOLUTIONS = 8  # each way: intervals from 14 turns
+FEWEST = 3  # revolutions each way: of fewer there is no interval
 TERMS = 15  # orders of the paper's series
 
 
@@ -42,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.closing.compensate import compensate
     from rig.report.closing.compensation import write
 
+    _refuse_odd(args.speed, args.revolutions)
     bench, clock = open_bench(args)
     refuse_unwritable(args.out)
     gear = _gear(args)
@@ -66,6 +70,14 @@ def run(args: argparse.Namespace) -> int:
         print(f"{'SIMULATED ' if bench.simulated else ''}{sentence(one)}")
     print(f"report {write(folder)}")
     return int(Exit.PASS if all(one.improvement > 1.0 for one in found) else Exit.OUT_OF_LIMITS)
+
+
+def _refuse_odd(speeds: Sequence[float], revolutions: int) -> None:
+    for rpm in speeds:
+        if not (math.isfinite(rpm) and rpm > 0):
+            raise UsageError(f"--speed {rpm:g}: expected rpm of the motor above 0; it goes both ways by itself")
+    if revolutions < FEWEST:
+        raise UsageError(f"--revolutions {revolutions}: expected {FEWEST} of the motor or more, each way")
 
 
 def say(text: str) -> None:

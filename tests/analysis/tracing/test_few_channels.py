@@ -98,3 +98,22 @@ def test_a_campaign_of_one_angle_and_no_torque_is_refused_in_words(tmp_path: Pat
     folder = reduced(tmp_path, open_1, ("slow_ke_1",), ("theta_l", "tau_l", "tau_m"))
     with pytest.raises(UsageError, match="two angles or an angle and a torque"):
         trace(folder)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lacking", ["tau_l", "theta_l"])
+def test_one_run_may_lack_a_channel(tmp_path: Path, shared: Path, lacking: str) -> None:
+    names = [f"{kind}_{k}" for kind in ("slow_ke", "load_10nm", "speed_120rpm", "speed_400rpm") for k in (1, 2)]
+    reduced(tmp_path, shared / "cases" / "open-3", names[1:], ())
+    reduced(tmp_path, shared / "cases" / "open-3", names[:1], (lacking,))
+    checked(trace(tmp_path))
+
+
+def test_two_gears_are_no_campaign(tmp_path: Path, shared: Path) -> None:
+    for serial, name in (("A", "speed_120rpm_1"), ("B", "speed_120rpm_2")):
+        reduced(tmp_path, shared / "cases" / "open-1", [name], ())
+        manifest = json.loads((tmp_path / name / "manifest.json").read_text())
+        manifest["gear"]["serial"] = serial
+        (tmp_path / name / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(UsageError, match=r"2 gears \(A, B\), expected one"):
+        trace(tmp_path)

@@ -81,9 +81,9 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
 
 
 def _without_doubtful(case: Heard, runs: Sequence[int], covered: Reach) -> Heard:
-    """Without names beside others whose size may as well be zero, unless something is left to explain without them."""
+    """Without names whose size may as well be zero, unless something is left to explain without them."""
     doubtful = [w for w in case.worths if (words := case.words.get(w.name)) and holds_zero(words[0])]
-    if len(case.worths) < 2 or not doubtful:
+    if not doubtful:
         return case
     least = min(doubtful, key=lambda w: w.work).name
     s = case.solution

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -66,9 +67,10 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
 
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(of, runs))
-    places = {c: _places(c, [f.widths for f in found], len(terms)) for c in CHANNELS}
-    columns = {key: m for f in found for key, m in f.columns.items()}
-    return Bank(terms, columns, places, {key: m for f in found for key, m in f.spoilt.items()})
+    wide = {c: [max(f.widths[i].get(c, 0) for f in found) for i in range(len(terms))] for c in CHANNELS}
+    columns = {key: _spread(m, f.widths, key[1], wide) for f in found for key, m in f.columns.items()}
+    spoilt = {key: _spread(m, f.spoilt_widths, key[1], wide) for f in found for key, m in f.spoilt.items()}
+    return Bank(terms, columns, {c: _places(w) for c, w in wide.items()}, spoilt)
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ class _Filled:
     columns: dict[Key, Single]
     spoilt: dict[Key, Single]
     widths: list[dict[str, int]]
+    spoilt_widths: list[dict[str, int]]
 
 
 def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> _Filled:
@@ -90,21 +93,32 @@ def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> _Filled:
         if run in eq.noisy:
             shaken = eq.spoilt_term(run, term, made)
             spoilt.append({c: m.astype(np.float32) for c, m in shaken.items()})
-    widths = [{c: m.shape[1] for c, m in columns.items()} for columns in bare]
-    return _Filled(_joined(run, bare), _joined(run, spoilt), widths)
+    return _Filled(_joined(run, bare), _joined(run, spoilt), _widths(bare), _widths(spoilt))
+
+
+def _widths(made: Sequence[dict[str, Single]]) -> list[dict[str, int]]:
+    return [{c: m.shape[1] for c, m in columns.items()} for columns in made]
+
+
+def _spread(
+    columns: Single, widths: Sequence[Mapping[str, int]], channel: str, wide: Mapping[str, Sequence[int]]
+) -> Single:
+    """The columns of one block at their places: a run that lacks a channel has none of what shows by it alone."""
+    mine = [w.get(channel, 0) for w in widths]
+    if mine == list(wide[channel]):
+        return columns
+    out = np.zeros((columns.shape[0], sum(wide[channel])), np.float32)
+    start, at = 0, 0
+    for has, takes in zip(mine, wide[channel], strict=True):
+        out[:, at : at + has] = columns[:, start : start + has]
+        start, at = start + has, at + takes
+    return out
 
 
 def _joined(run: int, made: Sequence[dict[str, Single]]) -> dict[Key, Single]:
     return {(run, c): np.hstack([m[c] for m in made if c in m]) for c in CHANNELS if any(c in m for m in made)}
 
 
-def _places(channel: str, found: Sequence[list[dict[str, int]]], terms: int) -> tuple[slice | None, ...]:
-    for widths in found:
-        if any(channel in w for w in widths):
-            edges, out = 0, []
-            for w in widths:
-                wide = w.get(channel, 0)
-                out.append(slice(edges, edges + wide) if wide else None)
-                edges += wide
-            return tuple(out)
-    return (None,) * terms
+def _places(wide: Sequence[int]) -> tuple[slice | None, ...]:
+    edges = np.concatenate([[0], np.cumsum(wide)]).tolist()
+    return tuple(slice(a, b) if b > a else None for a, b in itertools.pairwise(edges))

@@ -108,7 +108,7 @@ def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channe
         return None
     theta_a, theta_b = eq.rows[a].theta_m, eq.rows[b].theta_m
     d = compare(theta_a, e[a], theta_b + output_turns(theta_a, theta_b, eq.runs[pair[0]].ratio), e[b])
-    if d.size < FLOOR_LEAST:
+    if d.size < FLOOR_LEAST or not np.any(d):  # a copy of a run is no repeat
         return None
     offset = float(d.mean())
     d = d - offset

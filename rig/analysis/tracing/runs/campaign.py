@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -40,6 +41,7 @@ def read_campaign(folder: Path) -> Campaign:
         raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
     opened, notes = _open(places)
     opened, unfit = one_rig(opened)
+    _refuse_other_gears(folder.name, opened)
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(_record, opened, begun))
@@ -103,6 +105,14 @@ def _moved(run: Recording) -> Moved:
     omega = np.concatenate([p.omega_m for p in run.pieces])
     start, end = float(run.pieces[0].t[0]), float(run.pieces[-1].t[-1])
     return Moved(start, end, float(np.mean(np.abs(omega))), float(np.mean(omega**2)))
+
+
+def _refuse_other_gears(campaign: str, opened: Sequence[Run]) -> None:
+    """Two gears differ by more than repeats do: taken for one, what they differ by would be the floor."""
+    tables = [run.manifest.get("gear") for run in opened]
+    serials = sorted({str(t["serial"]) for t in tables if isinstance(t, Mapping) and t.get("serial")})
+    if len(serials) > 1:
+        raise UsageError(f"{campaign}: its runs are of {len(serials)} gears ({', '.join(serials)[:80]}), expected one")
 
 
 def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:
