@@ -121,7 +121,8 @@ def along(coordinate: str) -> NextRun | None:
     """The run that shows most of what nobody can name: along the `coordinate` of the report's list it lives in."""
     for coordinates, procedure, conditions, why in ALONG:
         if coordinate in coordinates:
-            return NextRun(procedure, dict(conditions), f"what is left lives in {coordinate}: {why}".replace("_", " "))
+            because = f"shows more of what lives in {coordinate}: {why}".replace("_", " ")
+            return NextRun(procedure, dict(conditions), because)
     return None
 
 
