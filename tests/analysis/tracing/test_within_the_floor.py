@@ -14,6 +14,8 @@ import pytest
 
 from rig.analysis.tracing.court.next_run import Alone, _as_good
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.rest.in_the_floor import _waves
+from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.trace import trace
 
 Columns = dict[str, np.ndarray]
@@ -96,3 +98,12 @@ def test_a_rival_explains_as_much_and_leaves_no_more() -> None:
     assert not _as_good(Alone(600.0, 0.98, 1.1), best)  # the floor is too high to show it: the evidence does
     assert not _as_good(Alone(1700.0, 6.5, 7.2), best)  # explains more, of something else
     assert not _as_good(None, best)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e6])
+def test_a_campaign_of_seconds_or_of_days_has_no_waves_of_its_clock(apart: float) -> None:
+    run = np.repeat(np.arange(4), 500)
+    time = np.tile(np.arange(500) / 50, 4) + apart * run  # s; runs without a date all begin at once
+    at = {"time": time, "direction": np.ones(2000)}
+    none = np.zeros((2000, 0))
+    assert _waves(Rest(np.ones(2000), run, at, 0.02, none, none[:0]), lambda r: np.ones(r.e.size)) is None

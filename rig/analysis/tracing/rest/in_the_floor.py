@@ -28,6 +28,7 @@ from rig.model.effect import Array
 TURN: Final = 2 * np.pi
 TWICE: Final = 2.0  # periods at least within the campaign: less is a trend, as gains and zeros have it
 FINE: Final = 8  # frequencies tried for every whole wave more in the campaign
+MOST: Final = 20_000  # of them: eight hours; each costs a fit
 HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
 FEWEST: Final = 4  # runs
 
@@ -66,13 +67,13 @@ def _in_channel(
 
     bare = foretold(Home("time", channel, 0.0, read=in_columns(lambda r: np.zeros((r.e.size, 0)))))
     homes = [replace(home, share=foretold(home) - bare) for home in _readings(train, channel)]
-    best = max(homes, key=lambda home: home.share)
-    return best if best.share > FORETOLD else None
+    best = max(homes, key=lambda home: home.share, default=None)
+    return best if best is not None and best.share > FORETOLD else None
 
 
 def _readings(train: Rest, channel: str) -> list[Home]:
     waved = [_waves(train, sense) for sense in SENSES]
-    homes = [Home("time_periodic", channel, 0.0, frequency_hz=f, read=read) for read, f in waved]
+    homes = [Home("time_periodic", channel, 0.0, frequency_hz=w[1], read=w[0]) for w in waved if w is not None]
     if np.isfinite(train.at["load_angle"]).all():
         homes.append(Home("load_angle", channel, 0.0, read=in_columns(lambda r: powers(r.at["load_angle"]))))
     return [replace(home, own_zeros=train.own_zeros) for home in homes]
@@ -89,8 +90,9 @@ def _within_runs(
     return {key: floor * by for key, floor in floors.items() if key[1] == channel}
 
 
-def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float]:
-    """The reading of the wave that explains most against the `sense` of the motion, and its frequency, Hz."""
+def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | None:
+    """The reading of the wave that explains most against the `sense` of the motion, and its frequency, Hz; None where
+    the campaign is too short for two of them, or lasts for days."""
     t, run, e, way = _by_seconds(r, sense(r))
     slow = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
     runs = (run[:, None] == np.unique(run)) * slow[:, None]
@@ -98,7 +100,9 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float]:
     def without_zeros(x: Array) -> Array:
         return np.asarray(x - runs @ (runs.T @ x / np.maximum(runs.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
 
-    step = 1.0 / float(np.ptp(t)) / FINE
+    step = 1.0 / max(float(np.ptp(t)), 1e-9) / FINE
+    if not TWICE * FINE < SLOWEST / step < MOST:
+        return None
     tried = np.arange(TWICE * FINE * step, SLOWEST, step)
     y = without_zeros(e)
     tall = [_explained(without_zeros(waves(TURN * t, f) * way[:, None]), y) for f in tried]
