@@ -88,6 +88,7 @@ class Signals:
     gear: Known
     thinned: int = 1  # readings that made one row
     past: tuple[Moved, ...] = ()  # of the whole campaign
+    cut: Cut | None = None  # what it is a part of: a state remembers what was before
 
     def kept(self, order: float, omega: Array) -> Array:
         """Share (n,) of a wave of `order` periods per turn at `omega` rad/s that is left in the rows: brought down from
@@ -129,7 +130,21 @@ class Signals:
         arrays: dict[str, Any] = {
             f.name: v[rows] for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)
         }
-        return replace(self, **arrays)
+        if self.cut is None:
+            return replace(self, **arrays, cut=Cut(self, range(self.t.size)[rows]))
+        return replace(self, **arrays, cut=Cut(self.cut.whole, self.cut.rows[rows]))
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Where a part of a piece was taken from: `rows` of `whole`."""
+
+    whole: Signals
+    rows: range
+
+    def of(self, x: Array) -> Array:
+        """Those rows of `x` (n, ...)."""
+        return x[self.rows.start : self.rows.stop]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,7 +12,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS, Rows, footprint, is_measured, rows, shared_columns, unmasked
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.workers import WORKERS
-from rig.model.effect import MEASURED, Array, Effect, Known, Shape
+from rig.model.effect import MEASURED, Array, Effect, Known, Port, Shape
 
 Key = tuple[int, str]  # run, channel
 FEWEST = 12  # rows of a run in a channel: a brisk lock test that sticks and slips is two dozen readings, and good ones
@@ -137,9 +137,26 @@ def orthonormal(x: Array) -> Array:
     return np.asarray(q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()])
 
 
+def acting(run: Recording, term: Term) -> list[dict[Port, Array]]:
+    """What a term does along each piece, (n, k) a port. Parts of one piece are cut from what it does along the whole: a
+    loop or a resonance that began anew at every cut would be another one."""
+    wholes: dict[int, Mapping[Port, Array]] = {}
+    out = []
+    for piece in run.pieces:
+        if piece.cut is None:
+            out.append(dict(term.effect.columns(piece, term.shape)))
+            continue
+        whole = piece.cut.whole
+        if id(whole) not in wholes:
+            wholes[id(whole)] = term.effect.columns(whole, term.shape)
+        out.append({port: piece.cut.of(z) for port, z in wholes[id(whole)].items()})
+    return out
+
+
 def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:
     """Columns of `term` in each channel of `kept`, pieces joined, rows as in `kept`."""
-    made = [footprint(term.effect.columns(piece, term.shape), piece, run.smoother, run.knows) for piece in run.pieces]
+    acts = acting(run, term)
+    made = [footprint(a, piece, run.smoother, run.knows) for a, piece in zip(acts, run.pieces, strict=True)]
     joined = {c: np.concatenate([m[c] for m in made])[r.keep] for c, r in kept.items() if c in made[0]}
     # a column of something that was not measured explains nothing
     return {c: z if np.isfinite(z).all() else np.zeros_like(z) for c, z in joined.items()}

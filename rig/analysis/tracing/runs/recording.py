@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -71,11 +71,11 @@ class Recording:
     def noisier(self, seed: int) -> Recording:
         """The same with its own sensor noise added once more: what noise does to columns is the difference."""
         rng = np.random.default_rng(seed)
-        return replace(self, pieces=tuple(_noisier(piece, self.noise, self.smoother, rng) for piece in self.pieces))
+        return replace(self, pieces=_each(self.pieces, lambda piece: _noisier(piece, self.noise, self.smoother, rng)))
 
     def knowing(self, known: Known) -> Recording:
         """The same with what is known of the gear."""
-        return replace(self, pieces=tuple(_knowing(piece, known) for piece in self.pieces))
+        return replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known)))
 
 
 def record(whole_run: Run, start: float) -> Recording:
@@ -216,6 +216,7 @@ def _piece(
         gear=believed(run),
         thinned=factor,
         past=(),
+        cut=None,
         **derived,
     )
 
@@ -259,6 +260,19 @@ def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
         "torque": flat(c["tau_l"]),
         "torque_rate": flat_rate(c["tau_l"], dt, 1),
     }
+
+
+def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tuple[Signals, ...]:
+    """Every piece changed; of parts, what they were cut from."""
+    wholes: dict[int, Signals] = {}
+    out = []
+    for piece in pieces:
+        whole = piece if piece.cut is None else piece.cut.whole
+        if id(whole) not in wholes:
+            wholes[id(whole)] = change(whole)
+        made = wholes[id(whole)]
+        out.append(made if piece.cut is None else made.part(slice(piece.cut.rows.start, piece.cut.rows.stop)))
+    return tuple(out)
 
 
 def _knowing(piece: Signals, known: Known) -> Signals:
