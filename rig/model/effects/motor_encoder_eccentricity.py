@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -11,24 +11,32 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 
 class MotorEncoderEccentricity(Effect):
-    """The motor angle reads e·cos(θ_m + φ) too much
+    """The motor angle reads Σ e_k·cos(k·θ_m + φ_k) too much, k = 1 to 3, the first the largest
 
-    In angle the kinematic error's order 1 takes it up in every run; only J_m·ω̇_m of fast runs tells it from a real one.
+    A disc off its axis reads an arc tangent of the angle, whose second and third order are smaller. In angle the
+    kinematic error's same orders take it up in every run; only J_m·ω̇_m of fast runs tells it from a real one.
     """
 
     name: ClassVar[str] = "motor_encoder_eccentricity"
     in_short: ClassVar[str] = "once per motor turn, never amplified by the dynamics"
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
+    ORDERS: Final = 3
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """None: once per turn."""
         return ((),)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """Cosine and sine of the motor angle."""
-        return {Port.READS_THETA_M: np.stack([np.cos(signals.theta_m), np.sin(signals.theta_m)], 1)}
+        """Cosine and sine of the motor angle and its multiples."""
+        angles = np.multiply.outer(signals.theta_m, np.arange(1, self.ORDERS + 1))
+        return {Port.READS_THETA_M: np.stack([np.cos(angles), np.sin(angles)], 2).reshape(angles.shape[0], -1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Amplitude and phase."""
+        """Amplitude and phase of the first order."""
         return harmonic(fit, "eccentricity", "rad")
+
+    def plausible(self, fit: Fit) -> bool:
+        """An arc tangent's first order is larger than the others together."""
+        sizes = np.hypot(fit.coefficients[::2], fit.coefficients[1::2])
+        return bool(sizes[0] > sizes[1:].sum())

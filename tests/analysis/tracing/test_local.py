@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
-from rig.analysis.tracing.floor.local import Steps, _heights, _jumps, explained, lost_counts
+from rig.analysis.tracing.floor.steps import Steps, _jumps, explained, lost_counts
+from rig.analysis.tracing.floor.vibration import _heights
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)

@@ -5,21 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.interference import Interference, find_interference
-from rig.analysis.tracing.floor.local import (
-    explained,
-    find_steps,
-    find_vibration,
-    joined,
-    lost_counts,
-    step_columns,
-    vibration_columns,
-)
+from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.floor.steps import explained, find_steps, lost_counts, step_columns
+from rig.analysis.tracing.floor.vibration import find_vibration
 from rig.analysis.tracing.runs.holdout import Split
 from rig.analysis.tracing.thresholds import OWN
 from rig.model.effect import Array, Parameter
@@ -50,10 +42,10 @@ def find(s: Solution, parts: Split) -> Own:
     compliance = s.value("compliance")
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
-    shaken = find_vibration(eq, e)
+    shaken = find_vibration(s, e, parts.fitted)
     line = None
-    if shaken is not None and shaken.of_the_load(1 / compliance if compliance > 0 else np.inf):
-        made["external_vibration"] = vibration_columns(eq, shaken.frequency_hz)
+    if shaken is not None:
+        made["external_vibration"] = shaken.columns
         words["external_vibration"] = shaken.parameters()
     else:
         held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
