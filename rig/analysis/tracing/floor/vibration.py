@@ -1,0 +1,179 @@
+"""A torque on the load at frequencies of its own, whatever the speed: each run has its own phase."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations, Key, Term
+from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.floor.local import clock, joined
+from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS
+from rig.model.effect import Array, Parameter, parameter
+from rig.model.effects import EACH_RUN
+from rig.model.effects.external_vibration import ExternalVibration
+
+VIBRATION = EACH_RUN["external_vibration"]
+ZOOM = 4  # finer than a run's own resolution
+LINES = 3  # of one vibration: one that swells and fades has two beside its own
+SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
+
+
+@dataclass(frozen=True)
+class Line:
+    """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque."""
+
+    frequency_hz: float
+    amplitude: dict[str, float]
+    half_hz: float
+    half_torque: float
+
+    def of_the_load(self, stiffness: float) -> bool:
+        """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too."""
+        torque = self.amplitude.get("L", 0.0)
+        return torque > 0 and self.amplitude.get("A", 0.0) < 0.5 * torque / stiffness
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """Lines at one frequency each in runs of differing speed, the loudest first, and their columns by block."""
+
+    lines: tuple[Line, ...]
+    columns: dict[Key, Array]
+
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Frequency and amplitude of every line."""
+        out = []
+        for i, line in enumerate(self.lines):
+            place = f"_{i + 1}" if i else ""
+            out.append(parameter(f"frequency{place}", line.frequency_hz, line.half_hz, "Hz"))
+            torque = line.amplitude.get("L", 0.0)
+            out.append(parameter(f"torque_amplitude{place}", torque, line.half_torque, "N·m"))
+        return tuple(out)
+
+
+def find_vibration(s: Solution, e: Mapping[Key, Array], runs: Sequence[int]) -> Vibration | None:
+    """In the residuals `e` of a fit to `runs`; None where nothing shakes the load at a frequency of its own. A swelling
+    one has more than one line."""
+    eq, stiffness = s.design.eq, 1 / c if (c := s.value("compliance")) > 0 else np.inf
+    found: tuple[Line, ...] = ()
+    columns: dict[Key, Array] = {}
+    left = dict(e)
+    while len(found) < LINES and (hz := _loudest(eq, left)) is not None:
+        if any(abs(hz - line.frequency_hz) < SAME for line in found):
+            break
+        mine = vibration_columns(eq, hz)
+        more = joined([columns, mine])
+        # the inertia fitted without the vibration is off, and with it what is left of the wave
+        beside = fit(design(_with(eq, more), s.design.terms, runs))
+        bare = design(eq, s.design.terms, runs)
+        line = _line(eq, {key: bare.residual(key, beside.x) for key in left}, mine, hz)
+        if not line.of_the_load(stiffness):
+            break
+        found, columns = (*found, line), more
+        left = {key: beside.residual(key) for key in left}
+    return Vibration(found, columns) if found else None
+
+
+def _with(eq: Equations, columns: Mapping[Key, Array]) -> Equations:
+    return replace(eq, own=joined([eq.own, columns]))
+
+
+def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
+    """Hz of the strongest line at a fixed frequency in L (in A without a torque sensor), None when there is none."""
+    channel = "L" if any(c == "L" for _, c in e) else "A"
+    keys = [k for k in e if k[1] == channel and e[k].size > 256]
+    if len(keys) < 3:
+        return None
+    top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
+    grid = np.arange(ExternalVibration.LOWEST, 0.98 * top, ExternalVibration.STEP)
+    heights = np.array([_heights(clock(eq, k), e[k], grid) for k in keys])
+    speed = np.array([eq.runs[k[0]].turning for k in keys])
+    hits = heights > LINE
+    score = np.where(hits.mean(0) > LINE_RUNS, np.median(heights, axis=0), 0.0)
+    for at in np.argsort(-score)[:50]:
+        if score[at] <= 0:
+            return None
+        hit = speed[hits[:, at]]
+        if hit.max() > LINE_SPEEDS * hit.min():
+            return _sharpened(eq, e, keys, float(grid[at]))
+    return None
+
+
+def _heights(t: Array, e: Array, grid: Array) -> Array:
+    """Power at `grid` Hz over what is usual around it."""
+    dt = float(np.median(np.diff(t)))
+    even = np.zeros(round((t[-1] - t[0]) / dt) + 1)
+    even[np.minimum(np.round((t - t[0]) / dt).astype(int), even.size - 1)] = e
+    n = ZOOM * even.size
+    power = np.abs(np.fft.rfft(even * np.hanning(even.size), n)) ** 2
+    hz = np.fft.rfftfreq(n, dt)
+    width = max(1, int(1.5 / hz[1]))  # Hz on each side make the background
+    coarse = power[: power.size // width * width].reshape(-1, width)
+    usual = np.interp(np.arange(power.size), (np.arange(len(coarse)) + 0.5) * width, np.median(coarse, axis=1))
+    reach = max(1, round(0.02 / hz[1]))
+    best = power.copy()
+    for shift in range(1, reach + 1):
+        best[shift:] = np.maximum(best[shift:], power[:-shift])
+        best[:-shift] = np.maximum(best[:-shift], power[shift:])
+    return np.asarray(np.interp(grid, hz, best / np.maximum(usual, 1e-300)))
+
+
+def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:
+    """The frequency that takes most from all runs together, each with its own phase."""
+    best = about
+    # 0.002 Hz first, then a tenth of a turn in the longest run
+    for half in (0.06, 0.003):
+        fine = best + np.linspace(-half, half, 61)
+        total = np.zeros(fine.size)
+        for key in keys:
+            t = clock(eq, key)
+            wave = np.exp(-2j * np.pi * np.multiply.outer(fine, t - t.mean()))
+            total += np.abs(wave @ e[key]) ** 2 / e[key].size
+        best = float(fine[int(np.argmax(total))])
+    return best
+
+
+def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], frequency: float) -> Line:
+    """Amplitudes and intervals at that frequency, of residuals that still have the wave."""
+    keys = [key for key in e if key[1] == "L" and key in columns]
+    sizes = [_size(e[key], columns[key]) for key in keys]
+    amplitude = _amplitudes(eq, e, frequency) | ({"L": float(np.median(sizes))} if sizes else {})
+    spread = float(np.std(sizes)) / np.sqrt(len(sizes)) if sizes else 0.0
+    information = 0.0
+    for key in keys or [k for k in e if k[1] == "A"]:
+        t, n = clock(eq, key), e[key].size
+        x = 2 * np.pi * frequency * t
+        wave = _size(e[key], np.stack([np.cos(x), np.sin(x)], 1))
+        noise = max(float(np.var(e[key])) - wave**2 / 2, 1e-300) * eq.noise.kappa[key[1]]
+        information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
+    return Line(frequency, amplitude, 1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300))), 1.96 * spread)
+
+
+def _size(e: Array, columns: Array) -> float:
+    """Amplitude of the wave that two columns make of a residual, beside an offset."""
+    z = np.hstack([columns, np.ones((e.size, 1))])
+    return float(np.hypot(*np.linalg.lstsq(z, e, rcond=None)[0][:2]))
+
+
+def _amplitudes(eq: Equations, e: Mapping[Key, Array], frequency: float) -> dict[str, float]:
+    """Median over runs, by channel, in its unit, with what the low-pass takes put back."""
+    out = {}
+    for channel in "AML":
+        sizes = []
+        for key in (k for k in e if k[1] == channel):
+            t = clock(eq, key)
+            sizes.append(2 * abs(np.exp(-2j * np.pi * frequency * t) @ e[key]) / e[key].size)
+        if sizes:
+            sigma = eq.runs[0].smoother.sigma_hz
+            out[channel] = float(np.median(sizes)) * float(np.exp(0.5 * (frequency / sigma) ** 2))
+    return out
+
+
+def vibration_columns(eq: Equations, frequency: float) -> dict[Key, Array]:
+    """Cosine and sine in every block in which a torque on the load shows, (n, 2)."""
+    runs = sorted({i for i, _ in eq.rows})
+    made = {i: eq.term(i, Term(VIBRATION, (frequency,))) for i in runs}
+    return {(i, c): m for i in runs for c, m in made[i].items() if np.any(m)}
