@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit.equations import Term, acting
 from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
 from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY
 from rig.model.fourier import FourierSeries
@@ -162,3 +164,26 @@ def test_a_vibration_has_its_frequency_whatever_the_motor_does():
     for s in (motion(1.0), motion(-1.0)):
         waves = effect.columns(s, (7.0,))[Port.LOAD_TORQUE]
         np.testing.assert_allclose(waves, -np.stack([np.cos(14 * np.pi * s.t), np.sin(14 * np.pi * s.t)], 1))
+
+
+@every_effect
+def test_parts_of_a_piece_remember_what_was_before(effect: Effect):
+    whole = motion()
+    parts = tuple(whole.part(rows) for rows in (slice(0, 1100), slice(1100, 2700), slice(2700, None)))
+    inner = parts[1].part(slice(200, 500))  # a part of a part
+    for shape in effect.shapes(REACH)[:3]:
+        expected = effect.columns(whole, shape)
+        acts = acting(SimpleNamespace(pieces=(*parts, inner)), Term(effect, shape))
+        for port, columns in expected.items():
+            np.testing.assert_array_equal(np.concatenate([a[port] for a in acts[:3]]), columns)
+            np.testing.assert_array_equal(acts[3][port], columns[1300:1600])
+
+
+def test_an_eccentric_disc_reads_less_in_the_higher_orders():
+    effect = LIBRARY["motor_encoder_eccentricity"]
+
+    def of(sizes):
+        return Fit(np.array([[s, 0.0] for s in sizes]).ravel(), (), np.zeros((6, 6)), KNOWN, N)
+
+    assert effect.plausible(of((3.0, 1.0, 0.5)))
+    assert not effect.plausible(of((1.0, 3.0, 0.5)))

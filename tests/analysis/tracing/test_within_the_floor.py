@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.court.next_run import Alone, _as_good
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.rest.in_the_floor import _waves
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.trace import trace
+from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 
-Columns = dict[str, np.ndarray]
 PERIOD = 230.0  # s, between the shortest run and the campaign
 EVERY = 84.0  # s
-RATIO = 50
-STIFFNESS = 7200.0  # N·m/rad, the campaign's
-
-
-def spiked(to: Path, campaign: Path, law: Callable[[Columns, float], Columns]) -> Trace:
-    """A campaign traced with columns changed by `law`, which gets a run's columns and when it began [s]."""
-    started: dict[str, float] = {}
-    for run in sorted(p for p in campaign.iterdir() if p.is_dir()):
-        manifest = json.loads((run / "manifest.json").read_text())
-        began = np.datetime64(manifest["started_utc"][:19]).astype(float)
-        table = pq.read_table(run / "samples.parquet")
-        columns = {name: table[name].to_numpy() for name in table.column_names}
-        started[run.name] = began
-        shutil.copytree(run, to / run.name)
-        changed = columns | law(columns, began)
-        pq.write_table(pa.table(changed), to / run.name / "samples.parquet")
-    return trace(to)
 
 
 def breathing(c: Columns, began: float) -> Columns:
@@ -52,15 +30,6 @@ def rubbing(c: Columns, began: float) -> Columns:
 
 def pulled(c: Columns, began: float) -> Columns:
     return under(c, 0.06 * c["theta_l"])
-
-
-def under(c: Columns, torque: np.ndarray) -> Columns:
-    """With a torque [N·m] more on the output, which winds the gear up."""
-    return {
-        "tau_l": c["tau_l"] + torque,
-        "theta_l": c["theta_l"] - torque / STIFFNESS,
-        "tau_m": c["tau_m"] + torque / RATIO,
-    }
 
 
 def loaded(c: Columns, began: float) -> Columns:

@@ -197,7 +197,9 @@ def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, fl
     total = sum(work.values())
     fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
     apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
-    return float(np.sqrt(max(sum(spread.values()), 0.0) / total)) if total else 0.0, float(apart)
+    # a channel it hardly shows in says nothing of it: what is left there is something else's
+    whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
+    return float(whole), float(apart)
 
 
 def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:
