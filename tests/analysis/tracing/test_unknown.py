@@ -69,6 +69,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a knee in the load": ("load", lambda at: np.abs(at["load"])),
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
     "a clamp that slips under torque": ("memory", slipping),
+    "friction that is more from one moment on": ("time", lambda at: at["direction"] * (at["time"] > 100.0)),
     "growth over the day": ("time", lambda at: at["time"] / 240 * np.cos(2 * at["motor_angle"])),
 }
 

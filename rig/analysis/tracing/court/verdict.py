@@ -140,7 +140,7 @@ def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
 def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
     return (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
-        f"{best.coordinate.replace('_', ' ')} ({best.share:.0%} of it)"
+        f"{best.coordinate.replace('_', ' ')} ({min(best.share, 1.0):.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
         + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
         + (f"; beside it stand {', '.join(names)}" if names else "")

@@ -35,9 +35,15 @@ class Home:
     read: Reading | None = None  # how it was read; none for a line
     own_zeros: bool = True  # whether every run had a zero of its own beside it
     late: bool = False  # said only where no plainer one does nearly as well
+    first: bool = False  # said before all others that do no more than nearly as well
 
 
 def plainest(found: Sequence[Home]) -> list[Home]:
     """The best first, and before it simpler ones that do nearly as well."""
     best = max(h.share for h in found)
-    return sorted(found, key=lambda h: (h.share < PLAIN_ENOUGH * best, h.late, SIMPLE.index(h.coordinate), -h.share))
+
+
+    def rank(h: Home) -> tuple[bool, bool, bool, int, float]:
+        return h.share < PLAIN_ENOUGH * best, not h.first, h.late, SIMPLE.index(h.coordinate), -h.share
+
+    return sorted(found, key=rank)

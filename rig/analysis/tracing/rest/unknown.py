@@ -15,9 +15,12 @@ from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
+from rig.analysis.tracing.rest.sudden import since
+from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
+WITH_TIME = ("time", "temperature")
 SMOOTH: Sequence[tuple[str, Callable[[Rest], Array]]] = (
     ("speed", lambda r: swelling(r.at["motor_angle"], np.abs(r.at["speed"]))),
     ("load", lambda r: swelling(r.at["motor_angle"], r.at["load"])),
@@ -30,15 +33,24 @@ def homes(r: Rest, channel: str) -> list[Home]:
     """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
     seen, r = line(r, channel), r.thinned(MOST)
     h = Halves(r, folds(r))
-    ways = [(name, index) for name, index in INDICES.items()]
-    ways += [(name, index) for name, several in JOINT.items() for index in several]
-    out = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
+    alone = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in INDICES.items()]
+    ways = [(name, index) for name, several in JOINT.items() for index in several]
+    out = alone + [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
     some = [best_order(h, name, channel, sense) for name in ("motor_angle", "load_angle") for sense in SENSES]
     out += [found for found in (*some, seen, by_the_day(h, channel), _wound(h, channel)) if found is not None]
     out += [by_the_clock(h, channel, sense) for sense in SENSES]
+    out += _at_once(h, channel, alone)
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
+
+
+def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
+    """Steps at one moment, said first of all: they have one number. Not where a coordinate by itself does nearly as
+    well: all slow runs may have been taken before all fast ones."""
+    steps = [since(h, channel, sense) for sense in SENSES]
+    best = max(other.share for other in others if other.coordinate not in WITH_TIME)
+    return [replace(step, first=best < PLAIN_ENOUGH * step.share) for step in steps]
 
 
 def _wound(h: Halves, channel: str) -> Home | None:
