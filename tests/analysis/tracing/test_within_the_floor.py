@@ -16,6 +16,7 @@ from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 
 PERIOD = 230.0  # s, between the shortest run and the campaign
 EVERY = 84.0  # s
+SEAL = 2.6  # s
 
 
 def breathing(c: Columns, began: float) -> Columns:
@@ -26,6 +27,11 @@ def breathing(c: Columns, began: float) -> Columns:
 def rubbing(c: Columns, began: float) -> Columns:
     on = np.mod(began + c["t"], EVERY) < EVERY / 3
     return under(c, 0.3 * on * np.sign(np.gradient(c["theta_m"])))
+
+
+def dragging(c: Columns, began: float) -> Columns:
+    on = np.mod(1.7 * began + c["t"], SEAL) < SEAL / 2  # a phase of each run's own
+    return {"tau_m": c["tau_m"] + 0.009 * on * np.sign(np.gradient(c["theta_m"]))}
 
 
 def pulled(c: Columns, began: float) -> Columns:
@@ -45,6 +51,14 @@ def test_what_follows_the_clock_makes_the_floor_and_is_told(
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
     assert verdict.frequency_hz is not None
     assert 1 / verdict.frequency_hz == pytest.approx(period, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_seal_that_rubs_within_every_run_is_told(tmp_path: Path, shared: Path) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", dragging).verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
+    assert verdict.frequency_hz is not None
+    assert 1 / verdict.frequency_hz == pytest.approx(SEAL, rel=0.01)
 
 
 @pytest.mark.slow

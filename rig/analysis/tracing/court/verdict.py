@@ -18,6 +18,7 @@ from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
 from rig.model.effect import Array
@@ -92,19 +93,24 @@ def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: 
     """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
     left = {key: s.residual(key) for key in s.keys}
     home = in_the_floor(p.eq, left, after, {**floors, **p.court.floors})
+    of_what = "what unseen runs have beyond what neighbouring turns differ by"
+    if home is None:
+        home, of_what = ticking(p.eq, left, after), "what unseen runs leave there"
     if home is None:
         return None
-    what = (
-        f"something that comes and goes every {1 / home.frequency_hz:.0f} s of the campaign's clock"
-        if home.frequency_hz
-        else "the angle the output has gone"
-    )
+    what = f"something that comes and goes {_how_often(home)}" if home.frequency_hz else "the angle the output has gone"
     sentence = (
-        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({home.share:.0%} of what unseen runs have "
-        "beyond what neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
+        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
+        "it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
     return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _how_often(home: Home) -> str:
+    """In words; seconds where it takes some."""
+    hz = home.frequency_hz or 0.0
+    return f"every {1 / hz:.3g} s of the campaign's clock" if hz < 1 else f"{hz:.2f} times a second, whatever the speed"
 
 
 def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:

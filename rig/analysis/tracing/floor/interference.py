@@ -113,12 +113,12 @@ def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | Non
     hz = np.fft.rfftfreq(PADDED * n, dt)
     band = hz > LOWEST
     power = _power(even, start, n)
-    over = power[:, band] / np.maximum(_around(power, hz, np.asarray(hz[band], float), 2 / (n * dt)), 1e-300)
+    over = power[:, band] / np.maximum(around(power, hz, np.asarray(hz[band], float), 2 / (n * dt)), 1e-300)
     top = np.argmax(over, axis=1)
     return _Track(hz[band][top], over[np.arange(start.size), top])
 
 
-def _around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -> Array:
+def around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -> Array:
     """Median power on that side of each frequency of `at` where there is more (windows, frequencies), from a third of
     it to `wide` Hz below, from as far above to three times it: friction that wanders has most of its power at the
     lowest frequencies, a low-pass leaves little at the highest, and neither is a line."""

@@ -42,7 +42,6 @@ def plainest(found: Sequence[Home]) -> list[Home]:
     """The best first, and before it simpler ones that do nearly as well."""
     best = max(h.share for h in found)
 
-
     def rank(h: Home) -> tuple[bool, bool, bool, int, float]:
         return h.share < PLAIN_ENOUGH * best, not h.first, h.late, SIMPLE.index(h.coordinate), -h.share
 

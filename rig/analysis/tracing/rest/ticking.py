@@ -1,0 +1,140 @@
+"""What comes and goes with the clock within every run, too fast to be seen from run to run: a pump, a seal that rubs.
+
+Each run has its own phase, so repeats differ by it and the floor holds it. It is told from an order of a shaft by its
+phase, which no angle holds together, and by runs of other speeds, which show it too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.equations import Equations, Key, orthonormal
+from rig.analysis.tracing.floor.interference import around
+from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.readings import waves
+from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
+from rig.model.effect import Array
+
+TURN: Final = 2 * np.pi
+TIMES: Final = 6.0  # periods a run must hold to tell a line from drift
+FASTEST: Final = 0.8  # of half the row rate: there the low-pass leaves nothing
+GRID: Final = 0.01  # Hz: what the longest runs resolve
+FEWEST: Final = 3  # runs
+PADDED: Final = 4  # finer than a run's own resolution
+CLOCKED: Final = 4.0  # times the power by the angle with one phase for all: what follows the angle has less than once
+SEEN: Final = 4.0  # power over its surroundings, mean of runs at other speeds: chance gives half of that
+HARMONICS: Final = 3  # of its frequency: what rubs for half of the time has as many
+FINER: Final = 40  # frequencies tried within a step of the grid on both sides
+
+Sense = Callable[[Array], Array]
+"""From motor angle (n,) to the sign with which the rest is taken, (n,)."""
+SENSES: Final[Sequence[Sense]] = (lambda angle: np.ones(angle.size), lambda angle: np.sign(np.gradient(angle)))
+
+
+def ticking(eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array]) -> Home | None:
+    """The loudest such line of the fitted residuals, with its share of the unseen ones; None where there is none."""
+    found = [_in_channel(eq, fitted, unseen, channel, sense) for channel in WHOLE for sense in SENSES]
+    return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
+
+
+def _in_channel(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str, sense: Sense
+) -> Home | None:
+    signed = {k: e * sense(eq.rows[k].theta_m) for k, e in fitted.items() if _tells(eq, k, channel, e)}
+    hz = _loudest(eq, signed)
+    if hz is None or not _of_the_clock(eq, signed, hz):
+        return None
+    part = min(_share(eq, e, channel, sense, hz) for e in (fitted, unseen))
+    return Home("time_periodic", channel, part, frequency_hz=hz) if part > LOUD_LINE else None
+
+
+def _tells(eq: Equations, key: Key, channel: str, e: Array) -> bool:
+    return key[1] == channel and not eq.runs[key[0]].locked and e.size > 256
+
+
+def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
+    """Hz of the line that stands out in most of the runs that are long enough for it."""
+    runs = [_spectrum(eq, key, x) for key, x in e.items()]
+    if len(runs) < FEWEST:
+        return None
+    grid = np.arange(min(low for low, _, _, _ in runs), min(high for _, high, _, _ in runs), GRID)
+    able = np.array([grid >= low for low, _, _, _ in runs])
+    heights = np.array([np.interp(grid, hz, over) for _, _, hz, over in runs])
+    count = able.sum(0)
+    often = ((heights > LINE) & able).sum(0) > LINE_RUNS * count
+    usual = np.nanmedian(np.where(able, heights, np.nan), axis=0)
+    score = np.where(often & (count >= FEWEST), usual, 0.0)
+    top = int(np.argmax(score))
+    return _sharpened(eq, e, float(grid[top])) if score[top] > 0 else None
+
+
+def _spectrum(eq: Equations, key: Key, e: Array) -> tuple[float, float, Array, Array]:
+    """Lowest and highest frequency that a run can tell, its frequencies, and its power there over what is usual around
+    each, the largest within half of what it resolves."""
+    t = clock(eq, key)
+    dt, length = float(np.median(np.diff(t))), float(t[-1] - t[0])
+    even = np.zeros(round(length / dt) + 1)
+    even[np.minimum(np.round((t - t[0]) / dt).astype(int), even.size - 1)] = e - e.mean()
+    power = np.abs(np.fft.rfft(even * np.hanning(even.size), PADDED * even.size)) ** 2
+    hz = np.asarray(np.fft.rfftfreq(PADDED * even.size, dt))
+    low, high = TIMES / length, FASTEST * 0.5 / dt
+    band = (hz > 0.5 * low) & (hz < high)
+    over = power[band] / np.maximum(around(power[None, :], hz, hz[band], 2 / length)[0], 1e-300)
+    near = [np.roll(over, by) for by in range(-PADDED // 2, PADDED // 2 + 1)]
+    return low, high, hz[band], np.max(near, axis=0)
+
+
+def _sharpened(eq: Equations, e: Mapping[Key, Array], about: float) -> float:
+    """The frequency that takes most from all runs together, each with its own phase."""
+    fine = about + GRID * np.linspace(-1, 1, 2 * FINER + 1)
+    total = np.zeros(fine.size)
+    for key, x in e.items():
+        t = clock(eq, key)
+        total += np.abs(np.exp(-1j * TURN * np.multiply.outer(fine, t - t.mean())) @ x) ** 2 / x.size
+    return float(fine[int(np.argmax(total))])
+
+
+def _of_the_clock(eq: Equations, e: Mapping[Key, Array], hz: float) -> bool:
+    """Whether the line follows the clock and no angle: with one phase for all runs, as an angle has it, it does not add
+    up over the motor's angle at any order near; and runs that turn at another speed than most have it as well."""
+    speeds = {key: eq.runs[key[0]].turning for key in e}
+    heights = {key: _height(eq, key, x, hz) for key, x in e.items()}
+    usual = float(np.median([speed for key, speed in speeds.items() if heights[key] > LINE]))
+    others = [key for key, speed in speeds.items() if not usual / LINE_SPEEDS < speed < usual * LINE_SPEEDS]
+    if not others or float(np.mean([heights[key] for key in others])) < SEEN:
+        return False
+    alike = [key for key in e if key not in others]
+    rows = sum(e[key].size for key in alike)
+    by_time = sum(float(np.abs(np.exp(-1j * TURN * hz * clock(eq, key)) @ e[key]) ** 2) / e[key].size for key in alike)
+    angles = [eq.rows[key].theta_m for key in alike]
+    order, step = TURN * hz / max(usual, 1e-9), 0.25 * TURN / max(float(max(np.ptp(x) for x in angles)), 1e-9)
+    orders = order + step * np.arange(-FINER, FINER + 1)
+    waved = (np.exp(-1j * np.multiply.outer(orders, x)) @ e[key] for key, x in zip(alike, angles, strict=True))
+    by_angle = float(np.max(np.abs(sum(waved, np.zeros(orders.size, complex))) ** 2)) / rows
+    return by_time > CLOCKED * by_angle
+
+
+def _height(eq: Equations, key: Key, e: Array, hz: float) -> float:
+    """Of one run at a frequency; 1 where it is too short for it."""
+    low, high, at, over = _spectrum(eq, key, e)
+    return float(np.interp(hz, at, over)) if 0.5 * low < hz < high else 1.0
+
+
+def _share(eq: Equations, e: Mapping[Key, Array], channel: str, sense: Sense, hz: float) -> float:
+    """Of the sum of squares of a channel, what the line and its harmonics take with a phase of each run's own, less
+    what noise gives them by chance."""
+    gone = total = 0.0
+    for key, x in e.items():
+        if not _tells(eq, key, channel, x):
+            continue
+        columns = np.hstack([waves(TURN * clock(eq, key), k * hz) for k in range(1, HARMONICS + 1)])
+        basis = orthonormal(eq.without_offset(key, columns * sense(eq.rows[key].theta_m)[:, None]))
+        chance = basis.shape[1] * eq.noise.kappa[channel] * float(np.mean(x**2))
+        gone += float(np.sum((basis.T @ x) ** 2)) - chance
+        total += float(x @ x)
+    return gone / max(total, 1e-300)
