@@ -17,7 +17,7 @@ from rig.analysis.tracing.floor.interference import around
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.readings import waves
-from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
+from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
 from rig.model.effect import Array
 
 TURN: Final = 2 * np.pi
@@ -100,12 +100,15 @@ def _sharpened(eq: Equations, e: Mapping[Key, Array], about: float) -> float:
 
 
 def _of_the_clock(eq: Equations, e: Mapping[Key, Array], hz: float) -> bool:
-    """Whether the line follows the clock and no angle: with one phase for all runs, as an angle has it, it does not add
-    up over the motor's angle at any order near; and runs that turn at another speed than most have it as well."""
+    """Whether the line follows the clock and no angle: it stands out at speeds far apart; or, where most runs turn at
+    one speed, it does not add up over the motor's angle with one phase for all, and the others show it faintly."""
     speeds = {key: eq.runs[key[0]].turning for key in e}
     heights = {key: _height(eq, key, x, hz) for key, x in e.items()}
-    usual = float(np.median([speed for key, speed in speeds.items() if heights[key] > LINE]))
+    plain = [speed for key, speed in speeds.items() if heights[key] > LINE]
+    usual = float(np.median(plain))
     others = [key for key, speed in speeds.items() if not usual / LINE_SPEEDS < speed < usual * LINE_SPEEDS]
+    if sum(speed > LINE_FREE * min(plain) for speed in plain) >= FEWEST:
+        return True
     if not others or float(np.mean([heights[key] for key in others])) < SEEN:
         return False
     alike = [key for key in e if key not in others]
