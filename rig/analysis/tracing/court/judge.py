@@ -30,7 +30,7 @@ from rig.model.effect import Array, Parameter, Reach
 FAIR = 0.04  # of an effect's work: a fifth of its size
 ALL, FAIRLY = 0.95, 0.2  # share of the excess, and how near 1 what it takes of its own sum of squares must be
 LOOSE = 2.0  # times the unsteadiness: of what explains everything
-FAINT = 1e-3  # of one row's noise: a block with less of the effect wants no size at all
+FAINT = 0.05  # of the floor, RMS: what a block has less of is as much the columns' own sensor noise, and wants no size
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, fl
         e = d.residual(key, s.x) / floors[key]
         f = d.residual(key, rest.x) / floors[key] - e
         own = float(f @ f)
-        if own > FAINT:
+        if own > FAINT**2 * e.size:
             spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
             work[key[1]] += own
     total = sum(work.values())
