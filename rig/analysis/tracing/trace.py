@@ -68,6 +68,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     elif not quiet:
         case = heard_again(case, found, bank, runs, covered)
         case = heard_alone(case, found, runs, covered)
+    del bank  # half a gigabyte, and the report is made by two processes
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
+Made = TypeVar("Made")
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
@@ -52,6 +54,16 @@ class Recording:
     thinned: int  # rows of the file per row at the working rate
     noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
+
+    @cached_property
+    def _made(self) -> dict[str, Any]:
+        return {}
+
+    def once(self, name: str, make: Callable[[], Made]) -> Made:
+        """What is made of the run again and again, made once."""
+        if name not in self._made:
+            self._made[name] = make()
+        return cast(Made, self._made[name])
 
     @property
     def knows(self) -> frozenset[str]:
