@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import curves_of, free, with_free
@@ -50,14 +51,17 @@ def report(
     shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
     work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
     weighed = tuple(sorted(shares, key=lambda name: -work[name]))
+    baseline = parameters.baseline(empty)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
-    final = after
+    ruling = undecided(p, ruling, after, beyond(p, baseline))
+    final, curve = after, False
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
         # a curve that foretells nothing of unseen runs is not added
         mine = [key for key in after if key[1] == ruling.home.channel]
-        final = smooth if p.court.ratio(smooth, mine) < p.court.ratio(after, mine) else after
+        curve = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
+        final = smooth if curve else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
     words = p.own.parameters | dict(fitted)
@@ -72,7 +76,7 @@ def report(
             for c in WHOLE
             if c in p.measured.how
         ),
-        baseline=parameters.baseline(empty),
+        baseline=baseline,
         baseline_after=parameters.baseline(s),
         cannot_be_told_apart=together(p.campaign.runs),
         unexplained=unexplained(p, before),
@@ -89,6 +93,7 @@ def report(
         next_run=ruling.next_run,
         notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
+        curve=curve,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
         curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
     )
