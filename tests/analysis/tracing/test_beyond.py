@@ -84,7 +84,8 @@ AFTER: Any = {(1, "M"): np.ones(3), (2, "M"): np.ones(3)}
 
 def test_what_stands_outside_alone_decides_nothing() -> None:
     p = prepared([run(10.0)], [run(10.0), run(400.0)], loud={2})
-    ruling = undecided(p, UNKNOWN, AFTER, found(p))
+    ruling, decided = undecided(p, UNKNOWN, AFTER, found(p))
+    assert not decided
     assert ruling.verdict.status is Status.AMBIGUOUS
     assert ruling.verdict.sentence.startswith("Not decided: the held-out runs are 27.5 times the floor off, but 1 of 2")
     assert (ruling.home, ruling.next_run, ruling.lives_in) == (None, None, ())
@@ -92,10 +93,11 @@ def test_what_stands_outside_alone_decides_nothing() -> None:
 
 def test_what_stands_inside_too_is_left_and_the_range_is_a_word_beside_it() -> None:
     p = prepared([run(10.0)], [run(10.0), run(400.0)], loud={1, 2})
-    ruling = undecided(p, UNKNOWN, AFTER, found(p))
+    ruling, decided = undecided(p, UNKNOWN, AFTER, found(p))
+    assert decided
     assert ruling.verdict == UNKNOWN.verdict
     assert ruling.cannot == (found(p).sentence(),)
-    assert undecided(p, UNKNOWN, AFTER, None) is UNKNOWN
+    assert undecided(p, UNKNOWN, AFTER, None) == (UNKNOWN, True)
 
 
 @pytest.mark.slow

@@ -106,19 +106,20 @@ def _is_outside(run: Recording, covered: Range) -> bool:
     return torques[0] < low - margin or torques[1] > high + margin
 
 
-def undecided(p: Prepared, ruling: Ruling, after: Mapping[Key, Array], out: Beyond | None) -> Ruling:
-    """The ruling; where what is left stands in runs outside the fitted range alone, that nothing can be said of it."""
+def undecided(p: Prepared, ruling: Ruling, after: Mapping[Key, Array], out: Beyond | None) -> tuple[Ruling, bool]:
+    """The ruling; where what is left stands in runs outside the fitted range alone, that nothing can be said of it, and
+    False."""
     if out is None:
-        return ruling
+        return ruling, True
     inside = {key: e for key, e in after.items() if key[0] not in out.outside}
     one = MISSING if ruling.verdict.effects else ALONE
     guessed = ruling.home is not None and ruling.home.coordinate != "time_periodic"
     if ruling.verdict.status is not Status.UNKNOWN or not guessed or (inside and p.court.loud(inside, one)):
-        return replace(ruling, cannot=(*ruling.cannot, out.sentence()))
+        return replace(ruling, cannot=(*ruling.cannot, out.sentence())), True
     total, _ = p.court.worst(after)
     sentence = (
         f"Not decided: the held-out runs are {total:.1f} times the floor off, but {out.sentence()} Hold out some runs "
         "of every speed and load, and fit the others."
     )
-    return replace(ruling, verdict=Verdict(Status.AMBIGUOUS, (), (), None, None, None, sentence), home=None,
-                   lives_in=(), next_run=None)  # fmt: skip
+    verdict = Verdict(Status.AMBIGUOUS, (), (), None, None, None, sentence)
+    return replace(ruling, verdict=verdict, home=None, lives_in=(), next_run=None), False

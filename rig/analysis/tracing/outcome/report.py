@@ -53,8 +53,8 @@ def report(
     weighed = tuple(sorted(shares, key=lambda name: -work[name]))
     baseline = parameters.baseline(empty)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
-    ruling = undecided(p, ruling, after, beyond(p, baseline))
-    final, curve = after, False
+    ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
+    final, curve = after, bool(cast(s))
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
@@ -64,6 +64,7 @@ def report(
         final = smooth if curve else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
+    drawn = curves(p, before, final) | pictures(p, before, final) | curves_of(simulated)
     words = p.own.parameters | dict(fitted)
     return Trace(
         campaign=p.campaign.name,
@@ -95,7 +96,7 @@ def report(
         ripple=ripple,
         curve=curve,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
-        curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
+        curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
 
 
