@@ -34,8 +34,13 @@ def cards(trace: Trace) -> list[Card]:
     return [_card(trace, c, c is most) for c in sorted(found, key=lambda c: c is not most)]
 
 
+def changed(trace: Trace) -> bool:
+    """Whether anything was added to the model that the errors could show."""
+    return bool(trace.effects) or trace.curve or trace.ratios_after != trace.ratios_before
+
+
 def _card(trace: Trace, channel: Channel, main: bool) -> Card:
-    alone = trace.verdict.status is Status.NOTHING
+    alone = trace.verdict.status is Status.NOTHING or not changed(trace)
     before, after = channel.error(trace.before.pooled), channel.error(trace.after.pooled)
     floor = channel.floor(trace.before.pooled)
     ratios = trace.ratios_before[channel.sensor], trace.ratios_after.get(channel.sensor)

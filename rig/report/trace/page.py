@@ -51,7 +51,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes)],
         "remainder": words.remainder(trace),
         "ruling": words.RULINGS[trace.verdict.status],
-        "meaning": words.MEANING[trace.verdict.status],
+        "meaning": words.meant(trace),
         "sizes": words.sizes(trace.effects),
         "cards": cards(trace),
         "alone": trace.verdict.status is Status.NOTHING,

@@ -100,8 +100,8 @@ def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: 
         else "the angle the output has gone"
     )
     sentence = (
-        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({home.share:.0%} of what unseen runs have "
-        "beyond what neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
+        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of what unseen runs "
+        "have beyond what neighbouring turns differ by); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
     return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
@@ -140,7 +140,7 @@ def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
 def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
     return (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
-        f"{best.coordinate.replace('_', ' ')} ({best.share:.0%} of it)"
+        f"{best.coordinate.replace('_', ' ')} ({min(best.share, 1.0):.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
         + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
         + (f"; beside it stand {', '.join(names)}" if names else "")

@@ -45,9 +45,9 @@ class Interference:
         """What it is and is not."""
         wanders = f", from run to run {100 * (self.apart - 1):.0f} % apart" if self.apart > STEADY else ""
         return (
-            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, {self.share:.0%} "
-            "of what the model leaves there, and no torque on the load makes it: a pick-up in a sensor is likely. It "
-            "makes repeats differ, so the floors were measured without it."
+            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, "
+            f"{min(self.share, 1.0):.0%} of what the model leaves there, and no torque on the load makes it: a pick-up "
+            "in a sensor is likely. It makes repeats differ, so the floors were measured without it."
         )
 
 

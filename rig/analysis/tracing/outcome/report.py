@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
@@ -51,20 +52,23 @@ def report(
     shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
     work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
     weighed = tuple(sorted(shares, key=lambda name: -work[name]))
+    baseline = parameters.baseline(empty)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
-    final = after
+    ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
+    final, curve = after, bool(cast(s))
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
         # a curve that foretells nothing of unseen runs is not added
         mine = [key for key in after if key[1] == ruling.home.channel]
-        final = smooth if p.court.ratio(smooth, mine) < p.court.ratio(after, mine) else after
+        curve = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
+        final = smooth if curve else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     words = p.own.parameters | dict(fitted)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
         lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ())
         tried = candidates(p, found.ranking, before, ruling.verdict.effects, shadowed)
-        baselines, ripple = (parameters.baseline(empty), parameters.baseline(s)), ripples(p.campaign.runs)
+        refitted, ripple = parameters.baseline(s), ripples(p.campaign.runs)
         simulated, drawn = shown()
     return Trace(
         campaign=p.campaign.name,
@@ -77,8 +81,8 @@ def report(
             for c in WHOLE
             if c in p.measured.how
         ),
-        baseline=baselines[0],
-        baseline_after=baselines[1],
+        baseline=baseline,
+        baseline_after=refitted,
         cannot_be_told_apart=together(p.campaign.runs),
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
@@ -94,8 +98,9 @@ def report(
         next_run=ruling.next_run,
         notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
+        curve=curve,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
-        curves=drawn,
+        curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
 
 
