@@ -6,7 +6,7 @@ One definition serves the search for effects in measured runs, the refit, the si
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
@@ -98,6 +98,8 @@ class Signals:
         if self.thinned == 1:
             return np.ones(omega.size)
         hz, rate = order * np.abs(omega) / (2.0 * np.pi), self.thinned / self.dt
+        if np.max(hz, initial=0.0) * self.dt < 1.0 / 3.0:
+            return np.ones(omega.size)
         folded = np.abs(hz - rate * np.rint(hz / rate)) * self.dt
         return np.asarray(0.5 + 0.5 * np.cos(np.pi * np.clip(3.0 * folded - 1.0, 0.0, 1.0)))
 
@@ -124,6 +126,17 @@ class Signals:
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self.gear.kinematic_error.value(self.theta_m)
+
+    @cached_property
+    def _made(self) -> dict[str, tuple[Array, ...]]:
+        return {}
+
+    def once(self, name: str, make: Callable[[], tuple[Array, ...]]) -> tuple[Array, ...]:
+        """What an effect of that `name` makes of the signals whatever its shape: made once, for a refit asks for the
+        columns of dozens of shapes."""
+        if name not in self._made:
+            self._made[name] = make()
+        return self._made[name]
 
     def part(self, rows: slice) -> Signals:
         """Some rows of it."""

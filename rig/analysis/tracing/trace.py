@@ -22,6 +22,7 @@ from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.holdout import Split, split
+from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
@@ -68,6 +69,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     elif not quiet:
         case = heard_again(case, found, bank, runs, covered)
         case = heard_alone(case, found, runs, covered)
+    del bank  # half a gigabyte, and the report is made by two processes
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 
@@ -89,6 +91,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
     s = fit(design(eq, (), parts.fitted))
     refuse_negative(s, campaign.name)
+    campaign = replace(campaign, notes=(*campaign.notes, *off_scale(s, campaign.name)))
     measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
     eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()

@@ -50,7 +50,7 @@ class LoadDependentKinematicError(Effect):
         decay = np.exp(-np.abs(lagged(torque, lag, signals.dt)) / t_c)[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
         if of >= EACH:
-            values, slopes = _by_orders(signals, values, slopes)
+            values, slopes = signals.once(self.name, lambda: _by_orders(signals, values, slopes))
         return {Port.KINEMATIC_ERROR: values * decay, Port.LEVER: slopes * decay}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

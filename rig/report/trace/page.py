@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.workers import each
 from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.figures import Drawing
@@ -50,7 +51,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes)],
         "remainder": words.remainder(trace),
         "ruling": words.RULINGS[trace.verdict.status],
-        "meaning": words.MEANING[trace.verdict.status],
+        "meaning": words.meant(trace),
         "sizes": words.sizes(trace.effects),
         "cards": cards(trace),
         "alone": trace.verdict.status is Status.NOTHING,
@@ -108,7 +109,7 @@ def _origin(trace: Trace, source: Provenance) -> Origin:
 
 
 def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any]]:
-    made = (run_page._plot(drawing, dict(curves), mark) for drawing in drawings)
+    made = each(lambda drawing: run_page._plot(drawing, dict(curves), mark), drawings)
     return [plot for plot in made if plot is not None]
 
 

@@ -29,8 +29,13 @@ MEANING = {
     Status.AMBIGUOUS: "More than one effect explains these runs equally well. Naming one would be a guess: its "
     "parameters below hold only if it is the right one.",
     Status.UNKNOWN: "What is left is real: it is more than repeats of a run differ by. It is described by where it "
-    "lives and is given no name. What was added to the model is a curve without physics.",
+    "lives and is given no name. What is added to the model beside names is a curve without physics.",
 }
+
+BEYOND = (
+    "The fit was asked for more than it was told: in held-out runs outside the range of speed or load of the fitted "
+    "ones an error says nothing of the gear. No effect is named and none is ruled out."
+)
 
 PARAMETERS = {  # of the baseline: symbol, what it is
     "K": ("K", "torsional stiffness"),
@@ -62,6 +67,12 @@ PLACES = {
     "temperature": "the temperature",
     "memory": "what the torque has been: memory",
 }
+
+
+def meant(trace: Trace) -> str:
+    """What the verdict means, in a sentence or two."""
+    v = trace.verdict
+    return BEYOND if v.status is Status.AMBIGUOUS and not v.rivals else MEANING[v.status]
 
 
 def named(effect: str) -> str:
@@ -127,7 +138,12 @@ def added(trace: Trace) -> str:
         case Status.UNKNOWN:
             beside = f" beside {names}" if names else ""
             where = f"{place(v.coordinate)}{_pitch(trace)}"
+            if not trace.curve:
+                also = f"{humanise(names)} was added; no" if names else "Nothing was added: no"
+                return f"{also} curve in {where} foretells what is left in runs the fit did not see."
             return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
+        case Status.AMBIGUOUS if not v.rivals:
+            return "Nothing was added: the fitted runs do not reach as far as the held-out ones."
         case Status.AMBIGUOUS:
             rivals = listed([named(r).lower() for r in v.rivals])
             return f"For the errors below {names or 'the first candidate'} was added; {rivals} would do as well."

@@ -9,6 +9,7 @@ import pytest
 
 from rig.analysis.tracing.runs import campaign
 from rig.analysis.tracing.runs.membership import one_rig, starts
+from rig.analysis.tracing.runs.told_once import left_out as left_out_of
 from rig.core.errors import UsageError
 
 
@@ -52,7 +53,7 @@ def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
     monkeypatch.setattr(campaign, "record", lambda run, start: made)
     found = campaign._record(cast(Any, SimpleNamespace(name="jog")), 0.0)
     assert (
-        found == "jog was left out: its motor went 0.40 of a turn, a kinematic error needs a whole one."
+        found == left_out_of("jog", "its motor went 0.40 of a turn, a kinematic error needs a whole one")
     ) is left_out
 
 

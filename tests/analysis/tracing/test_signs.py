@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.signs import odd_angles
+from rig.analysis.tracing.runs.units import odd_angles
 from rig.analysis.tracing.trace import prepare
 from rig.core.errors import UsageError
 

@@ -170,6 +170,7 @@ def unknown() -> Trace:
         after=both(3.6, 0.002),
         lives_in=("load_angle",),
         curves=curves(after=4.0),
+        curve=True,
     )
 
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
@@ -10,6 +11,7 @@ from rig.model.effect import parameter
 from rig.report.trace import page
 from rig.report.trace.campaign import Provenance, provenance
 from rig.report.trace.cards import cards
+from rig.report.trace.figures import home
 from tests.report.test_page import HOSTILE, Reader
 from tests.report.trace import made_up
 
@@ -49,6 +51,24 @@ def test_the_page_holds_together(pages: dict[str, Reader], status: str) -> None:
 def test_every_verdict_has_its_own_honest_words(pages: dict[str, Reader], status: str, said: str) -> None:
     assert said in pages[status].words
     assert all(said not in other.words for name, other in pages.items() if name != status)
+
+
+def test_a_curve_that_was_not_added_is_not_said_to_be() -> None:
+    words = read(bare(replace(made_up.unknown(), curve=False))).words
+    assert "Nothing was added: no curve in the load angle, order 37 per turn foretells" in words
+    assert "no physics is claimed for it" not in words
+
+
+def test_runs_beyond_the_fitted_range_decide_nothing_and_no_rival_is_spoken_of() -> None:
+    verdict = replace(made_up.ambiguous().verdict, effects=(), rivals=())
+    words = read(bare(replace(made_up.ambiguous(), verdict=verdict, effects=(), next_run=None))).words
+    assert "The fit was asked for more than it was told" in words
+    assert "Nothing was added: the fitted runs do not reach" in words
+    assert "More than one effect" not in words
+
+
+def test_no_coordinate_predicts_more_than_all() -> None:
+    assert "177" not in " ".join(home.told({"share.A": np.array([1.77, *[0.1] * 9])}))
 
 
 def test_the_error_before_and_after_stands_beside_its_floor(pages: dict[str, Reader]) -> None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -82,8 +82,12 @@ class Equations:
     def without_offset(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) with as much of its mean gone as the run's offset is its own; all of it in A of a locked
         run, whose clamp turns the output a little."""
+        return np.asarray(x - self.share_of_mean(key, x.shape[0]) * x.mean(0))
+
+    def share_of_mean(self, key: Key, n: int) -> float:
+        """How much of the mean of `n` rows of a block is the run's own."""
         free = key[1] == "A" and self.runs[key[0]].locked
-        return np.asarray(x - (1.0 if free else self.noise.pull(key[1], x.shape[0])) * x.mean(0))
+        return 1.0 if free else self.noise.pull(key[1], n)
 
     def bare(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) without what the run has to itself."""
@@ -99,11 +103,15 @@ class Equations:
         """Columns of an effect in the channels of a run (rows, k), masked, not yet bare."""
         return columns(self.runs[run], term, self.kept(run))
 
+    def unmasked_term(self, run: int, term: Term, noisy: bool = False) -> dict[str, Array]:
+        """The same in all rows, (n, k); `noisy`: with sensor noise once more."""
+        return unmasked_columns(self.noisy[run] if noisy else self.runs[run], term, self.kept(run))
+
     def spoilt(self, run: int) -> dict[str, tuple[Array, Array]]:
         """What sensor noise does to the response (n,) and to the baseline's columns (n, b) of one run, bare."""
         noisy, out = self.noisy[run], {}
         for c, r in self.kept(run).items():
-            y, z, at = unmasked(noisy, c)
+            y, z, at = noisy.once(c, partial(unmasked, noisy, c))
             shared = z[:, shared_columns(noisy, c, at)]
             out[c] = self.bare((run, c), y[r.keep] - r.y), self.bare((run, c), shared[r.keep] - r.z)
         return out
@@ -155,11 +163,18 @@ def acting(run: Recording, term: Term) -> list[dict[Port, Array]]:
 
 def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Array]:
     """Columns of `term` in each channel of `kept`, pieces joined, rows as in `kept`."""
-    acts = acting(run, term)
-    made = [footprint(a, piece, run.smoother, run.knows) for a, piece in zip(acts, run.pieces, strict=True)]
-    joined = {c: np.concatenate([m[c] for m in made])[r.keep] for c, r in kept.items() if c in made[0]}
+    joined = {c: z[kept[c].keep] for c, z in unmasked_columns(run, term, kept).items()}
     # a column of something that was not measured explains nothing
     return {c: z if np.isfinite(z).all() else np.zeros_like(z) for c, z in joined.items()}
+
+
+def unmasked_columns(run: Recording, term: Term, kept: Collection[str]) -> dict[str, Array]:
+    """Columns of `term` in the channels `kept`, pieces joined, all rows (n, k)."""
+    acts = acting(run, term)
+    made = [footprint(act, piece, run.smoother, run.knows) for act, piece in zip(acts, run.pieces, strict=True)]
+    if len(made) == 1:
+        return {c: made[0][c] for c in kept if c in made[0]}
+    return {c: np.concatenate([m[c] for m in made]) for c in kept if c in made[0]}
 
 
 def equations(runs: Sequence[Recording], noise: Noise) -> Equations:

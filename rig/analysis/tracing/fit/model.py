@@ -109,13 +109,17 @@ class Solution:
 
 def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
     """Columns of the baseline and of `terms` for those runs."""
-    keys = eq.of(runs)
     spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
-    parts: dict[Key, tuple[Part, ...]] = {
-        key: (Part(eq.bare(key, eq.rows[key].z), np.array(eq.rows[key].at), spoilt[key][1] if key in spoilt else None),)
-        for key in keys
-    }
-    y = {key: eq.bare(key, eq.rows[key].y) for key in keys}
+
+    def of(key: Key) -> tuple[Array, Part]:
+        r, noise = eq.rows[key], spoilt[key][1] if key in spoilt else None
+        return eq.bare(key, r.y), Part(eq.bare(key, r.z), np.array(r.at), noise)
+
+    keys = eq.of(runs)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        made = dict(zip(keys, pool.map(of, keys), strict=True))
+    y = {key: y for key, (y, _) in made.items()}
+    parts: dict[Key, tuple[Part, ...]] = {key: (part,) for key, (_, part) in made.items()}
     out = Design(eq, (), (), y, {key: n for key, (n, _) in spoilt.items()}, parts, np.zeros((0, 0)), np.zeros(0))
     gram, right = normal(out, {key: part[0] for key, part in parts.items()})
     out = replace(out, gram=gram, right=right)
@@ -151,20 +155,32 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
     Noise in columns makes inertias come out low when it is left in. What it adds is found by adding each run's noise
     once more: products of the differences that makes      [fuller1987]
     """
+    with ThreadPoolExecutor(WORKERS) as pool:
+        made = pool.map(lambda key: _products(d, key, new[key]), new)
+        found = [product for block in made for product in block]
     gram, right = np.zeros((d.size, d.size)), np.zeros(d.size)
-    for key, mine in new.items():
-        w = d.eq.noise.weight(key[1])
-        right[mine.at] += w * (mine.z.T @ d.y[key])
-        for part in d.parts[key]:
-            gram[np.ix_(part.at, mine.at)] += w * (part.z.T @ mine.z)
-        if mine.spoilt is None:
-            continue
-        w *= d.eq.stands_for[key]
-        right[mine.at] -= w * (mine.spoilt.T @ d.noise[key])
-        for part in d.parts[key]:
-            if part.spoilt is not None:
-                gram[np.ix_(part.at, mine.at)] -= w * (part.spoilt.T @ mine.spoilt)
+    for part, mine, across, along in found:
+        gram[np.ix_(part.at, mine.at)] += across
+        if part is mine:
+            right[mine.at] += along
     return gram, right
+
+
+def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, Array]]:
+    """Of each part of a block with `mine`, and of that one with y."""
+    w = d.eq.noise.weight(key[1])
+    along = w * (mine.z.T @ d.y[key])
+    if mine.spoilt is None:
+        return [(part, mine, w * (part.z.T @ mine.z), along) for part in d.parts[key]]
+    v = w * d.eq.stands_for[key]
+    along -= v * (mine.spoilt.T @ d.noise[key])
+    out = []
+    for part in d.parts[key]:
+        across = w * (part.z.T @ mine.z)
+        if part.spoilt is not None:
+            across -= v * (part.spoilt.T @ mine.spoilt)
+        out.append((part, mine, across, along))
+    return out
 
 
 def prior(size: int, stiffness: float = STIFFNESS) -> Array:

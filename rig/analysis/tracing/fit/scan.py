@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from rig.analysis.tracing.fit.bank import Bank, Single
+from rig.analysis.tracing.fit.bank import Bank, Products
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.thresholds import CLEAR, FAINTEST
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 
@@ -33,37 +36,36 @@ class Drop:
     coefficients: Array
 
 
-def own(bank: Bank, d: Design, keys: Sequence[Key]) -> Own:
+def own(bank: Bank, d: Design) -> Own:
     """Own normal matrices of all terms, summed over channels."""
-    gram = _own(bank, {k: (bank.columns[k], d.eq.noise.weight(k[1])) for k in keys if k in bank.columns})
-    scale = {k: d.eq.noise.weight(k[1]) * d.eq.stands_for[k] for k in bank.spoilt}
-    noise = _own(bank, {k: (m, scale[k]) for k, m in bank.spoilt.items()})
+    gram, noise = _own(bank.gram, d), _own(bank.spoilt_gram, d)
     return Own(gram, tuple(n if n.size else np.zeros_like(g) for n, g in zip(noise, gram, strict=True)))
 
 
-def _own(bank: Bank, blocks: Mapping[Key, tuple[Single, float]]) -> tuple[Array, ...]:
-    out: list[Array] = [np.zeros((0, 0))] * len(bank.terms)
-    for (_, channel), (columns, w) in blocks.items():
-        for i, place in enumerate(bank.places[channel]):
-            if place is not None:
-                c = columns[:, place].astype(np.float64)
-                part = w * (c.T @ c)
-                out[i] = out[i] + part if out[i].size else part
-    return tuple(out)
+def _own(products: Products, d: Design) -> tuple[Array, ...]:
+    made = ([d.eq.noise.weight(c) * m for c, m in by_channel.items() if m.size] for by_channel in products)
+    return tuple(np.sum(parts, axis=0) if parts else np.zeros((0, 0)) for parts in made)
 
 
 def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, Array]:
     """Products of the model's columns from `first` on with the whole bank, noise taken off, by channel: (p, width)."""
-    out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
-    for key in keys:
-        if key not in bank.columns:
-            continue
+
+    def of(key: Key) -> list[tuple[npt.NDArray[np.int64], npt.NDArray[np.floating]]]:
+        made: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.floating]]] = []
         for part in (p for p in d.parts[key] if p.at[0] >= first):
             w = d.eq.noise.weight(key[1])
-            out[key[1]][part.at] += w * (part.z.T.astype(np.float32) @ bank.columns[key])
+            made.append((part.at, w * (part.z.T.astype(np.float32) @ bank.columns[key])))
             if key in bank.spoilt and part.spoilt is not None:
                 w *= d.eq.stands_for[key]
-                out[key[1]][part.at] -= w * (part.spoilt.T.astype(np.float32) @ bank.spoilt[key])
+                made.append((part.at, -w * (part.spoilt.T.astype(np.float32) @ bank.spoilt[key])))
+        return made
+
+    out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
+    mine = [key for key in keys if key in bank.columns]
+    with ThreadPoolExecutor(WORKERS) as pool:
+        for key, made in zip(mine, pool.map(of, mine), strict=True):
+            for at, m in made:
+                out[key[1]][at] += m
     return {c: m[first:] for c, m in out.items()}
 
 

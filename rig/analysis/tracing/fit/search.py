@@ -97,7 +97,7 @@ def search(
     round when this is no first search; effects `refused` are not tried; `quiet`: one term is tried even if nothing is
     above the floor."""
     s = fit(d)
-    fixed = Search(bank, own(bank, d, keys), tuple(runs), tuple(keys), covered, refused)
+    fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, refused)
     u = cross(bank, d, keys, 0)
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):

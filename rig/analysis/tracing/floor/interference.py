@@ -7,6 +7,7 @@ its frequency, which does not follow the speed.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
@@ -43,9 +45,9 @@ class Interference:
         """What it is and is not."""
         wanders = f", from run to run {100 * (self.apart - 1):.0f} % apart" if self.apart > STEADY else ""
         return (
-            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, {self.share:.0%} "
-            "of what the model leaves there, and no torque on the load makes it: a pick-up in a sensor is likely. It "
-            "makes repeats differ, so the floors were measured without it."
+            f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, "
+            f"{min(self.share, 1.0):.0%} of what the model leaves there, and no torque on the load makes it: a pick-up "
+            "in a sensor is likely. It makes repeats differ, so the floors were measured without it."
         )
 
 
@@ -77,7 +79,9 @@ def _in_channel(
     eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str
 ) -> Interference | None:
     keys = [k for k in e if k[1] == channel and not eq.runs[k[0]].locked]
-    tracks = {k: t for k in keys if (t := _track(*_even(eq, k, e[k]))) is not None}
+    with ThreadPoolExecutor(WORKERS) as pool:
+        tracked = pool.map(lambda k: _track(*_even(eq, k, e[k])), keys)
+        tracks = {k: t for k, t in zip(keys, tracked, strict=True) if t is not None}
     hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS and t.leaps < LEAP}
     if len(hits) < 3 or len(hits) < LINE_RUNS * len(tracks):
         return None
@@ -125,8 +129,9 @@ def around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -
     coarse = np.unique(np.round(np.geomspace(1, at.size, 60)).astype(int)) - 1
     sides = []
     for f in at[coarse]:
-        below, above = (hz >= f / AROUND) & (hz <= f - wide), (hz >= f + wide) & (hz <= f * AROUND)
-        found = [np.median(power[:, side], axis=1) for side in (below, above) if side.any()]
+        edges = np.array([[f / AROUND, f - wide], [f + wide, f * AROUND]])
+        bounds = zip(np.searchsorted(hz, edges[:, 0]), np.searchsorted(hz, edges[:, 1], side="right"), strict=True)
+        found = [np.median(power[:, lo:hi], axis=1) for lo, hi in bounds if hi > lo]
         sides.append(np.max(found, axis=0))
     nearest = np.searchsorted(coarse, np.arange(at.size)).clip(max=coarse.size - 1)
     return np.asarray(np.stack(sides, 1)[:, nearest])

@@ -17,15 +17,17 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.errors import errors
-from rig.analysis.tracing.outcome.free import curves_of, free, with_free
+from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.runs.cannot import cannot, together
+from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array, Parameter
 
 if TYPE_CHECKING:
@@ -50,17 +52,24 @@ def report(
     shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
     work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
     weighed = tuple(sorted(shares, key=lambda name: -work[name]))
+    baseline = parameters.baseline(empty)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
-    final = after
+    ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
+    final, curve = after, bool(cast(s))
     if ruling.home is not None:
         rest = {key: s.residual(key) for key in s.keys}
         smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
         # a curve that foretells nothing of unseen runs is not added
         mine = [key for key in after if key[1] == ruling.home.channel]
-        final = smooth if p.court.ratio(smooth, mine) < p.court.ratio(after, mine) else after
+        curve = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
+        final = smooth if curve else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
-    simulated, ripple = free(p, empty, s), ripples(p.campaign.runs)
     words = p.own.parameters | dict(fitted)
+    with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
+        lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ())
+        tried = candidates(p, found.ranking, before, ruling.verdict.effects, shadowed)
+        refitted, ripple = parameters.baseline(s), ripples(p.campaign.runs)
+        simulated, drawn = shown()
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -72,14 +81,14 @@ def report(
             for c in WHOLE
             if c in p.measured.how
         ),
-        baseline=parameters.baseline(empty),
-        baseline_after=parameters.baseline(s),
+        baseline=baseline,
+        baseline_after=refitted,
         cannot_be_told_apart=together(p.campaign.runs),
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
-        lives_in=ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ()),
-        candidates=candidates(p, found.ranking, before, ruling.verdict.effects, shadowed),
+        lives_in=lives,
+        candidates=tried,
         verdict=ruling.verdict,
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
@@ -89,9 +98,18 @@ def report(
         next_run=ruling.next_run,
         notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
+        curve=curve,
         cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
-        curves=curves(p, before, final) | pictures(p, before, final) | curves_of(simulated),
+        curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
+
+
+def _shown(
+    p: Prepared, empty: Solution, s: Solution, before: Mapping[Key, Array], final: Mapping[Key, Array]
+) -> tuple[dict[str, Free], dict[str, Array]]:
+    """The free simulation, and all curves: half of what a report costs."""
+    simulated = free(p, empty, s)
+    return simulated, curves(p, before, final) | pictures(p, before, final) | curves_of(simulated)
 
 
 def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:

@@ -130,3 +130,4 @@ class Trace:
     cannot: tuple[str, ...]  # what this campaign cannot tell, one sentence each
     curves: dict[str, Array] = field(default_factory=dict)
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
+    curve: bool = False  # whether a curve without a name was added, in the verdict's coordinate

@@ -72,6 +72,12 @@ class Halves:
         return min(left, key=lambda e: float(e[seen] @ e[seen]))
 
     @cached_property
+    def parts(self) -> tuple[tuple[Index, Rest], tuple[Index, Rest]]:
+        """Rows of each fold, and the rest in them."""
+        first, second = (np.flatnonzero(self.fold == half) for half in (0, 1))
+        return (first, self.rest.part(first)), (second, self.rest.part(second))
+
+    @cached_property
     def total(self) -> float:
         """Mean square beyond the floor's."""
         return max(float(np.mean(self.rest.e**2)) - 1.0, LEAST)
@@ -94,45 +100,43 @@ def binned(r: Rest, index: Index, rows: Rows) -> Binned:
     inside = rows & (index >= 0)
     often = np.bincount(index[inside], minlength=size) >= FEWEST
     inside &= often[np.maximum(index, 0)]
-    fitted = np.flatnonzero(inside if inside.any() else rows)
-    runs, run = np.unique(r.run, return_inverse=True)
-    own = (run[fitted], runs.size) if r.own_zeros else (np.zeros(0, int), 0)
-    s = _sums(np.column_stack([r.z[fitted], r.e[fitted]]), own, np.where(inside, index, size)[fitted], size)
+    s = _sums(r, np.where(inside, index, size), inside if inside.any() else rows, size)
+    own = r.whole.runs.size if r.own_zeros else 0
     share = s.by_bin / np.maximum(s.count, 1.0)[:, None]
     normal = s.normal - share.T @ s.by_bin
-    normal[own[1] :, own[1] :] += r.known * fitted.size
+    normal[own:, own:] += r.known * s.fitted
     x = solved(normal, s.right - share.T @ s.total)
     values = np.where(often, (s.total - s.by_bin @ x) / np.maximum(s.count, 1.0), np.nan)
-    zeros = x[: own[1]] if r.own_zeros else np.zeros(runs.size)
-    return Binned(values, Beside(runs, zeros, x[own[1] :]))
+    zeros = x[:own] if r.own_zeros else np.zeros(r.whole.runs.size)
+    return Binned(values, Beside(r.whole.runs, zeros, x[own:]))
 
 
 @dataclass(frozen=True)
 class _Sums:
     """Of what stands beside the bins: normal matrix (k, k), right side (k,); by bin its columns (b, k), the rest (b,)
-    and the rows (b,)."""
+    and the rows (b,). `fitted`: rows in all."""
 
     normal: Array
     right: Array
     by_bin: Array
     total: Array
     count: Array
+    fitted: int
 
 
-def _sums(ze: Array, own: tuple[Index, int], at: Index, size: int) -> _Sums:
-    """`ze`: columns of the baseline and the rest last; `own`: run of each row and how many; a bin `size` is none."""
-    run, runs = own
-    z, e = ze[:, :-1], ze[:, -1]
-    wide = np.column_stack([ze, np.ones(e.size)])
-    cells = _ones(at, size + 1, e.size)
-    by_bin = cells @ wide
-    by_run = _ones(run, runs, e.size) @ wide if runs else np.zeros((0, wide.shape[1]))
-    table = np.bincount(at * runs + run, minlength=(size + 1) * runs) if runs else np.zeros(0)
-    table = table.reshape(size + 1, runs).astype(float)
-    normal = np.block([[np.diag(by_run[:, -1]), by_run[:, :-2]], [by_run[:, :-2].T, z.T @ z]])
-    right = np.concatenate([by_run[:, -2], z.T @ e])
+def _sums(r: Rest, at: Index, fitted: Rows, size: int) -> _Sums:
+    """Over the rows `fitted`: what all rows come to, less those left out; a bin `size` is none."""
+    all_of, out = r.whole, np.flatnonzero(~fitted)
+    less, runs = all_of.wide[out], all_of.runs.size if r.own_zeros else 0
+    gram = all_of.gram - less.T @ less
+    by_bin = _ones(at, size + 1, at.size) @ all_of.wide
+    by_run = (all_of.by_run - _ones(all_of.run[out], all_of.runs.size, out.size) @ less)[:runs]
+    table = np.bincount(at * runs + all_of.run, minlength=(size + 1) * runs) if runs else np.zeros(0)
+    table = table[: (size + 1) * runs].reshape(size + 1, runs).astype(float)
+    normal = np.block([[np.diag(by_run[:, -1]), by_run[:, :-2]], [by_run[:, :-2].T, gram[:-2, :-2]]])
+    right = np.concatenate([by_run[:, -2], gram[:-2, -2]])
     columns = np.hstack([table, by_bin[:, :-2]])
-    return _Sums(normal, right, columns[:size], by_bin[:size, -2], by_bin[:size, -1])
+    return _Sums(normal, right, columns[:size], by_bin[:size, -2], by_bin[:size, -1], at.size - out.size)
 
 
 def _ones(at: Index, size: int, rows: int) -> csr_matrix:
@@ -151,12 +155,13 @@ def solved(normal: Array, right: Array) -> Array:
 def score(h: Halves, index: Index) -> float:
     """Mean square that bins of one fold explain in the other, beyond what zeros and baseline alone do; rows in no bin,
     or in one that the fold did not show, are left out."""
-    r, gain = h.rest, 0.0
+    gain = 0.0
     for test in (0, 1):
-        found = binned(r, index, h.fold != test)
-        guess = found.guess(index)
-        seen = (h.fold == test) & np.isfinite(guess)
-        before = h.alone[test][seen]
-        after = (r.e - guess - found.beside.of(r))[seen]
+        (_, train), (rows, tested) = h.parts[1 - test], h.parts[test]
+        found = binned(train, index[h.parts[1 - test][0]], np.ones(train.e.size, dtype=np.bool_))
+        guess = found.guess(index[rows])
+        seen = np.isfinite(guess)
+        before = h.alone[test][rows][seen]
+        after = (tested.e - guess - found.beside.of(tested))[seen]
         gain += float(before @ before - after @ after)
-    return gain / max(r.e.size, 1)
+    return gain / max(h.rest.e.size, 1)

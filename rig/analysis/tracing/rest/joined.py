@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,18 @@ from rig.model.effect import Array
 ALL_OF_IT = 0.02  # of what all rows know: half of a short run leaves some of the baseline to chance
 Index = npt.NDArray[np.int64]
 """The bin each row lies in, (n,); −1 in none."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Columns of the baseline, the rest and ones, side by side (n, p + 2); runs (r,) and the place of each row's (n,);
+    products of the columns with each other, and their sums by run (r, p + 2)."""
+
+    wide: Array
+    runs: Array
+    run: Index
+    gram: Array
+    by_run: Array
 
 
 @dataclass(frozen=True)
@@ -32,6 +45,19 @@ class Rest:
     z: Array
     known: Array
     own_zeros: bool = True
+
+    @cached_property
+    def whole(self) -> Whole:
+        """Sums over all rows, which every way to read the rest begins with."""
+        wide = np.column_stack([self.z, self.e, np.ones(self.e.size)])
+        runs, run = np.unique(self.run, return_inverse=True)
+        by_run: Array = np.stack([np.bincount(run, column, minlength=runs.size) for column in wide.T], 1)
+        return Whole(wide, runs, run, np.asarray(wide.T @ wide), by_run)
+
+    def part(self, rows: Index) -> Rest:
+        """Some rows of it, side by side in memory."""
+        at = {name: x[rows] for name, x in self.at.items()}
+        return replace(self, e=self.e[rows], run=self.run[rows], at=at, z=self.z[rows])
 
     def thinned(self, most: int) -> Rest:
         """Every so many-th row of it, so that no more than `most` are left."""

@@ -11,13 +11,17 @@ import numpy as np
 
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.recording import Recording, record
-from rig.analysis.tracing.runs.signs import odd_angles
+from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
+from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
+SAMPLES = ("samples.*", "journal-*.arrows")
+LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
+"""Channels that something stands in for where they were not measured, in words."""
 
 
 @dataclass(frozen=True)
@@ -39,46 +43,78 @@ def read_campaign(folder: Path) -> Campaign:
         deeper = sorted({path.parent.parent.name for path in folder.glob("*/*/manifest.json")})
         hint = f"; {deeper[-1]} in it does" if deeper else ""
         raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
-    opened, notes = _open(places)
+    opened, out = _open(places)
+    out += _nameless(folder)
     opened, unfit = one_rig(opened)
     _refuse_other_gears(folder.name, opened)
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(_record, opened, begun))
+    out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
-    notes += unfit
-    notes += [f"{r.name}: {note}" for r in runs for note in r.notes]
-    notes += [r for r in found if isinstance(r, str)]
+    refuse_odd_angles(runs, folder.name)
+    for sort in (_odd, _lacking, _same_gear):
+        runs, odd = sort(runs)
+        out += odd
+    notes = unfit + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
     if not runs:
-        raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {'; '.join(notes)[:300]}")
-    runs, odd = _same_gear(sorted(runs, key=lambda r: (r.start, r.name)))
-    runs = _same_sensors(runs)
-    return Campaign(folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes + odd))
+        raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
+    runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))
+    return Campaign(folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes))
 
 
-def _open(places: list[Path]) -> tuple[list[Run], list[str]]:
+def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
     opened: list[Run] = []
-    notes: list[str] = []
+    out: list[Said] = []
     for place in places:
         try:
             opened.append(Run.open(place))
         except HdrigError as error:
-            notes.append(f"{place.name} was left out: {error}.")
-    return opened, notes
+            out.append(left_out(place.name, str(error).replace(f"{place}/", "").replace(str(place), "it")))
+    return opened, out
 
 
-def _record(run: Run, start: float) -> Recording | str:
+def _nameless(folder: Path) -> list[Said]:
+    """Folders with samples that no manifest says anything of."""
+    there = sorted({path.parent for name in SAMPLES for path in folder.glob(f"*/{name}")})
+    return [
+        left_out(p.name, "it has samples and no manifest.json") for p in there if not (p / "manifest.json").exists()
+    ]
+
+
+def _record(run: Run, start: float) -> Recording | Said:
     try:
         made = record(run, start)
     except (HdrigError, ValueError) as error:
-        return f"{run.name} was left out: {error}."
+        return left_out(run.name, error)
     if not made.pieces:
-        return f"{run.name} was left out: no 0.1 s of it without a gap."
+        return left_out(run.name, "no 0.1 s of it without a gap")
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        return f"{run.name} was left out: its motor went {turned:.2f} of a turn, a kinematic error needs a whole one."
-    odd = odd_angles(made)
-    return made if odd is None else f"{run.name} was left out: {odd}."
+        return left_out(run.name, f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one")
+    return made
+
+
+def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """Runs whose angles are not what the others' are are left out."""
+    wrong = {r.name: said for r in runs if (said := odd_angles(r)) is not None}
+    return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
+
+
+def _lacking(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """A run that lacks what most of its kind have is left out: what stands in for it would count as measured.
+
+    Not one without a motor torque, which nothing stands in for.
+    """
+    wrong: dict[str, str] = {}
+    for kind in (False, True):
+        mine = [r for r in runs if r.locked is kind and r.procedure != "standstill"]
+        for name, words in LEANT_ON.items():
+            without = [r for r in mine if name not in r.knows]
+            if 2 * len(without) < len(mine):
+                said = f"it has no {words}, which {len(mine) - len(without)} of {len(mine)} runs of its kind have"
+                wrong |= {r.name: said for r in without}
+    return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
 
 
 def _same_sensors(runs: list[Recording]) -> list[Recording]:
@@ -115,9 +151,11 @@ def _refuse_other_gears(campaign: str, opened: Sequence[Run]) -> None:
         raise UsageError(f"{campaign}: its runs are of {len(serials)} gears ({', '.join(serials)[:80]}), expected one")
 
 
-def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[str]]:
+def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """A campaign is one rig: runs of another ratio than most are left out."""
+    if not runs:
+        return runs, []
     ratios, counts = np.unique([r.ratio for r in runs], return_counts=True)
     usual = float(ratios[np.argmax(counts)])
-    odd = [f"{r.name} was left out: ratio {r.ratio:g}, the others have {usual:g}." for r in runs if r.ratio != usual]
+    odd = [left_out(r.name, f"ratio {r.ratio:g}, the others have {usual:g}") for r in runs if r.ratio != usual]
     return [r for r in runs if r.ratio == usual], odd

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,7 @@ from scipy.ndimage import minimum_filter1d
 
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.tame import LARGEST, RATIOS, Tame, number
+from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
@@ -21,6 +23,7 @@ from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
+Made = TypeVar("Made")
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
@@ -52,6 +55,19 @@ class Recording:
     thinned: int  # rows of the file per row at the working rate
     noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
+    step_m: float = 0.0  # rad, the smallest change of the motor angle in the file; 0 where there is none
+    speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
+    declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
+
+    @cached_property
+    def _made(self) -> dict[str, Any]:
+        return {}
+
+    def once(self, name: str, make: Callable[[], Made]) -> Made:
+        """What is made of the run again and again, made once."""
+        if name not in self._made:
+            self._made[name] = make()
+        return cast(Made, self._made[name])
 
     @property
     def knows(self) -> frozenset[str]:
@@ -85,10 +101,10 @@ def record(whole_run: Run, start: float) -> Recording:
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)
     motion = motion_of(run)
-    channels = _channels(run, motion)
+    channels, breaks, holes = without_holes(_channels(run, motion), motion.breaks if motion else ())
     has = frozenset(name for name, values in channels.items() if values is not None)
-    t, dt, steady = _grid(channels["t"], whole_run.rows, run)
-    rows = t.size
+    rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
+    t, dt, steady = _grid(channels["t"], rows, run)
     _refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     factor = max(1, round(1 / dt / RATE))
@@ -99,7 +115,7 @@ def record(whole_run: Run, start: float) -> Recording:
     tau_ext = _stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
-        for lo, hi in _joined(t, dt, motion, steady)
+        for lo, hi in _joined(t, dt, breaks, steady)
     ]
     return Recording(
         name=run.name,
@@ -116,7 +132,10 @@ def record(whole_run: Run, start: float) -> Recording:
         rate=1 / dt,
         thinned=factor,
         noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(*run.notes, *(motion.notes if motion else ())),
+        notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ())),
+        step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
+        speed_rpm=abs(_stated(run.conditions, "speed_rpm", 0.0)),
+        declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := _stated(run.declared, n, 0.0))},
     )
 
 
@@ -167,9 +186,9 @@ def _refuse_sparse(rows: int, dt: float) -> None:
         raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:g} s")
 
 
-def _joined(t: Array, dt: float, motion: Motion | None, steady: bool) -> list[tuple[int, int]]:
+def _joined(t: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tuple[int, int]]:
     """Rows lo..hi without a gap or a new encoder reference between them."""
-    cuts = set(motion.breaks if motion else ())
+    cuts = set(breaks)
     if steady:
         cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > GAP * dt)}
     edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]

@@ -14,7 +14,6 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Signals
 
-ALONG: Final = 0.05  # how far θ_l may be from θ_m/N over a run: kinematic error and wind-up take a hundredth of it
 WEIGHT: Final = 1.0  # N·m, by which hung weights must differ to be compared
 SHARE: Final = (0.3, 3.0)  # of the weight that a torque may show: friction of a poor gear takes half of it
 EVEN: Final = 0.3  # mean direction: a triangle that was cut short has a fifth
@@ -28,17 +27,6 @@ NEGATIVE: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
     "τ_l": (("compliance", "J_l"), "stiffness of the gear and inertia of the load both come out negative"),
 }
 """By sensor: coefficients that its sign turns over together, and what they are."""
-
-
-def odd_angles(run: Recording) -> str | None:
-    """What is wrong with the two angles of a run that turns freely, if they do not go together as 1:N."""
-    if run.locked or run.procedure == "standstill" or not {"theta_m", "theta_l"} <= run.has:
-        return None
-    went = [(p.theta_m - p.theta_m.mean(), p.theta_l - p.theta_l.mean()) for p in run.pieces]
-    slope = run.ratio * float(sum(m @ x for m, x in went)) / max(float(sum(m @ m for m, _ in went)), 1e-300)
-    if abs(slope - 1) < ALONG:
-        return None
-    return f"θ_l goes {slope:.4g} of θ_m/{run.ratio:g}, expected 1: a sign, a unit or the ratio is wrong"
 
 
 def refuse_odd_torques(runs: Sequence[Recording], name: str) -> None:
@@ -55,8 +43,19 @@ def refuse_odd_torques(runs: Sequence[Recording], name: str) -> None:
         if not SHARE[0] < slope < SHARE[1]:
             raise UsageError(
                 f"{name}: {words} changes by {slope:.3g} N·m for every N·m of weight, expected about 1; "
-                "its sign or unit is wrong, or that of the declared tau_ext"
+                f"its sign or unit is wrong, or that of the declared tau_ext{_but_for_one(free, weight, mean)}"
             )
+
+
+def _but_for_one(runs: Sequence[Recording], weight: Array, mean: Array) -> str:
+    """The run without which the others go as they should, in words; "" where there is no such run."""
+    for i, run in enumerate(runs):
+        others = np.arange(weight.size) != i
+        if np.ptp(weight[others]) >= WEIGHT:
+            slope = float(np.polyfit(weight[others], mean[others], 1)[0])
+            if SHARE[0] < slope < SHARE[1]:
+                return f"; without {run.name} it is {slope:.3g}"
+    return ""
 
 
 def _both_ways(run: Recording) -> bool:

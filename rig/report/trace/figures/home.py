@@ -75,11 +75,11 @@ def _rows(curves: Curves, channel: Channel) -> list[tuple[str, float]] | None:
     if shares is None:
         return None
     line_hz: Array | None = line(curves, f"share_frequency_hz.{channel.letter}", 2)
-    rows = list(zip(ROWS, map(float, shares), strict=True))
+    rows = list(zip(ROWS, map(float, np.minimum(shares, 1.0)), strict=True))  # noise can foretell more than all
     return (
         rows
         if line_hz is None or line_hz[1] < FAINT
-        else [*rows, (f"fixed frequency, {plain(line_hz[0], 3)} Hz", float(line_hz[1]))]
+        else [*rows, (f"fixed frequency, {plain(line_hz[0], 3)} Hz", min(float(line_hz[1]), 1.0))]
     )
 
 

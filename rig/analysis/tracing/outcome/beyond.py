@@ -1,0 +1,125 @@
+"""Held-out runs beyond what the fitted ones cover: an error there may be that nothing told the model more.
+
+A fit to slow runs alone says next to nothing of damping and inertia; what it then foretells at 400 rpm is a guess, and
+what that guess misses is no effect of the gear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.thresholds import ALONE, MISSING
+from rig.model.effect import Array, Parameter
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.court.verdict import Ruling
+    from rig.analysis.tracing.trace import Prepared
+
+FURTHER: Final = 1.3  # of the speeds and torques fitted: up to there a law is taken on
+LEAST: Final = 2.0  # N·m beyond the torques fitted: less is a motor that starts
+POSITIVE: Final = ("K", "J_m", "B_m", "tau_c", "J_l", "B_l", "tau_cl")  # what no gear has less than none of
+NAMED: Final = 3  # runs
+RPM: Final = 30 / np.pi
+
+
+@dataclass(frozen=True)
+class Range:
+    """Speeds of the motor [rpm] of runs that turn freely, and torques [N·m], least and largest."""
+
+    speed: tuple[float, float]
+    torque: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Held-out runs outside the range of the fitted ones, and the parameters these do not determine."""
+
+    fitted: tuple[str, ...]
+    held_out: int
+    outside: tuple[int, ...]
+    covered: Range
+    asked: Range
+    open: tuple[Parameter, ...]
+
+    def sentence(self) -> str:
+        """For people."""
+        some = ", ".join(self.fitted[:NAMED]) + (" …" if len(self.fitted) > NAMED else "")
+        said = (
+            f"{len(self.outside)} of {self.held_out} held-out runs lie outside what the {len(self.fitted)} fitted runs "
+            f"({some}) cover (motor speed {_both(self.covered.speed, self.asked.speed, 'rpm')}; "
+            f"shaft torque {_both(self.covered.torque, self.asked.torque, 'N·m')})"
+        )
+        if not self.open:
+            return f"{said}."
+        words = ", ".join(
+            f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in self.open
+        )
+        return f"{said}, and the fitted runs do not determine {words}, which no gear has below zero."
+
+
+def _both(covered: tuple[float, float], asked: tuple[float, float], unit: str) -> str:
+    fitted, held = (f"{lo:.3g} to {hi:.3g} {unit}" if np.isfinite(lo) else "none" for lo, hi in (covered, asked))
+    return f"{fitted} fitted, {held} held out"
+
+
+def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
+    """None where every held-out run lies within what was fitted."""
+    fitted, held = ([p.eq.runs[i] for i in some] for some in (p.split.fitted, p.court.runs))
+    covered, asked = reach(fitted), reach(held)
+    outside = tuple(i for i in p.court.runs if _is_outside(p.eq.runs[i], covered))
+    if not outside:
+        return None
+    open = tuple(q for q in baseline if q.name in POSITIVE and q.ci95[0] <= 0)
+    return Beyond(tuple(run.name for run in fitted), len(held), outside, covered, asked, open)
+
+
+def reach(runs: Sequence[Recording]) -> Range:
+    """Of some runs; (nan, nan) of speeds where none turns freely, of torques where none was measured."""
+    speeds = [run.turning * RPM for run in runs if not run.locked]
+    ends = np.array([t for run in runs if (t := _torques(run)) is not None])
+    torque = (float(ends[:, 0].min()), float(ends[:, 1].max())) if ends.size else (np.nan, np.nan)
+    return Range((min(speeds), max(speeds)) if speeds else (np.nan, np.nan), torque)
+
+
+def _torques(run: Recording) -> tuple[float, float] | None:
+    """Least and largest torque of a run without its peaks; None where none was measured."""
+    x = np.concatenate([p.torque for p in run.pieces])
+    x = x[np.isfinite(x)]
+    return (float(np.percentile(x, 1)), float(np.percentile(x, 99))) if x.size and "tau_l" in run.has else None
+
+
+def _is_outside(run: Recording, covered: Range) -> bool:
+    slow, fast = covered.speed
+    if not run.locked and not slow / FURTHER <= run.turning * RPM <= fast * FURTHER:  # where none is known too
+        return True
+    (low, high), torques = covered.torque, _torques(run)
+    if torques is None or not np.isfinite(low):
+        return False
+    margin = max(LEAST, (FURTHER - 1) * (high - low) / 2)
+    return torques[0] < low - margin or torques[1] > high + margin
+
+
+def undecided(p: Prepared, ruling: Ruling, after: Mapping[Key, Array], out: Beyond | None) -> tuple[Ruling, bool]:
+    """The ruling; where what is left stands in runs outside the fitted range alone, that nothing can be said of it, and
+    False."""
+    if out is None:
+        return ruling, True
+    inside = {key: e for key, e in after.items() if key[0] not in out.outside}
+    one = MISSING if ruling.verdict.effects else ALONE
+    guessed = ruling.home is not None and ruling.home.coordinate != "time_periodic"
+    if ruling.verdict.status is not Status.UNKNOWN or not guessed or (inside and p.court.loud(inside, one)):
+        return replace(ruling, cannot=(*ruling.cannot, out.sentence())), True
+    total, _ = p.court.worst(after)
+    sentence = (
+        f"Not decided: the held-out runs are {total:.1f} times the floor off, but {out.sentence()} Hold out some runs "
+        "of every speed and load, and fit the others."
+    )
+    verdict = Verdict(Status.AMBIGUOUS, (), (), None, None, None, sentence)
+    return replace(ruling, verdict=verdict, home=None, lives_in=(), next_run=None), False

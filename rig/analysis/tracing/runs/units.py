@@ -1,0 +1,107 @@
+"""Angles in another unit than rad, or not in the declared ratio: seen run by run, refused where most runs show it.
+
+A kinematic error is some 1e-4 of a motor turn, and wind-up comes and goes: neither makes the travels of both angles go
+otherwise than 1:N. Both angles in degrees go as 1:N too: then the motor is far too fast, or its smallest steps are
+57.3 declared counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.runs.recording import Recording
+from rig.core.errors import UsageError
+
+DEGREES: Final = 180 / np.pi
+ALONG: Final = 0.05  # how far θ_l may be from θ_m/N over any run: kinematic error and wind-up take a hundredth of it
+RATIO: Final = 0.01  # the same where θ_l misses by more than wind-up can
+WIND_UP: Final = 0.03  # rad at the output: 200 N·m on the softest of the paper's kind of gear
+STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts are 5e-3 off
+SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
+UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
+FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
+RPM: Final = 30 / np.pi
+
+
+def odd_angles(run: Recording) -> str | None:
+    """What is wrong with the angles of a run that turns freely; None where nothing is."""
+    if run.locked or run.procedure == "standstill":
+        return None
+    return _ratio(run) or _degrees(run)
+
+
+def refuse_odd_angles(runs: Sequence[Recording], name: str) -> None:
+    """Raises UsageError when most of the runs that turn freely have something wrong with their angles.
+
+    A run that turns too little to show a ratio a few per cent off by itself counts with those it agrees with.
+    """
+    free = [run for run in runs if not run.locked and run.procedure != "standstill"]
+    odd = {run.name: said for run in free if (said := odd_angles(run)) is not None}
+    slopes = {run.name: slope for run in free if (slope := _slope(run)) is not None}
+    shown = [slopes[run.name] for run in free if _ratio(run) is not None]
+    usual = float(np.median(shown)) if shown else 1.0
+    with_them = {run for run, slope in slopes.items() if abs(slope - usual) < abs(slope - 1)}
+    count = len(with_them | set(odd))
+    if odd and 2 * count > len(free):
+        first, said = next(iter(odd.items()))
+        where = f"in {count} of {len(free)} runs that turn (here {first})" if len(free) > 1 else f"in {first}"
+        raise UsageError(f"{name}: {where} {said}")
+
+
+def _slope(run: Recording) -> float | None:
+    """Δθ_l over Δθ_m/N, 1 when both are what they say; None where an angle is missing."""
+    if not {"theta_m", "theta_l"} <= run.has:
+        return None
+    went = [(p.theta_m - p.theta_m.mean(), p.theta_l - p.theta_l.mean()) for p in run.pieces]
+    return run.ratio * float(sum(m @ x for m, x in went)) / max(float(sum(m @ m for m, _ in went)), 1e-300)
+
+
+def _ratio(run: Recording) -> str | None:
+    slope = _slope(run)
+    off = 0.0 if slope is None else abs(slope - 1)
+    travel = max(float(np.ptp(p.theta_m)) for p in run.pieces) / run.ratio
+    if slope is None or off < RATIO or (off < ALONG and off * travel < WIND_UP):
+        return None
+    return f"θ_l goes {slope:.4g} of θ_m/{run.ratio:g}, expected 1: {_reason(run.ratio, slope)}"
+
+
+def _reason(ratio: float, slope: float) -> str:
+    """What would make θ_l go `slope` of θ_m/`ratio`."""
+    for factor, words in ((DEGREES, "θ_l seems to be in degrees"), (1 / DEGREES, "θ_m seems to be in degrees")):
+        if abs(slope / factor - 1) < RATIO:
+            return f"{words}, expected rad"
+    if abs(slope) < 1e-6:
+        return "θ_l does not move"
+    if slope < 0:
+        return "one of the angles has the other sign"
+    return f"θ_m/θ_l is {ratio / slope:.4g}, the declared gear.ratio {ratio:g}, or an angle is in another unit than rad"
+
+
+def _degrees(run: Recording) -> str | None:
+    """Both angles in degrees: by the smallest step, by the declared speed, by what no motor reaches."""
+    if "theta_m" not in run.has:
+        return None
+    count = 2 * np.pi / run.counts_m if run.counts_m else np.inf
+    if abs(run.step_m / count / DEGREES - 1) < STEP:
+        return (
+            f"θ_m moves in steps of {run.step_m:.4g} rad, {run.step_m / count:.1f} times the declared count of "
+            f"{count:.3g} rad: both angles seem to be in degrees, expected rad"
+        )
+    if "t" not in run.has:
+        return None
+    turning = run.turning * RPM
+    own = abs(run.ratio / DEGREES - 1) > UNLIKE
+    if own and run.speed_rpm and abs(turning / run.speed_rpm / DEGREES - 1) < SPEED:
+        return (
+            f"the motor turns at {turning:.4g} rpm, {turning / run.speed_rpm:.1f} times the declared speed_rpm "
+            f"{run.speed_rpm:g}: both angles seem to be in degrees, expected rad"
+        )
+    if turning > FASTEST:
+        return (
+            f"the motor turns at {turning:.4g} rpm, expected below {FASTEST:.0f} rpm: its angle seems to be in "
+            "degrees or counts, expected rad"
+        )
+    return None
