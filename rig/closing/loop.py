@@ -6,14 +6,16 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from rig.analysis.tracing.court.next_run import along
 from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
 from rig.closing.advice import Advice, advised, same
 from rig.closing.grow import grown
-from rig.closing.story import End, Round, Story, told_by, write_story
+from rig.closing.story import CHANNELS, End, Round, Story, left, told_by, write_story
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.report.numbers import counted
 from rig.session import Session
 
 Look = Callable[[Path], Trace]
@@ -54,7 +56,7 @@ class Closing:
         if self.session.interrupts.count:
             self._with(found)
             self.ended(End.STOPPED, "Stopped by the operator; --resume goes on with it.")
-        elif found.status in SETTLED:
+        elif found.status in SETTLED and not left(found):
             self._with(found)
             self.ended(SETTLED[found.status], found.sentence)
         else:
@@ -63,23 +65,22 @@ class Closing:
     def _advise(self, found: Round) -> None:
         """Put the run asked for behind the others, or end with the reason why not."""
         before = self.story.rounds[-1].asked if self.story.rounds else None
-        asked = _asked(found)
+        asked, end = _asked(found), End.UNDECIDED if found.status is Status.AMBIGUOUS else End.UNKNOWN
+        sentence = _said(found)
         if asked is None:
             self._with(found)
-            end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
-            self.ended(end, f"{found.sentence} No run is known that would say more.")
+            self.ended(end, f"{sentence} No run is known that would say more.")
             return
         found = replace(found, asked=asdict(asked))
         if same(asked, before):
             self._with(found)
-            end = End.UNKNOWN if found.status is Status.UNKNOWN else End.UNDECIDED
-            self.ended(end, f"{found.sentence} The run that was to decide was made, and did not.")
+            self.ended(end, f"{sentence} The run that was to decide was made, and did not.")
             return
         try:
             advice = advised(asked, self.campaign)
         except (UsageError, NotReady) as error:
             self._with(replace(found, refused=str(error)))
-            self.ended(End.UNDECIDED, f"{found.sentence} The run that would decide cannot be made: {error}.")
+            self.ended(End.UNDECIDED, f"{sentence} The run that would decide cannot be made: {error}.")
             return
         self._take(replace(found, plan=advice.text, words=advice.words), advice)
 
@@ -88,7 +89,7 @@ class Closing:
         if advice.rig_time / 60 > left:
             why = f"it takes {advice.rig_time / 60:.1f} min of rig time, {max(left, 0.0):.1f} min are left"
             self._with(replace(found, plan="", refused=why))
-            self.ended(End.BUDGET, f"{found.sentence} The run that would decide was not made: {why}.")
+            self.ended(End.BUDGET, f"{_said(found)} The run that would decide was not made: {why}.")
             return
         assert found.asked is not None
         self._with(found)
@@ -107,15 +108,26 @@ class Closing:
 
 
 def _asked(found: Round) -> NextRun | None:
-    return NextRun(**found.asked) if found.asked else None
+    """The run the trace asks for; beside a name that leaves a channel above its floor, the one along what is left."""
+    if found.asked:
+        return NextRun(**found.asked)
+    return next((run for c in found.lives_in if (run := along(c)) is not None), None) if left(found) else None
+
+
+def _said(found: Round) -> str:
+    """The trace's sentence, and what it does not cover."""
+    rest = left(found) if found.status in SETTLED else ""
+    return f"{found.sentence} {rest}".rstrip()
 
 
 def words(found: Round) -> str:
     """A round in a few lines."""
     before, after = found.over_floor_before, found.over_floor_after
-    names = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
-    errors = ", ".join(f"{names[c]} {before[c]:.2f} → {after[c]:.2f}" for c in names if c in before and c in after)
+    errors = ", ".join(
+        f"{word} {before[c]:.2f} → {after[c]:.2f}" for c, word in CHANNELS.items() if c in before and c in after
+    )
+    runs = f"{counted(found.fitted, 'run')} fitted and {found.held_out} held out"
     return (
-        f"round {found.number}, {found.minutes:.1f} min of rig time, {found.fitted} runs fitted and {found.held_out} "
-        f"held out: {found.status.replace('_', ' ')}\n  {found.sentence}\n  held-out error over its floor: {errors}"
+        f"round {found.number}, {found.minutes:.1f} min of rig time, {runs}: {found.status.replace('_', ' ')}\n"
+        f"  {_said(found)}\n  held-out error over its floor: {errors}"
     )

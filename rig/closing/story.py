@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.errors import NotReady, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
@@ -53,10 +54,21 @@ class Round:
     pooled_before: dict[str, float | None]
     pooled_after: dict[str, float | None]
     parameters: dict[str, dict[str, Any]]
+    lives_in: tuple[str, ...] = ()  # coordinates of what was left, the telling ones first
     asked: dict[str, Any] | None = None
     plan: str = ""
     words: str = ""
     refused: str = ""
+
+
+CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
+
+
+def left(found: Round) -> str:
+    """What the trace's page calls not explained although the verdict has a name for most; "" where there is none."""
+    loud = {word: r for c, word in CHANNELS.items() if (r := found.over_floor_after.get(c, 0.0)) > EXPLAINED}
+    said = " and ".join(f"the {word} stays at {ratio:.2f} times its floor" for word, ratio in loud.items())
+    return f"Not all of it: {said}, and what that is, is not known." if said else ""
 
 
 @dataclass(frozen=True)
@@ -90,6 +102,7 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
         pooled_before=said["before"]["pooled"],
         pooled_after=said["after"]["pooled"],
         parameters={name: effect["parameters"] for name, effect in said["effects"].items()},
+        lives_in=found.lives_in,
         asked=said["next_run"],
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import secrets
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -143,7 +144,7 @@ def _told(journal: Journal, exit: Exit, show: Show) -> int:
     show.leave(exit)
     print(f"{text}campaign folder {journal.folder}")
     if exit:
-        print(f"hdrig campaign --resume {journal.folder} goes on with it", file=sys.stderr)
+        print(f"hdrig campaign --resume {shlex.quote(str(journal.folder))} goes on with it", file=sys.stderr)
         return int(exit)
     return afterwards(journal.folder)
 

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import argparse
 import secrets
+import shlex
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
+from rig.campaign.changes import deeds
+from rig.campaign.dry_run import lasting
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, read_plan
@@ -22,7 +26,9 @@ from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit, UsageError
+from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.operator import Rigging
+from rig.runfile.manifest import told, utc_now
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.outcome.result import Trace
@@ -60,6 +66,7 @@ def _begin(args: argparse.Namespace) -> int:
     seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
     campaign = planned(read_plan(args.plan), bench, seed)
     refuse_nobody(campaign, range(len(campaign.items)))
+    _refuse_beyond(campaign, range(len(campaign.items)), args.budget_minutes, 0.0)
     refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out, campaign, clock, overrides)
@@ -78,13 +85,26 @@ def _resume(args: argparse.Namespace) -> int:
     book = journal.book
     bench = read_bench(book["bench"]["source"], list(book["bench"]["overrides"]))
     campaign = planned(read_plan(str(journal.folder / "plan.toml")), bench, book["seed"])
-    for told in take_up(journal):
-        print(told, file=sys.stderr)
+    for line in take_up(journal):
+        print(line, file=sys.stderr)
     campaign = regrown(campaign, journal, story)
     refuse_nobody(campaign, journal.open_runs())
     again = replace(story, end=End.OPEN, sentence="", budget_minutes=max(story.budget_minutes, args.budget_minutes))
+    _refuse_beyond(campaign, journal.open_runs(), again.budget_minutes, float(book["rig_time_s"]) / 60)
     with showing(args.json) as show:
         return _make(campaign, journal, args.clock or book["clock"], args.note, again, show)
+
+
+def _refuse_beyond(campaign: Campaign, runs: Sequence[int], budget: float, spent: float) -> None:
+    """Raises UsageError when the runs to begin with may take longer than the whole loop may, all in minutes."""
+    todo = list(deeds([(k, campaign.items[k]) for k in runs], Rigging()))
+    measuring, checking, _ = lasting(campaign, todo)
+    least = spent + (measuring + checking) / 60 if runs else 0.0
+    if least > budget:
+        raise UsageError(
+            f"--budget-minutes {budget:g}: the {len(runs)} runs of the plan and their checks take up to {least:.1f} "
+            "min of rig time before the first trace; expected a budget above that, or a shorter --plan"
+        )
 
 
 def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, story: Story, show: Show) -> int:
@@ -112,26 +132,32 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
 
 
 def look(folder: Path) -> Trace:
-    """Trace all runs in `folder`, written there as trace.json."""
+    """Trace all runs in `folder`, written there as trace.json and report.html. Raises NotReady."""
     from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.trace import trace
+    from rig.report.trace.campaign import provenance
+    from rig.report.trace.page import write
+    from rig.software import software
 
     found = trace(folder)
-    write_trace(folder / "trace.json", found)
+    with told(NotReady, f"what the trace found cannot be written to {folder}"):
+        write_trace(folder / "trace.json", found)
+        write(folder, found, provenance(folder, software(), utc_now()))
     return found
 
 
 def _tell(folder: Path, story: Story, bench: Bench, exit: Exit) -> None:
     from rig.report.closing.page import write
+    from rig.report.numbers import counted
 
     page = write(folder)
     simulated = "SIMULATED " if bench.simulated else ""
-    print(f"{simulated}loop {story.end.replace('_', ' ')} after {len(story.rounds)} rounds: {story.sentence}")
+    after = counted(len(story.rounds), "round")
+    print(f"{simulated}loop {story.end.replace('_', ' ')} after {after}: {story.sentence}")
     for r in story.rounds:
         done = r.words or r.refused or "nothing"
-        print(
-            f"  round {r.number}, {r.minutes:.1f} min: {r.status.replace('_', ' ')} {', '.join(r.effects)}; then {done}"
-        )
+        found = " ".join([r.status.replace("_", " "), ", ".join(r.effects)]).rstrip()
+        print(f"  round {r.number}, {r.minutes:.1f} min: {found}; then {done}")
     print(f"report {page}")
     if exit is Exit.STOPPED:
-        print(f"hdrig close-loop --resume {folder} goes on with it", file=sys.stderr)
+        print(f"hdrig close-loop --resume {shlex.quote(str(folder))} goes on with it", file=sys.stderr)

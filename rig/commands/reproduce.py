@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -55,7 +56,8 @@ def run(args: argparse.Namespace) -> int:
         folder, exit = make(args, ahead)
         if exit is Exit.PASS:
             return draw(folder, folder, ahead.begun)
-    print(f"hdrig campaign --resume {folder} goes on with it; hdrig reproduce {folder} draws it", file=sys.stderr)
+    where = shlex.quote(str(folder))
+    print(f"hdrig campaign --resume {where} goes on with it; hdrig reproduce {where} draws it", file=sys.stderr)
     return int(exit)
 
 

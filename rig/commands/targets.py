@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import errno
+import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +22,18 @@ def refuse_unwritable(folder: Path, option: str = "--out") -> None:
     with writing(folder, option), tempfile.NamedTemporaryFile(dir=there, prefix=".hdrig-") as tried:
         tried.write(BLOCK)
         tried.flush()
+
+
+def refuse_unwritable_file(path: Path, option: str) -> None:
+    """Raises UsageError when no file can be written at `path`: its folder has to be there. Leaves nothing."""
+    with writing(path, option):
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, "it is a folder")
+        if not path.parent.is_dir():
+            raise FileNotFoundError(errno.ENOENT, f"there is no folder {path.parent}")
+        if path.exists() and not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    refuse_unwritable(path.parent, option)
 
 
 @contextlib.contextmanager

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.commands.targets import refuse_unwritable, writing
+from rig.commands.targets import refuse_unwritable, refuse_unwritable_file, writing
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
     from rig.analysis.tracing.outcome.record import write_trace
+    from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.trace import trace
     from rig.report.trace.campaign import provenance
     from rig.report.trace.page import write
@@ -37,8 +38,11 @@ def run(args: argparse.Namespace) -> int:
     from rig.software import software
 
     target = args.out or args.campaign
-    if args.out:  # an hour of thought is not lost to a wrong name
-        refuse_unwritable(args.out)
+    if args.campaign.is_dir():  # a minute of thought is not lost to a wrong name
+        refuse_unmatched([path.parent.name for path in args.campaign.glob("*/manifest.json")], args.hold_out)
+        refuse_unwritable(target)
+    if args.json:
+        refuse_unwritable_file(args.json, "--json")
     found = trace(args.campaign, args.hold_out)
     tell(found)
     with writing(target):
@@ -68,6 +72,7 @@ def asked(run: NextRun) -> str:
 
 def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
+    from rig.report.numbers import counted
     from rig.report.trace.sizes import said
 
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
@@ -78,7 +83,7 @@ def tell(found: Trace) -> None:
     for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):
         if name in found.ratios_before:
             print(
-                f"  {label} on {len(found.held_out)} held-out runs: "
+                f"  {label} on {counted(len(found.held_out), 'held-out run')}: "
                 f"{found.ratios_before[name]:.2f} → {found.ratios_after[name]:.2f} times the floor"
             )
     if found.next_run:

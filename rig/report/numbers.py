@@ -126,3 +126,8 @@ def duration(seconds: float) -> str:
         return f"{minutes}{SPACE}min {rest:02d}{SPACE}s"
     hours, minutes = divmod(minutes, 60)
     return f"{hours}{SPACE}h {minutes:02d}{SPACE}min"
+
+
+def counted(count: int, what: str) -> str:
+    """ "1 run", "2 runs"; `what` takes an s."""
+    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -16,6 +16,10 @@ from rig.core.errors import Exit
         (["compensate", "--gear", "twin", "--revolutions", "0"], "--revolutions 0: expected 3"),
         (["close-loop", "--budget-minutes", "0"], "--budget-minutes 0: expected minutes"),
         (["close-loop", "--budget-minutes", "nan"], "--budget-minutes nan: expected minutes"),
+        (
+            ["close-loop", "--plan", "quick", "--budget-minutes", "3"],
+            "the 7 runs of the plan and their checks take up to",
+        ),
     ],
 )
 def test_what_cannot_be_run_is_refused(command: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

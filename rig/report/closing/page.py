@@ -12,7 +12,11 @@ from markupsafe import Markup
 from rig.core.errors import NotReady, UsageError
 from rig.report import page as run_page
 from rig.report import words as run_words
-from rig.report.words import Ruling
+from rig.report.closing.changes import changes, sizes
+from rig.report.closing.rounds import DRAWING, curves
+from rig.report.numbers import counted
+from rig.report.rows import measured
+from rig.report.words import Ruling, humanise
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
 HERE = Path(__file__).parent
@@ -51,12 +55,15 @@ def render(story: Mapping[str, Any]) -> str:
     """The page as text, from what close-loop.json says alone."""
     origin = run_words.origin("sim" if story["simulated"] else "can")
     rounds = story["rounds"]
+    drawn = run_page._plot(DRAWING, curves(rounds), origin.mark) if rounds else None
     view = {
         "story": story,
         "origin": origin,
         "ruling": RULINGS[story["end"]],
         "minutes": rounds[-1]["minutes"] if rounds else 0.0,
-        "rounds": [_round(r) for r in rounds],
+        "rounds": [_round(r, before) for r, before in zip(rounds, [None, *rounds], strict=False)],
+        "heads": [word for c, word in CHANNELS if any(c in r["over_floor_after"] for r in rounds)],
+        "drawn": drawn,
         "errors": _errors(rounds[-1]) if rounds else [],
         "css": Markup(f"{run_page._css(story['campaign'], origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
     }
@@ -70,22 +77,31 @@ def render(story: Mapping[str, Any]) -> str:
     return environment.get_template("page.html").render(view)
 
 
-def _round(r: Mapping[str, Any]) -> dict[str, Any]:
+def _round(r: Mapping[str, Any], last: Mapping[str, Any] | None) -> dict[str, Any]:
     before, after = r["over_floor_before"], r["over_floor_after"]
     ratios = [(word, before[c], after[c]) for c, word in CHANNELS if c in before and c in after]
-    asked = r["asked"]
     return {
         "number": r["number"],
         "status": r["status"].replace("_", " "),
         "minutes": r["minutes"],
         "made": r["made"],
-        "runs": f"{r['fitted']} runs fitted, {r['held_out']} held out",
+        "runs": f"{counted(r['fitted'], 'run')} fitted, {r['held_out']} held out",
         "sentence": r["sentence"],
-        "ratios": ratios,
-        "asked": f"{asked['procedure'].replace('_', ' ')}: {asked['because']}" if asked else "",
+        "named": ", ".join(humanise(e).lower() for e in r["effects"]) or "–",
+        "cells": {word: f"{a:.2f} → {b:.2f}" for word, a, b in ratios},
+        "changed": [] if last is None else changes(last, r),
+        "sizes": sizes(r, last),
+        "asked": _asked(r["asked"]) if r["asked"] else "",
         "next": r["words"],
         "refused": r["refused"],
     }
+
+
+def _asked(asked: Mapping[str, Any]) -> str:
+    """Procedure, its conditions with units, and why."""
+    shown = (measured(key, value) for key, value in asked["conditions"].items())
+    at = ", ".join(f"{row.name[:1].lower()}{row.name[1:]} {row.value}" for row in shown)
+    return f"{humanise(asked['procedure'])}{f' at {at}' if at else ''}: {asked['because']}"
 
 
 def _errors(last: Mapping[str, Any]) -> list[tuple[str, ...]]:

@@ -9,7 +9,7 @@ import numpy as np
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED_BACK
 from rig.report.figures.arrays import line
-from rig.report.numbers import join
+from rig.report.numbers import counted, join
 from rig.report.trace.channels import CHANNELS, Channel
 from rig.report.trace.sizes import three
 
@@ -48,7 +48,7 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
     if not alone and ratios[1] is not None:
         ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
     back = _where_it_turns_back(trace, alone) if channel.sensor == "tau_m" else ""
-    how = f"RMS of measured less model over {len(trace.held_out)} held-out runs"
+    how = f"RMS of measured less model over {counted(len(trace.held_out), 'held-out run')}"
     how += f"; floor {join(three(floor), channel.unit)}" if floor is not None else ""
     how += f", {three(TURNED_BACK)} times that where the motor turns back" if back else ""
     spread = [_interval(trace, channel, which) for which in (("before",) if alone else ("before", "after"))]

@@ -46,10 +46,15 @@ def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
     return Split(tuple(runs), fitted, tuple(sorted(held)), "whole repeats, and whole loads and speeds between others")
 
 
-def _asked(runs: Sequence[Recording], moving: list[int], asked: Sequence[str]) -> Split:
+def refuse_unmatched(names: Sequence[str], asked: Sequence[str]) -> None:
+    """Raises UsageError when one of the patterns `asked` for names no run; says nothing where there are no `names`."""
     for pattern in asked:
-        if not any(fnmatch.fnmatchcase(run.name, pattern) for run in runs):
-            raise UsageError(f"--hold-out {pattern} fits no run; there are {', '.join(r.name for r in runs)[:300]}")
+        if names and not any(fnmatch.fnmatchcase(name, pattern) for name in names):
+            raise UsageError(f"--hold-out {pattern} fits no run; there are {', '.join(sorted(names))[:300]}")
+
+
+def _asked(runs: Sequence[Recording], moving: list[int], asked: Sequence[str]) -> Split:
+    refuse_unmatched([run.name for run in runs], asked)
     held = tuple(i for i in moving if any(fnmatch.fnmatchcase(runs[i].name, p) for p in asked))
     fitted = tuple(i for i in moving if i not in held)
     if not fitted or not held:
