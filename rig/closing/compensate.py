@@ -8,16 +8,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.align import Alignment
+from rig.analysis.angle import ARCSEC
 from rig.analysis.compensation import Expected, Followed, expected, followed, turned, zero_of
 from rig.analysis.result import Array
-from rig.core.errors import Exit, NotReady
+from rig.bench import Bench
+from rig.core.errors import Exit, NotReady, UsageError
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile
+from rig.model.linear import natural_frequency
+from rig.model.simulate import NoSteadyState, at_speed
 from rig.procedures.compensated import Compensated
+from rig.refusals import refuse_beyond_limits, refuse_endless
 from rig.runfile.run import Run
 from rig.session import Ended, Session
 
 STRANGE = 0.5  # of the RMS of the error: feeding such a series forward may well make it worse
+DYNAMIC = 0.4  # of the error; with so much made by the gear's dynamics its series is not found in the rest
+ORDERS = 15  # looked at for the one that is amplified most
+RPM = np.pi / 30  # rad/s
 SEED = 20011  # of the draws of the series: the same gear file gives the same prediction
 
 
@@ -50,25 +58,66 @@ def compensate(
 
     Raises NotReady when the series does not fit the rig, Ended when a run comes to no end, DataError.
     """
+    refuse_first(session.bench, gear, speeds_rpm, revolutions)
     say(f"sign and scale: {session.prove().sentence}")
     series, where, found = gear.kinematic_error.series, None, []
-    filtered = session.bench.file.loop.speed_filter
     for speed in sorted(speeds_rpm):
-        without, plain = _run(session, Compensated(speed, revolutions, speed_filter=filtered), say)
+        plainly, fed_forward = motions(session.bench, gear, series, speed, revolutions)
+        without, plain = _run(session, plainly, say)
         if where is None:
-            where = _zero(plain, series)
+            where = _zero(plain, gear, speed)
             say(where.sentence)
             series = turned(series, where.shift)
-        fed_forward = replace(
-            Compensated(speed, revolutions, inertia=gear.parameters["J_m"].value, speed_filter=filtered),
-            a=series.a, b=series.b,
-        )  # fmt: skip
+            fed_forward = replace(fed_forward, a=series.a, b=series.b)
         with_it, fed = _run(session, fed_forward, say)
         before, after = expected(gear, speed, plain, np.random.default_rng(SEED))
         found.append(Compared(speed, plain, fed, before, after, (without, with_it)))
         say(sentence(found[-1]))
     assert where is not None
     return found, where
+
+
+def motions(
+    bench: Bench, gear: GearFile, series: FourierSeries, speed: float, revolutions: int
+) -> tuple[Compensated, Compensated]:
+    """The motion at `speed` rpm without and with `series` fed forward."""
+    plain = Compensated(speed, revolutions, speed_filter=bench.file.loop.speed_filter)
+    return plain, replace(plain, inertia=gear.parameters["J_m"].value, a=series.a, b=series.b)
+
+
+def refuse_first(bench: Bench, gear: GearFile, speeds_rpm: Sequence[float], revolutions: int) -> None:
+    """Raises NotReady or UsageError, before anything moves: a motion beyond the bench's limits, and a slowest speed at
+    which the gear's own dynamics make so much of the error that its series is not to be found in it."""
+    for speed in sorted(speeds_rpm, reverse=True):
+        for motion in motions(bench, gear, gear.kinematic_error.series, speed, revolutions):
+            refuse_endless(bench, motion)
+            refuse_beyond_limits(bench, motion)
+    slowest = min(speeds_rpm)
+    if said := unlike_the_series(gear, slowest):
+        raise UsageError(
+            f"--speed {slowest:g}: {said}; the zero of the encoder is found at the slowest speed, from an error that "
+            f"is the series: expected a slower one before it, as in --speed 9.6 {slowest:g}"
+        )
+
+
+def unlike_the_series(gear: GearFile, speed_rpm: float) -> str:
+    """What the model says beside the series makes most of the error at that speed, in words; "" below DYNAMIC of it."""
+    try:
+        wave = at_speed(gear.gear(), speed_rpm * RPM)
+    except NoSteadyState:  # without a loop it would stick; the rig has one
+        return ""
+    other = wave.kinematic_error - wave.pure
+    share = float(np.std(other) / np.std(wave.kinematic_error))
+    if share < DYNAMIC:
+        return ""
+    total, pure = (np.abs(wave.orders(x, ORDERS)) * ARCSEC for x in (wave.kinematic_error, wave.pure))
+    n = int(np.argmax(np.abs(wave.orders(other, ORDERS)))) + 1
+    at = natural_frequency(gear.gear()) / n / RPM
+    return (
+        f"by the gear file {100 * share:.0f} % of the error there is the gear's dynamics, not its kinematic error "
+        f"(order {n} is {total[n - 1]:.3g} arcsec instead of {pure[n - 1]:.3g}, it meets the torsional resonance at "
+        f"{at:.0f} rpm)"
+    )
 
 
 def _run(session: Session, procedure: Compensated, say: Callable[[str], None]) -> tuple[str, Followed]:
@@ -80,8 +129,9 @@ def _run(session: Session, procedure: Compensated, say: Callable[[str], None]) -
     return done.folder.name, followed(Run.open(done.folder))
 
 
-def _zero(plain: Followed, series: FourierSeries) -> Alignment:
+def _zero(plain: Followed, gear: GearFile, speed: float) -> Alignment:
     """Raises NotReady when the rig shows another error than the series."""
+    series = gear.kinematic_error.series
     where = zero_of(plain, series)
     if where is None:
         raise NotReady("the rig shows no kinematic error above its noise: there is nothing to compensate")
@@ -89,8 +139,9 @@ def _zero(plain: Followed, series: FourierSeries) -> Alignment:
     left = float(np.std(rest) / np.std(plain.error.mean(0) - plain.tracking.mean(0)))
     if left > STRANGE:
         raise NotReady(
-            f"the series given leaves {100 * left:.0f} % of the kinematic error this rig shows, wherever the encoder's "
-            f"zero is put; expected below {100 * STRANGE:.0f} %: it is another gear's, or another assembly's"
+            f"the series given leaves {100 * left:.0f} % of the kinematic error this rig shows at {speed:g} rpm, "
+            f"wherever the encoder's zero is put; expected below {100 * STRANGE:.0f} %: it is another gear's, or "
+            "another assembly's, or the gear's dynamics at this speed are not those of the gear file"
         )
     return where
 

@@ -42,13 +42,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Gear, then the runs, then compensation.json and compensation.html beside them."""
-    from rig.closing.compensate import compensate
+    from rig.closing.compensate import compensate, refuse_first
     from rig.report.closing.compensation import write
 
     _refuse_odd(args.speed, args.revolutions)
     bench, clock = open_bench(args)
     refuse_unwritable(args.out)
     gear = _gear(args)
+    refuse_first(bench, gear, args.speed, args.revolutions)
     folder = args.out / f"{utc_now()[:10]}-{utc_now()[11:13]}{utc_now()[14:16]}{utc_now()[17:19]}-compensation"
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)

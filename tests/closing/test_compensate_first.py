@@ -1,0 +1,42 @@
+"""What cannot be compensated is said before the motor turns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rig.bench import read
+from rig.closing.compensate import compensate, refuse_first, unlike_the_series
+from rig.core.errors import HdrigError, NotReady, UsageError
+from rig.interrupts import Interrupts
+from rig.session import Session
+from tests.closing.test_compensate import gear
+
+REFUSED = {
+    (700.0,): "asks for up to 735 rpm of motor speed, the bench allows 600 rpm",
+    (9.6, 700.0): "asks for up to 735 rpm of motor speed",
+    (5000.0,): "deg of motor travel, the bench allows",
+    (380.0,): r"--speed 380: by the gear file \d\d % of the error there is the gear's dynamics, .* \(order 4 is \d+",
+}
+
+
+@pytest.mark.parametrize("speeds", REFUSED)
+def test_a_speed_beyond_the_bench_or_on_a_resonance_is_refused_with_numbers(speeds: tuple[float, ...]) -> None:
+    with pytest.raises((NotReady, UsageError), match=REFUSED[speeds]):
+        refuse_first(read("twin"), gear(), speeds, 3)
+
+
+def test_a_slow_speed_first_makes_a_resonant_one_possible() -> None:
+    refuse_first(read("twin"), gear(), (380.0, 9.6), 3)
+
+
+def test_at_a_slow_speed_the_error_is_the_series() -> None:
+    assert unlike_the_series(gear(), 9.6) == ""
+
+
+def test_nothing_moves_before_the_refusal(tmp_path: Path) -> None:
+    with Session(read("twin"), "virtual", tmp_path, Interrupts()) as session, pytest.raises(HdrigError):
+        compensate(session, gear(), [700.0], 3, lambda text: None)
+    assert session.proof is None
+    assert list(tmp_path.iterdir()) == []
