@@ -1,4 +1,4 @@
-"""States with memory, sample by sample: the play operator, Dahl's presliding state, a resonator. Compiled."""
+"""States with memory, sample by sample: play, Dahl's presliding state, a resonator, followers. Compiled."""
 
 from __future__ import annotations
 
@@ -19,6 +19,33 @@ def play(x: Array, half_width: float) -> Array:
     for i in range(x.size):
         y = min(max(y, x[i] - half_width), x[i] + half_width)
         out[i] = y
+    return out
+
+
+@njit(cache=True)
+def follower(x: Array, now: float, before: float, keep: float, state: float) -> Array:
+    """y_i = keep·y_{i−1} + now·x_i + before·x_{i−1}, (n,); `state` is keep·y + before·x of the row before the first."""
+    out = np.empty_like(x)
+    for i in range(x.size):
+        out[i] = now * x[i] + state
+        state = before * x[i] + keep * out[i]
+    return out
+
+
+@njit(cache=True)
+def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) -> Array:
+    """States (n, 2) from `start` on: each is `step` (2, 2) of the one before, and `by` and `by_next` (2,) times the
+    drive (n,) of that row and of its own."""
+    out = np.empty((drive.size, 2))
+    a, b = start[0], start[1]
+    for i in range(drive.size):
+        out[i, 0], out[i, 1] = a, b
+        if i + 1 < drive.size:
+            u, v = drive[i], drive[i + 1]
+            a, b = (
+                step[0, 0] * a + step[0, 1] * b + by[0] * u + by_next[0] * v,
+                step[1, 0] * a + step[1, 1] * b + by[1] * u + by_next[1] * v,
+            )
     return out
 
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import ClassVar, Final
 
 import numpy as np
-from scipy.signal import lfilter
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.fourier import FourierSeries
+from rig.model.memory import follower
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
 EACH = 2.0  # added to it where the large orders shrink each by its own share
@@ -136,5 +136,4 @@ def lagged(x: Array, lag: float, dt: float) -> Array:
     """`x` (n,) through a first-order lag of `lag` s, begun in steady state."""
     keep = float(np.exp(-dt / lag))
     straight = 0.5 * (1.0 - keep)  # of this sample and of the one before: a straight line between them
-    y, _ = lfilter([straight, straight], [1.0, -keep], x, zi=[x[0] * (1.0 - straight)])
-    return np.asarray(y)
+    return np.asarray(follower(np.ascontiguousarray(x), straight, straight, keep, float(x[0]) * (1.0 - straight)))

@@ -42,6 +42,7 @@ def render(trace: Trace, source: Provenance) -> str:
     lines, silent = tables.suspects(trace)
     heads, each = tables.each_run(trace)
     physical, orders = tables.moved(trace)
+    plots = _plots((*WHERE, *BEFORE_AFTER), curves, origin.mark)
     view: dict[str, Any] = {
         "trace": trace,
         "origin": origin,
@@ -71,8 +72,8 @@ def render(trace: Trace, source: Provenance) -> str:
         "moved_orders": orders,
         "heads": heads,
         "each": each,
-        "where": _plots(WHERE, curves, origin.mark),
-        "before_after": _plots(BEFORE_AFTER, curves, origin.mark),
+        "where": [plot for plot in plots[: len(WHERE)] if plot is not None],
+        "before_after": [plot for plot in plots[len(WHERE) :] if plot is not None],
         "next": _next(trace),
         "runs": source.rows(trace),
         "software": source.software,
@@ -108,9 +109,9 @@ def _origin(trace: Trace, source: Provenance) -> Origin:
     return found._replace(run=f"Trace of {runs} runs, {found.word.lower()}")
 
 
-def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any]]:
-    made = each(lambda drawing: run_page._plot(drawing, dict(curves), mark), drawings)
-    return [plot for plot in made if plot is not None]
+def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any] | None]:
+    """None of a figure whose curves are absent."""
+    return each(lambda drawing: run_page._plot(drawing, dict(curves), mark), drawings)
 
 
 def _effect(name: str, parameters: Sequence[Any], share: float) -> dict[str, Any]:

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
-from scipy.signal import lfilter
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
-from rig.model.memory import play
+from rig.model.memory import follower, play
 
 
 class Creep(Effect):
@@ -38,7 +37,7 @@ class Creep(Effect):
         """One follower a lag, in balance when the run begins."""
         torque = np.nan_to_num(signals.torque)
         keep = np.exp(-signals.dt / np.array(self.LAGS))
-        late = [torque[0] + lfilter([1 - k], [1, -k], torque - torque[0]) for k in keep]
+        late = [torque[0] + follower(torque - torque[0], 1 - k, 0.0, k, 0.0) for k in keep]
         return {Port.WIND_UP: np.stack(late, 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.court.judge import unseen
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.fit.model import extended, fit
+from rig.analysis.tracing.fit.model import Design, extended, fit
 from rig.analysis.tracing.fit.search import Scored
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Candidate
 from rig.analysis.tracing.thresholds import NAMED, QUIET
@@ -39,19 +39,20 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`. In the place of
     effects that are `shadowed` a law beside the library explains more."""
-    out = []
+    out, held = [], unseen(p.baseline, p.court)
     for r in ranking:
-        found = tried(p, r, before)
+        found = tried(p, r, held, before)
         rms = {SENSORS[c]: value for c, value in found.rms.items()}
         why = reason(found, r.term.name, named) + (TAKEN if r.term.name in shadowed else "")
         out.append(Candidate(r.term.name, r.evidence, why, rms))
     return tuple(out)
 
 
-def tried(p: Prepared, r: Scored, before: Mapping[Key, Array]) -> Tried:
-    """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs."""
+def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> Tried:
+    """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs, whose design
+    without any effect is `held`."""
     s = fit(extended(p.baseline.design, r.term, p.split.fitted))
-    after = p.court.residuals(s, unseen(s, p.court))
+    after = p.court.residuals(s, extended(held, r.term, p.court.runs))
     rms: dict[str, float] = {}
     shares: dict[str, float] = {}
     changes: dict[str, float] = {}

@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
-from rig.analysis.tracing.fit.laid import Single, laid
+from rig.analysis.tracing.fit.laid import Block, Index, Single, laid
 from rig.analysis.tracing.runs.recording import Recording, settled
 from rig.analysis.tracing.workers import each
 from rig.model.effect import Array, Effect, Reach
@@ -64,98 +64,65 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     able = [effect for effect in effects if effect.needs <= covered.has]
     terms = tuple(Term(effect, shape) for effect in able for shape in effect.shapes(covered))
 
-    def of(run: int) -> _Filled:
+    def of(run: int) -> tuple[Blocks, Blocks]:
         return _filled(eq, run, terms)
 
-    found = each(of, runs)
-    wide = {c: [max(f.widths[i].get(c, 0) for f in found) for i in range(len(terms))] for c in CHANNELS}
-    columns = {key: _spread(m, f.widths, key[1], wide) for f in found for key, m in f.columns.items()}
-    spoilt = {key: _spread(m, f.spoilt_widths, key[1], wide) for f in found for key, m in f.spoilt.items()}
-    gram = _added([f.gram for f in found], len(terms), [dict.fromkeys(CHANNELS, 1.0)] * len(found))
-    stand = [{c: eq.stands_for.get((run, c), 0.0) for c in CHANNELS} for run in runs]
-    spoilt_gram = _added([f.spoilt_gram for f in found], len(terms), stand)
-    return Bank(terms, columns, {c: _places(w) for c, w in wide.items()}, spoilt, gram, spoilt_gram)
-
-
-@dataclass(frozen=True)
-class _Filled:
-    """One run's part of the bank; columns of each term by channel, and their products with each other."""
-
-    columns: dict[Key, Single]
-    spoilt: dict[Key, Single]
-    widths: list[dict[str, int]]
-    spoilt_widths: list[dict[str, int]]
-    gram: list[dict[str, Array]]
-    spoilt_gram: list[dict[str, Array]]
-
-
-def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> _Filled:
-    """Term by term, so that no run's columns are held in double precision together."""
-    bare: list[dict[str, Single]] = []
-    spoilt: list[dict[str, Single]] = []
-    rows = {c: np.flatnonzero(r.keep) for c, r in eq.kept(run).items()}
-    for term in terms:
-        made = eq.unmasked_term(run, term)
-        bare.append({c: laid(eq, (run, c), m, rows[c]) for c, m in made.items()})
-        if run not in eq.noisy:
-            continue
-        if term.effect.moved_by_noise():  # see `Equations.spoilt_term`
-            spoilt.append({c: np.zeros_like(m) for c, m in bare[-1].items()})
-            continue
-        noisy = eq.unmasked_term(run, term, noisy=True)
-        spoilt.append({c: laid(eq, (run, c), noisy[c] - m, rows[c]) for c, m in made.items()})
-    return _Filled(
-        _joined(run, bare), _joined(run, spoilt), _widths(bare), _widths(spoilt), _products(bare), _products(spoilt)
+    clean, noise = ({k: b for found in part for k, b in found.items()} for part in zip(*each(of, runs), strict=True))
+    wide = {c: _widest([b for (_, channel), b in clean.items() if channel == c], len(terms)) for c in CHANNELS}
+    clean, noise = ({key: b.spread(wide[key[1]]) for key, b in blocks.items()} for blocks in (clean, noise))
+    return Bank(
+        terms,
+        {key: b.columns for key, b in clean.items()},
+        {c: _places(w) for c, w in wide.items()},
+        {key: b.columns for key, b in noise.items()},
+        _summed({key: b.products for key, b in clean.items()}, wide),
+        _summed({key: eq.stands_for[key] * b.products for key, b in noise.items()}, wide),
     )
 
 
-def _products(made: Sequence[dict[str, Single]]) -> list[dict[str, Array]]:
-    """Of the columns of each term with each other, by channel, (k, k)."""
-    double = ({c: m.astype(np.float64) for c, m in columns.items()} for columns in made)
-    return [{c: m @ m.T for c, m in columns.items()} for columns in double]
+Blocks = dict[Key, Block]
 
 
-def _added(parts: Sequence[Sequence[Mapping[str, Array]]], terms: int, by: Sequence[Mapping[str, float]]) -> Products:
-    """Products of all runs together, those of a run and channel `by` times."""
-    out: Products = tuple({} for _ in range(terms))
-    for part, times in zip(parts, by, strict=True):
-        for total, mine in zip(out, part, strict=False):
-            for c, m in mine.items():
-                known = total.get(c)
-                k = max(len(m), 0 if known is None else len(known))
-                total[c] = _wide(m, k) * times[c] + (0.0 if known is None else _wide(known, k))
-    return out
+def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> tuple[Blocks, Blocks]:
+    """One run's part of the bank, and what sensor noise does to it. Term by term, so that no run's columns are held in
+    double precision together."""
+    clean: list[dict[str, Single]] = []
+    noise: list[dict[str, Single]] = []
+    rows = {c: np.flatnonzero(r.keep) for c, r in eq.kept(run).items()}
+    for term in terms:
+        made = eq.unmasked_term(run, term)
+        clean.append({c: laid(eq, (run, c), m, rows[c]) for c, m in made.items()})
+        if run not in eq.noisy:
+            continue
+        if term.effect.moved_by_noise():  # see `Equations.spoilt_term`
+            noise.append({c: np.zeros_like(m) for c, m in clean[-1].items()})
+            continue
+        noisy = eq.unmasked_term(run, term, noisy=True)
+        noise.append({c: laid(eq, (run, c), noisy[c] - m, rows[c]) for c, m in made.items()})
+    return _blocks(run, clean), _blocks(run, noise)
 
 
-def _wide(m: Array, k: int) -> Array:
-    """A matrix with rows and columns of nothing to (k, k): a run that lacks a channel has fewer columns."""
-    return m if len(m) == k else np.pad(m, (0, k - len(m)))
+def _blocks(run: int, made: Sequence[dict[str, Single]]) -> Blocks:
+    return {(run, c): Block.of([m.get(c) for m in made]) for c in CHANNELS if any(c in m for m in made)}
 
 
-def _widths(made: Sequence[dict[str, Single]]) -> list[dict[str, int]]:
-    return [{c: len(m) for c, m in columns.items()} for columns in made]
+def _widest(blocks: Sequence[Block], terms: int) -> Index:
+    """Columns of each term in a channel (t,): a run that lacks another channel has none of what shows by it alone."""
+    return np.asarray(np.max([np.zeros(terms, np.int64), *(b.widths for b in blocks)], axis=0))
 
 
-def _spread(
-    columns: Single, widths: Sequence[Mapping[str, int]], channel: str, wide: Mapping[str, Sequence[int]]
-) -> Single:
-    """The columns of one block at their places: a run that lacks a channel has none of what shows by it alone."""
-    mine = [w.get(channel, 0) for w in widths]
-    if mine == list(wide[channel]):
-        return columns
-    out = np.zeros((columns.shape[0], sum(wide[channel])), np.float32, order="F")
-    start, at = 0, 0
-    for has, takes in zip(mine, wide[channel], strict=True):
-        out[:, at : at + has] = columns[:, start : start + has]
-        start, at = start + has, at + takes
-    return out
+def _summed(products: Mapping[Key, Array], wide: Mapping[str, Index]) -> Products:
+    """Products of all runs together, by term and channel."""
+    found: list[dict[str, Array]] = [{} for _ in next(iter(wide.values()))]
+    for c, widths in wide.items():
+        mine = [m for (_, channel), m in products.items() if channel == c]
+        if mine:
+            each_term = np.split(np.sum(mine, axis=0), np.cumsum(widths**2)[:-1])
+            for term, k, m in zip(found, widths, each_term, strict=True):
+                term[c] = m.reshape(k, k)
+    return tuple(found)
 
 
-def _joined(run: int, made: Sequence[dict[str, Single]]) -> dict[Key, Single]:
-    """All columns of a block side by side, (n, c), each in one stretch of memory."""
-    return {(run, c): np.vstack([m[c] for m in made if c in m]).T for c in CHANNELS if any(c in m for m in made)}
-
-
-def _places(wide: Sequence[int]) -> tuple[slice | None, ...]:
+def _places(wide: Index) -> tuple[slice | None, ...]:
     edges = np.concatenate([[0], np.cumsum(wide)]).tolist()
     return tuple(slice(a, b) if b > a else None for a, b in itertools.pairwise(edges))

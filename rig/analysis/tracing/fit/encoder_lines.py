@@ -58,7 +58,7 @@ def _counts(s: Solution, keys: Sequence[Key], name: str, covered: Reach) -> tupl
         if power.max() < 1.0 + LINE / np.sqrt(len(parts)):  # strokes scatter so much less together
             break
         near = np.arange(max(1, np.ceil(top - AROUND * width)), top + AROUND * width + 1)
-        out.append(int(near[int(np.argmax([_together(parts, order) for order in near]))]))
+        out.append(int(near[int(np.argmax(_together(parts, near)))]))
         power[np.abs(orders - top) < 2 * AROUND * width] = 0.0
     return tuple(out)
 
@@ -88,6 +88,12 @@ def _surroundings(power: Array) -> Array:
     return np.asarray(np.interp(np.arange(power.size), np.arange(len(middles)) * size + 0.5 * size, middles))
 
 
-def _together(parts: Sequence[tuple[Array, Array]], order: float) -> float:
-    """Amplitude of one wave of that order through all strokes."""
-    return float(abs(sum(np.exp(-1j * order * x) @ e for x, e in parts)))
+def _together(parts: Sequence[tuple[Array, Array]], orders: Array) -> Array:
+    """Amplitude of one wave through all strokes at each of a few orders, each by one more than the last, (k,)."""
+    total = np.zeros(orders.size, dtype=np.complex128)
+    for x, e in parts:
+        wave, on = np.exp(-1j * orders[0] * x) * e, np.exp(-1j * x)
+        for i in range(orders.size):
+            total[i] += wave.sum()
+            wave *= on
+    return np.abs(total)

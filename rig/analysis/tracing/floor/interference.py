@@ -131,10 +131,18 @@ def around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -
     for f in at[coarse]:
         edges = np.array([[f / AROUND, f - wide], [f + wide, f * AROUND]])
         bounds = zip(np.searchsorted(hz, edges[:, 0]), np.searchsorted(hz, edges[:, 1], side="right"), strict=True)
-        found = [np.median(power[:, lo:hi], axis=1) for lo, hi in bounds if hi > lo]
+        found = [_median(power[:, lo:hi]) for lo, hi in bounds if hi > lo]
         sides.append(np.max(found, axis=0))
     nearest = np.searchsorted(coarse, np.arange(at.size)).clip(max=coarse.size - 1)
     return np.asarray(np.stack(sides, 1)[:, nearest])
+
+
+def _median(x: Array) -> Array:
+    """Of every row of (n, k), (n,), without the looks for NaN that take half of numpy's own."""
+    upper = x.shape[1] // 2
+    lower = (x.shape[1] - 1) // 2
+    part = np.partition(x, sorted({lower, upper}), axis=1)
+    return np.asarray(0.5 * (part[:, lower] + part[:, upper]))
 
 
 def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:

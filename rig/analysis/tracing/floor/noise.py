@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
-from scipy.stats import f as fdist
+from scipy.special import fdtri
 
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
@@ -221,7 +221,7 @@ def leniency(measured: Measured, eq: Equations, key: Key) -> float:
     if not like:
         return 1.0
     nu = float(1 / np.mean(1 / np.array(like)))
-    limit = float(np.sqrt(fdist.ppf(CHANCE, nu, nu * max(1, len(like) // 2))))
+    limit = float(np.sqrt(fdtri(nu, nu * max(1, len(like) // 2), CHANCE)))
     return float(np.clip(limit / MISSING, 1.0, LENIENT))
 
 

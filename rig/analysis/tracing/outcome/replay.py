@@ -10,14 +10,13 @@ motion under the last a and l, then a and l of that motion.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import BadCoefficients, cont2discrete, lfilter, lfilter_zi
+from scipy.linalg import expm
 
 from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.equations import Term
@@ -25,6 +24,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import flat
 from rig.model.effect import Array, Known, Port, Signals
+from rig.model.memory import marched
 
 FINE: Final = 8  # steps between two rows of 4 ms: order 15 at 500 rpm then has 16 a period
 SPAN: Final = 8.0  # s of a run: a turn of the slowest motor and more, and quick
@@ -159,13 +159,15 @@ def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> 
 
 
 def _filtered(top: Sequence[float], bottom: Sequence[float], h: float, x: Array) -> Array:
-    """`x` (m,) every h s, straight between, through top/bottom, begun in balance with x[0]; exact."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", BadCoefficients)  # a first tap of nothing is dropped, and put back below
-        taps, a, _ = cont2discrete((top, bottom), h, method="foh")
-    b = np.concatenate([np.zeros(a.size - np.size(taps)), np.ravel(taps)])
-    y, _ = lfilter(b, a, x, zi=lfilter_zi(b, a) * x[0])
-    return np.asarray(y)
+    """`x` (m,) every h s, straight between, through (top_1·s + top_0)/(J·s² + d·s + K), begun in balance with x[0];
+    exact."""
+    inertia, damping, stiffness = bottom
+    matrix = np.zeros((4, 4))  # of the state, of x and of its slope
+    matrix[0, 1] = matrix[2, 3] = 1.0
+    matrix[1, :3] = np.array([-stiffness, -damping, 1.0]) / inertia
+    over = expm(matrix * h)[:2]
+    state = marched(over[:, :2], over[:, 2] - over[:, 3] / h, over[:, 3] / h, x, np.array([x[0] / stiffness, 0.0]))
+    return np.asarray(state @ np.array([*reversed(top), 0.0])[:2])
 
 
 def _acting(s: Signals, model: Model) -> tuple[Array, Array, Array, Array]:

@@ -12,10 +12,9 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from scipy.signal import lfilter
 
 from rig.model.effect import Array
-from rig.model.memory import play
+from rig.model.memory import follower, play
 
 WIDTHS: Final = (0.03, 0.1, 0.3)  # of the largest torque: half widths of a play
 LEAKS: Final = (1.5, 8.0, 40.0)  # s: between a turn of the motor and a run
@@ -35,7 +34,7 @@ def behind(torque: Array, run: Array, width: float) -> Array:
 def relaxing(torque: Array, run: Array, dt: float, leak: float) -> Array:
     """How far a first-order follower of time constant `leak` s is behind, at rest when the run begins; N·m, (n,)."""
     keep = float(np.exp(-dt / leak))
-    return _by_run(torque, run, lambda x: x - x[0] - lfilter([1 - keep], [1, -keep], x - x[0]))
+    return _by_run(torque, run, lambda x: x - x[0] - follower(x - x[0], 1 - keep, 0.0, keep, 0.0))
 
 
 def summed(torque: Array, run: Array, dt: float) -> Array:

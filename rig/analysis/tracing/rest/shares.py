@@ -12,7 +12,7 @@ from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.bins import BINNED
 from rig.analysis.tracing.rest.coordinates import INDICES
 from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.unknown import homes
+from rig.analysis.tracing.rest.unknown import frequency
 from rig.model.effect import Array
 
 SPAN: Final = 25  # rows either way, 0.2 s: the rate of a torque from row to row is mostly noise
@@ -34,7 +34,7 @@ def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Arra
     both = [score(h, crossed(r, *pair)) for pair in PAIRS]
     own = [channel == "L" and bool({"load", "memory"} & {*names}) for names in (*((c,) for c in COORDINATES), *PAIRS)]
     out = {f"share.{channel}": np.where(own, np.nan, np.clip(np.array(alone + both) / excess, 0.0, 1.0))}
-    line = next((found for found in homes(r, channel) if found.frequency_hz is not None), None)
+    line = frequency(r, channel)
     if line is not None and line.frequency_hz is not None:
         out[f"share_frequency_hz.{channel}"] = np.array([line.frequency_hz, min(line.share, 1.0)])
     return out

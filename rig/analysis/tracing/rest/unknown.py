@@ -39,10 +39,22 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
     some = [best_order(h, name, channel, sense) for name in ("motor_angle", "load_angle") for sense in SENSES]
-    out += [found for found in (*some, seen, by_the_day(h, channel), _wound(h, channel)) if found is not None]
-    out += [by_the_clock(h, channel, sense) for sense in SENSES]
+    out += [found for found in (*some, _wound(h, channel)) if found is not None]
+    out += _frequencies(h, seen, channel)
     out += _at_once(h, channel, alone)
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
+
+
+def frequency(r: Rest, channel: str) -> Home | None:
+    """The best of those homes that is a frequency, None where there is none."""
+    seen, r = line(r, channel), r.thinned(MOST)
+    return max(_frequencies(Halves(r, folds(r)), seen, channel), key=lambda found: found.share, default=None)
+
+
+def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
+    """`seen`: a line in runs of differing speed."""
+    found = [home for home in (seen, by_the_day(h, channel)) if home is not None]
+    return found + [by_the_clock(h, channel, sense) for sense in SENSES]
 
 
 def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
