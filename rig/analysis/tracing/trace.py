@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import beyond_doubt, heard, heard_again, heard_alone
+from rig.analysis.tracing.court.hearing import beyond_doubt, heard, heard_again, heard_alone, is_calm
 from rig.analysis.tracing.court.judge import Court, court
 from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
@@ -63,12 +63,12 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     found = search(start.design, bank, runs, start.keys, covered, p.floors, quiet=quiet)
     again, found = _looked_again(p, found, bank, covered)
     case = heard(again, found, runs, covered)
-    if quiet and not beyond_doubt(case):
-        found = Found(start, found.ranking)
-        case = heard(p, found, runs, covered)
-    elif not quiet:
+    if not quiet:
         case = heard_again(case, found, bank, runs, covered)
         case = heard_alone(case, found, runs, covered)
+    if (quiet or is_calm(p)) and not beyond_doubt(case):
+        found = Found(start, found.ranking)
+        case = heard(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.court.judge import (
-    FAIRLY,
     Court,
     Worth,
     convicted,
@@ -31,7 +30,7 @@ from rig.analysis.tracing.fit.search import Found, polished, reduced, search, se
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
-from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE
+from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
 from rig.model.effect import Array, Parameter, Reach
 
 if TYPE_CHECKING:
@@ -134,10 +133,16 @@ def _settles(other: Heard, stay: Collection[str]) -> bool:
 
 def beyond_doubt(case: Heard) -> bool:
     """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
-    few repeats, and can be too high. Every name must be large and explain what it acts on, and nothing unnamed be
-    needed beside it."""
+    few repeats, and can be too high. Every name must be large, of one size in all runs and what it acts on must be
+    explained, and nothing unnamed be needed beside it."""
     plain = case.worths and not cast(case.solution) and not case.loud
-    return bool(plain) and all(w.size > PLAIN_TO_SEE and abs(w.true - 1) < FAIRLY for w in case.worths)
+    return bool(plain) and all(w.size > PLAIN_TO_SEE and w.fairly for w in case.worths)
+
+
+def is_calm(p: Prepared) -> bool:
+    """Whether the baseline is at the floor on the held-out runs."""
+    most, one = p.court.worst(p.court.residuals(p.baseline, unseen(p.baseline, p.court)))
+    return most < QUIET and one < MISSING
 
 
 Convicted = tuple[Solution, Design, list[Worth]]

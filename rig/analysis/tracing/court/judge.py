@@ -104,6 +104,11 @@ class Worth:
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
     @property
+    def fairly(self) -> bool:
+        """Whether it takes away what it should, and wants one size in all runs, to a fifth."""
+        return abs(self.true - 1.0) < FAIRLY and max(self.unsteady, self.apart) < FAIRLY
+
+    @property
     def _explains_all(self) -> bool:
         """Where next to nothing is left of it on unseen runs, sizes differ from run to run by less than the noise of a
         run's mean."""
