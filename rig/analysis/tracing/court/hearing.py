@@ -69,7 +69,7 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
     if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
         solution, held, worths = _polished(p, solution, (solution, held, worths), runs, covered)
     p, solution = _own_convicted(p, solution)
-    solution, held, worths = convicted(unmasked(solution, runs), p.court)
+    solution, held, worths = convicted(unmasked(solution, runs, covered), p.court)
     while vague := unresolved(solution, _in_words(solution, runs, scatter), covered):
         # one at a time: without it another one's law may be plain
         least = min((w for w in worths if w.name in vague), key=lambda w: min(w.share, 1.0) * w.size).name

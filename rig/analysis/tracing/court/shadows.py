@@ -30,8 +30,8 @@ class Creep(Effect):
     LAGS: Final = (0.7, 1.5, 4.0, 8.0, 20.0, 50.0)  # s: from a turn of the motor to a run, 2 to 3 times apart
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One."""
-        return ((),)
+        """One; none in a campaign shorter than its lags, where they are powers of the time and foretell any drift."""
+        return ((),) if reach.duration > self.LAGS[-1] else ()
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One follower a lag, in balance when the run begins."""
@@ -134,11 +134,11 @@ SHADOWS: Final = {
 }
 
 
-def unmasked(s: Solution, runs: Sequence[int]) -> Solution:
+def unmasked(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     """With the shadow in the place of its look-alike, wherever it explains more of the fitted runs."""
     for shadow in SHADOWS.values():
         mine = [i for i, term in enumerate(s.design.terms) if term.name in shadow.of]
-        if mine:
+        if mine and shadow.effect.shapes(covered):
             other = fit(extended(reduced(s.design, mine), Term(shadow.effect, ()), runs))
             s = other if other.gain > s.gain else s
     return s
