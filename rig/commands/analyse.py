@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import gc
-import importlib
 import os
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -14,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
 from rig.commands.limits import limit_argument, limits_of
+from rig.commands.loading import load
 from rig.commands.reference import reference_beside, reference_named, reference_of_one_zero
 from rig.commands.targets import writing
 from rig.core.errors import DataError, Exit
@@ -44,7 +42,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Figures and report of every run."""
-    load()
+    load("rig.analysis.analyse", PAGE)
     folders = expand(args.runs)
     places = dict(zip(folders, targets(folders, args.out), strict=True))
     reference = reference_named(args.reference) if args.reference else None
@@ -56,19 +54,6 @@ def run(args: argparse.Namespace) -> int:
         return exit_of(result)
 
     return for_each(folders, analyse_one)
-
-
-def load() -> None:
-    """Import what an analysis is made with. It stays to the end: Python looks for no garbage in it, now or later, which
-    was a tenth of the time of one run's analysis.
-    """
-    if PAGE in sys.modules:
-        return
-    gc.disable()
-    importlib.import_module("rig.analysis.analyse")
-    importlib.import_module(PAGE)
-    gc.freeze()
-    gc.enable()
 
 
 def targets(folders: list[Path], out: Path | None) -> list[Path]:

@@ -31,14 +31,26 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
 
 
 def expand(paths: list[Path]) -> list[Path]:
-    """Run folders as given; a folder that is no run gives the runs below it. Raises UsageError when there are none."""
+    """Run folders as given; a folder that is no run gives the runs below it.
+
+    Files among several paths, as a shell gives them for `CAMPAIGN/*`, are left out in a sentence on stderr. Raises
+    UsageError for a path that does not exist, a folder without runs, and when no run is left.
+    """
     found: list[Path] = []
+    files: list[Path] = []
     for path in paths:
         inside = [path] if (path / "manifest.json").exists() else sorted(p.parent for p in path.rglob("manifest.json"))
-        if not inside:
+        if not inside and path.is_file() and len(paths) > 1:
+            files.append(path)
+        elif not inside:
             what = (
                 "is neither a run folder nor holds any (no manifest.json in it)" if path.exists() else "does not exist"
             )
             raise UsageError(f"{path} {what}")
         found += inside
+    named = ", ".join(path.name for path in files)
+    if files and not found:
+        raise UsageError(f"{named}: expected run folders, these are files")
+    if files:
+        print(f"left out, for they are files and no runs: {named}", file=sys.stderr)
     return found

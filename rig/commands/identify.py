@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from rig.analysis.identify.identified import Identified
     from rig.analysis.identify.predictions import Prediction
     from rig.analysis.identify.recording import Recording
-    from rig.model.gearfile import MeasuredSeries, Parameter
+    from rig.model.gearfile import Covered, GearFile, MeasuredSeries, Parameter
     from rig.runfile.run import Run
 
 TERMS = 15  # orders of the paper's series
 MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
+RPM = 30 / math.pi  # in a rad/s
 ARCSEC = 206264.80624709636  # in a radian
 SHOWN = {"rad": (ARCSEC / 60.0, "arcmin"), "J": (1e3, "mJ")}  # SI to what people read
 UNITS_BESIDE = {
@@ -96,8 +97,9 @@ def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
     )
     tell(comparison(predictions(recordings, file.gear(), terms)))
     tell(coasting(runs, found))
-    file = replace(file, characteristics=characteristics)
+    file = replace(file, characteristics=characteristics, covered=covered(found))
     tell(characteristic_lines(characteristics))
+    tell(breakaway_beside(file))
     tell([f"  cannot tell: {sentence}" for sentence in found.cannot])
     if out is not None:
         gearfile.write(out, file)
@@ -245,6 +247,28 @@ def beside(runs: list[Run]) -> dict[str, Parameter]:
     if told:
         say("lock tests and breakaway")
     return characteristics([(r.name, analyse(r, reference_of_one_zero(r))) for r in told])
+
+
+def covered(found: Identified) -> Covered | None:
+    """Speeds and loads of the stretches of constant speed the numbers come from; None without any."""
+    from rig.model.gearfile import Covered
+
+    speeds = [abs(m.omega) * RPM for m in found.fits.means]
+    loads = [m.tau_ext for m in found.fits.means]
+    return Covered((min(speeds), max(speeds)), (min(loads), max(loads))) if speeds else None
+
+
+def breakaway_beside(file: GearFile) -> list[str]:
+    """What was measured at rest, where the model's own friction at standstill was not."""
+    from rig.report.numbers import quantity
+
+    measured, model = file.characteristics.get("tau_break"), file.parameters["tau_s"]
+    if measured is None or model.origin == "measured":
+        return []
+    return [
+        f"  the motor broke away at {quantity(measured.value, measured.half, 'N·m')} ({counted(measured.runs)}), "
+        f"tau_s of the model is {model.value:.4g} N·m ({model.origin}): simulate --start goes by tau_s"
+    ]
 
 
 def characteristic_lines(found: Mapping[str, Parameter]) -> list[str]:

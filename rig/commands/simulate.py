@@ -23,6 +23,7 @@ Array = npt.NDArray[np.float64]
 ARCSEC = 180.0 / np.pi * 3600.0
 RPM = np.pi / 30.0  # rad/s
 SPEEDS = (120.0, 300.0, 500.0)  # rpm, the paper's Fig. 11
+NEAR = 0.05  # of an end of what was covered: a speed held by a constant torque is a few per cent off
 ORDERS = 8  # printed; beyond, amplitudes are below what a rig resolves
 HEAD = ("rpm", "τ, N·m", "θ̃ p-p, arcsec", "θ̃_p p-p", "θ̃_s p-p", "speed p-p, rpm", "τ_l p-p, N·m")
 
@@ -58,6 +59,8 @@ def run(args: argparse.Namespace) -> int:
         waves = [at_speed(gear, rpm * RPM, args.load) for rpm in args.speed or SPEEDS]
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
     print(describe(file, waves, args.load))
+    for sentence in beyond(file, [wave.mean_speed / RPM for wave in waves], args.load):
+        print(sentence)
     if args.out is not None:
         draw(args.out, waves[0], f"{args.gear}")
         print(f"figure {args.out}")
@@ -73,7 +76,26 @@ def starts(file: GearFile, args: argparse.Namespace) -> int:
     found = "\n".join(lines(file, args.start, args.load))
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
     print(found)
+    for sentence in beyond(file, [], args.load):
+        print(sentence)
     return int(Exit.PASS)
+
+
+def beyond(file: GearFile, speeds_rpm: Sequence[float], load: float) -> list[str]:
+    """What lies outside the runs the gear was identified from, one sentence each; nothing of a gear nobody measured."""
+    if file.covered is None:
+        return []
+    asked = [(abs(rpm), file.covered.speed_rpm, "rpm") for rpm in speeds_rpm]
+    found = [*asked, (load, file.covered.load, "N·m of load")]
+    return [
+        f"  extrapolated: {value:.4g} {unit}; the gear was identified from {_between(ends, unit)}"
+        for value, ends, unit in found
+        if not ends[0] - NEAR * abs(ends[0]) <= value <= ends[1] + NEAR * abs(ends[1])
+    ]
+
+
+def _between(ends: tuple[float, float], unit: str) -> str:
+    return f"{ends[0]:.4g} {unit} alone" if ends[0] == ends[1] else f"{ends[0]:.4g} to {ends[1]:.4g} {unit}"
 
 
 def open_gear(source: str) -> GearFile:

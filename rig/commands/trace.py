@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rig.commands.loading import load
 from rig.commands.targets import refuse_unwritable, refuse_unwritable_file, writing
 from rig.core.errors import Exit
 
@@ -29,6 +30,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
+    load("rig.analysis.tracing.trace", "rig.report.trace.page")
     from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.trace import trace

@@ -54,7 +54,18 @@ CHARACTERISTICS = {
 }
 """What a gear may have beside them, where it was measured: the simulation does without."""
 
-TOP = ("schema", "serial", "output", "simulated", "made", "cannot", "parameters", "characteristics", "kinematic_error")
+TOP = (
+    "schema",
+    "serial",
+    "output",
+    "simulated",
+    "made",
+    "cannot",
+    "covered",
+    "parameters",
+    "characteristics",
+    "kinematic_error",
+)
 KEYS = ("value", "low", "high", "unit", "from", "runs", "note")
 SERIES_KEYS = ("a", "b", "covariance", "unit", "from", "runs", "note")
 
@@ -86,6 +97,18 @@ class MeasuredSeries:
     note: str = ""
 
 
+COVERED = {"speed_rpm": "rpm of the motor", "load": "N·m on the output"}
+
+
+@dataclass(frozen=True)
+class Covered:
+    """Least and largest of the runs a gear was identified from: |speed| of the motor, rpm, and external torque on the
+    output, N·m. Beyond it the file's numbers are a guess."""
+
+    speed_rpm: tuple[float, float]
+    load: tuple[float, float]
+
+
 @dataclass(frozen=True)
 class GearFile:
     """An identified gear. `cannot`: what the runs could not tell apart, one sentence each."""
@@ -100,6 +123,7 @@ class GearFile:
     characteristics: Mapping[str, Parameter] = field(
         default_factory=dict
     )  # those of CHARACTERISTICS that were measured
+    covered: Covered | None = None
 
     def gear(self) -> Gear:
         """The values alone, for simulation."""
@@ -136,6 +160,8 @@ def dumps(gear: GearFile) -> str:
     document = tomlkit.document()
     head = {"schema": SCHEMA, "serial": gear.serial, "output": gear.output, "simulated": gear.simulated}
     document.update({**head, "made": gear.made, "cannot": list(gear.cannot)})
+    if gear.covered is not None:
+        document["covered"] = {name: list(getattr(gear.covered, name)) for name in COVERED}
     document["parameters"] = table = tomlkit.table()
     for name, unit in UNITS.items():
         inline = tomlkit.inline_table()
@@ -220,7 +246,20 @@ def _gear(raw: dict[str, Any]) -> GearFile:
         simulated=simulated,
         made=_text(raw, "made", ""),
         cannot=_texts(raw, "cannot", ""),
+        covered=_read_covered(_table(raw, "covered")) if "covered" in raw else None,
     )
+
+
+def _read_covered(raw: Mapping[str, Any]) -> Covered:
+    _only("covered", raw, COVERED)
+    ends = {}
+    for name, unit in COVERED.items():
+        value = raw.get(name)
+        numbers = [_number({name: v}, name, "covered") for v in value] if isinstance(value, list) else []
+        if len(numbers) != 2 or numbers[0] > numbers[1]:
+            raise DataError(f"covered.{name} = {value!r}: expected the least and the largest, {unit}")
+        ends[name] = (numbers[0], numbers[1])
+    return Covered(**ends)
 
 
 def _read_parameter(where: str, name: str, raw: Any, unit: str) -> Parameter:

@@ -1,10 +1,16 @@
-"""hdrig simulate: what it refuses."""
+"""hdrig simulate: what it refuses, and what it says of a guess."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import pytest
 
 from rig.cli import main
+from rig.commands.identify import breakaway_beside
+from rig.commands.simulate import beyond
+from rig.model.gearfile import Covered, GearFile, Parameter
+from tests.closing.test_compensate import gear
 
 
 @pytest.mark.parametrize("asked", [["--load", "nan"], ["--load", "inf"], ["--start", "nan"]])
@@ -15,3 +21,35 @@ def test_a_torque_that_is_no_number_is_refused_before_anything_is_said(
     said = capsys.readouterr()
     assert said.out == ""
     assert "in N·m" in said.err
+
+
+def covering(speed_rpm: tuple[float, float], load: tuple[float, float]) -> GearFile:
+    return replace(gear(), covered=Covered(speed_rpm, load))
+
+
+def test_speeds_and_loads_beyond_the_identified_runs_are_said_with_numbers() -> None:
+    file = covering((9.6, 314.0), (-40.0, 0.0))
+    assert beyond(file, [120.0, -300.0, 318.0], -40.0) == []
+    assert beyond(file, [5.0, 500.0], 10.0) == [
+        "  extrapolated: 5 rpm; the gear was identified from 9.6 to 314 rpm",
+        "  extrapolated: 500 rpm; the gear was identified from 9.6 to 314 rpm",
+        "  extrapolated: 10 N·m of load; the gear was identified from -40 to 0 N·m of load",
+    ]
+    assert beyond(covering((60.0, 60.0), (0.0, 0.0)), [120.0], 0.0) == [
+        "  extrapolated: 120 rpm; the gear was identified from 60 rpm alone"
+    ]
+
+
+def test_of_a_gear_that_nobody_measured_nothing_is_said() -> None:
+    assert beyond(gear(), [5000.0], 1000.0) == []
+
+
+def test_a_breakaway_measured_at_rest_stands_beside_one_that_was_assumed() -> None:
+    broke = Parameter(0.5, (0.45, 0.55), runs=("a", "b"))
+    file = replace(gear(), characteristics={"tau_break": broke})
+    (said,) = breakaway_beside(file)
+    assert "broke away at 0.500 ± 0.050 N·m (2 runs)" in said.replace("\u00a0", " ")
+    assert "tau_s of the model is" in said
+    measured = replace(file, parameters={**file.parameters, "tau_s": Parameter(0.5, (0.4, 0.6))})
+    assert breakaway_beside(measured) == []
+    assert breakaway_beside(gear()) == []

@@ -14,7 +14,7 @@ from rig.bench import twin_parameters
 from rig.core.errors import UsageError
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
-from rig.model.gearfile import GearFile, MeasuredSeries, Parameter, declared, dumps, loads, read, write
+from rig.model.gearfile import Covered, GearFile, MeasuredSeries, Parameter, declared, dumps, loads, read, write
 
 
 def made() -> GearFile:
@@ -57,6 +57,17 @@ def test_what_was_measured_beside_the_parameters_is_kept_with_its_unit() -> None
         )
     with pytest.raises(UsageError, match="unknown key 'hysteresis_los' in characteristics; did you mean"):
         loads(text.replace("hysteresis_loss =", "hysteresis_los ="), "gear.toml")
+
+
+def test_the_range_it_was_identified_in_is_kept_and_a_wrong_one_is_said() -> None:
+    file = replace(made(), covered=Covered((9.6, 314.1), (-40.0, 0.0)))
+    text = dumps(file)
+    assert loads(text, "gear.toml").covered == file.covered
+    assert loads(dumps(made()), "gear.toml").covered is None
+    with pytest.raises(UsageError, match=r"covered.speed_rpm = .*: expected the least and the largest, rpm"):
+        loads(text.replace("[9.6, 314.1]", "[314.1, 9.6]"), "gear.toml")
+    with pytest.raises(UsageError, match=r"covered.load = 3.0: expected the least and the largest, N·m"):
+        loads(text.replace("[-40.0, 0.0]", "3.0"), "gear.toml")
 
 
 def test_a_parameter_nobody_measured_has_no_interval() -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from rig.analysis.flexibility import declared
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
+from rig.analysis.identify.friction import SLOW
 from rig.analysis.identify.mode import add_mode, damping_gradient
 from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.undetermined import NOTHING, said_open, stand_in, undetermined
@@ -25,6 +26,7 @@ AGREE = 3.0  # standard errors by which lock and turning runs may differ in stif
 WORTH_TELLING = 0.005  # of K: a smaller difference is within what sensors and windows distort
 BREAKAWAY = 1.0  # τ_s/τ_c assumed where nothing was seen of it: no fall of friction, so no stick-slip is predicted
 STRIBECK = 1.0  # rad/s, written beside it; without a fall it has no effect
+RPM = 30 / math.pi  # in a rad/s
 NEEDS = {
     "J_l": "runs at several speeds with torque sensor and load encoder",
     "K": "a lock run, or runs at several speeds, with torque sensor and load encoder",
@@ -241,7 +243,8 @@ def _always(found: Mapping[str, Parameter]) -> list[str]:
     ]
     if found["tau_s"].origin != "measured":
         said.append(
-            "tau_s and omega_s: breakaway and the speed over which friction falls need at least three speeds below "
-            "60 rpm at which friction is seen to fall."
+            "tau_s and omega_s: breakaway and the speed over which friction falls need at least three speeds held "
+            f"constant below {SLOW * RPM:.0f} rpm at which friction is seen to fall; only stretches of constant speed "
+            "are read for it here. hdrig trace reads every row, and may name Stribeck friction in the same runs."
         )
     return said

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rig.analysis.tracing.outcome.result import Trace
-from rig.report.numbers import duration, number_of
+from rig.report.numbers import counted, duration, number_of
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
 from rig.report.words import PROCEDURES, humanise
@@ -56,7 +56,7 @@ class Provenance:
         found = [f"Gear {', '.join(sorted(gears))}"] if gears else []
         found += [f"ratio {', '.join(sorted(ratios))}"] if ratios else []
         found += [utc(starts[0])] if starts else []
-        return [*found, f"{len(trace.fitted)} runs fitted", f"{len(trace.held_out)} held out"]
+        return [*found, f"{counted(len(trace.fitted), 'run')} fitted", f"{len(trace.held_out)} held out"]
 
     def rows(self, trace: Trace) -> list[RunRow]:
         """Every run, fitted, held out or neither."""

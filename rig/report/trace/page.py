@@ -11,6 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rig.analysis.result import Array
+from rig.analysis.tracing.outcome.each_run import OWN
 from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.analysis.tracing.workers import each
 from rig.report import page as run_page
@@ -49,7 +50,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "heading": words.heading(trace),
         "facts": source.facts(trace),
         "sentence": words.plainly(trace.verdict.sentence),
-        "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes)],
+        "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes) if s != words.of_each_run(trace)],
         "remainder": words.remainder(trace),
         "ruling": words.RULINGS[trace.verdict.status],
         "meaning": words.meant(trace),
@@ -66,10 +67,11 @@ def render(trace: Trace, source: Provenance) -> str:
         "silent": words.listed(silent),
         "added": words.added(trace),
         "own": words.of_each_run(trace),
-        "found_first": words.listed([words.named(e.effect) for e in trace.effects if e.effect in words.OWN]),
+        "found_first": words.listed([words.named(e.effect) for e in trace.effects if e.effect in OWN]),
         "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
         "moved": physical,
         "moved_orders": orders,
+        "under_load": words.under_load(trace),
         "heads": heads,
         "each": each,
         "where": [plot for plot in plots[: len(WHERE)] if plot is not None],

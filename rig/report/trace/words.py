@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
 from rig.analysis.tracing.outcome.result import Found, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
@@ -52,9 +53,8 @@ PARAMETERS = {  # of the baseline: symbol, what it is
     "lag": ("δ", "lag of the torque sensor"),
 }
 
-OWN = {"external_vibration": "phase and amplitude of the vibration", "missed_counts": "instants of the steps"}
-
 ORDER = "theta_p_order_"
+LOADED = "load_dependent_kinematic_error"
 
 PLACES = {
     "motor_angle": "the motor angle",
@@ -152,8 +152,28 @@ def added(trace: Trace) -> str:
 
 def of_each_run(trace: Trace) -> str:
     """What was taken from a held-out run itself, "" where nothing was: its error is then not wholly unseen."""
-    own = [OWN[e.effect] for e in trace.effects if e.effect in OWN]
-    return f"Each run, held out or not, has its own {listed(own)}, read from that run itself." if own else ""
+    return own_words(e.effect for e in trace.effects)
+
+
+def under_load(trace: Trace) -> str:
+    """At which load the orders after the refit hold, where they shrink with it; "" where they do not."""
+    found = next((e for e in trace.effects if e.effect == LOADED), None)
+    orders = [p for p in trace.baseline_after if p.name.startswith(ORDER)]
+    if found is None or not orders:
+        return ""
+    p = {q.name: q for q in found.parameters}
+    largest = max(orders, key=lambda q: q.value)
+    stays = p.get(f"A_inf_{largest.name.removeprefix('theta_p_')}", p.get("A_inf"))
+    said = (
+        "Amplitudes after are those that stay under a load many times T_c; those before are a mean over the loads run."
+    )
+    if stays is None or not stays.value > 0:
+        return said
+    n = largest.name.removeprefix(ORDER)
+    return (
+        f"{said} Without load they are 1/A_inf times as large: order {n} is {plain(largest.value / stays.value, 3)} "
+        f"{largest.unit}."
+    )
 
 
 def _pitch(trace: Trace) -> str:

@@ -1,9 +1,11 @@
 """What one angle and one torque can say: laws of the ripple are given back, and none is made up."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.outcome.ripple import DAY, HIGHEST, Seen, _laws
+from rig.analysis.tracing.outcome.ripple import DAY, HIGHEST, LATEST, Seen, _laws, of_run
 
 RNG = np.random.default_rng(3)
 SPEEDS = (6.0, 12.0, 20.0, 31.0, -20.0, -31.0)
@@ -60,3 +62,44 @@ def test_every_law_is_a_sentence_with_units():
     for r in _laws("tau_l", [seen(v, load, lag=4e-4) for v in SPEEDS for load in (0.5, 20.0)], True):
         assert "N·m" in r.sentence()
         assert "ms after the angle" in r.sentence()
+
+
+def test_a_lag_that_no_phase_tells_is_not_given():
+    alike = [Seen(v, 1.0, 0.0, np.where(np.arange(HIGHEST) == 1, 0.2, 0.0).astype(complex), NOISE) for v in SPEEDS]
+    scrambled = [Seen(s.speed, 1.0, 0.0, s.phasors * np.exp(1j * k**2), NOISE) for k, s in enumerate(alike)]
+    for r in _laws("tau_l", scrambled, True):
+        assert r.lag is None or (abs(r.lag[0]) <= LATEST and r.lag[1] < LATEST)
+    (far,) = _laws("tau_l", [seen_once(v, 3 * LATEST) for v in (6.0, 7.0, 9.5, -6.5)], True)
+    assert far.lag is None or abs(far.lag[0]) <= LATEST
+
+
+def seen_once(speed: float, lag: float) -> Seen:
+    phasors = np.zeros(HIGHEST, dtype=complex)
+    phasors[1] = 0.2 * np.exp(-2j * speed * lag)
+    return Seen(speed, 1.0, 0.0, phasors, NOISE)
+
+
+def turning(rows_a_turn: float, torque):
+    """A run of 80 turns of the motor, most of one of the output; `torque` of the motor's angle."""
+    theta = 2 * np.pi * np.arange(int(80 * rows_a_turn)) / rows_a_turn
+    piece = SimpleNamespace(
+        t=theta, theta_m=theta, tau_l=torque(theta), way=np.ones(theta.size), omega_m=np.full(theta.size, 70.0)
+    )
+    return SimpleNamespace(pieces=(piece,), has=frozenset({"tau_l"}), locked=False, ratio=100.0, start=0.0)
+
+
+def test_orders_with_too_few_rows_a_turn_are_not_looked_for():
+    noise = np.random.default_rng(5)
+    found = of_run(turning(22.3, lambda x: 0.1 * np.cos(2 * x) + 0.01 * noise.standard_normal(x.size)), "tau_l")
+    assert found is not None
+    assert np.isfinite(found.phasors).sum() == 7
+    assert abs(found.phasors[1]) == pytest.approx(0.1, rel=0.02)
+    assert [r.order for r in _laws("tau_l", [found], True)] == [2]
+    assert "1 run:" in _laws("tau_l", [found], True)[0].sentence()
+    assert of_run(turning(2.5, np.cos), "tau_l") is None
+
+
+def test_the_weight_of_a_load_is_no_ripple_of_the_motor():
+    found = of_run(turning(37.0, lambda x: 70 * np.cos(x / 100 + 0.3)), "tau_l")
+    assert found is not None
+    assert np.nanmax(np.abs(found.phasors)) < 1e-6

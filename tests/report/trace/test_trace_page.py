@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.outcome.each_run import of_each_run
+from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
 from rig.model.effect import parameter
 from rig.report.trace import page
@@ -51,6 +53,28 @@ def test_the_page_holds_together(pages: dict[str, Reader], status: str) -> None:
 def test_every_verdict_has_its_own_honest_words(pages: dict[str, Reader], status: str, said: str) -> None:
     assert said in pages[status].words
     assert all(said not in other.words for name, other in pages.items() if name != status)
+
+
+def test_orders_beside_a_load_that_shrinks_them_say_at_which_load_they_hold(pages: dict[str, Reader]) -> None:
+    assert "Amplitudes after are those that stay under a load many times T_c" in pages["explained"].words
+    assert "order 2 is 62.4 arcsec" in pages["explained"].words  # 28.8 over A_inf
+    assert "many times T_c" not in pages["ambiguous"].words
+
+
+def test_the_floors_of_the_page_are_told_apart(pages: dict[str, Reader]) -> None:
+    assert "A held-out run is judged by the floor of its own condition" in pages["explained"].words
+
+
+def test_what_each_run_has_to_itself_is_said_of_vibrations_and_steps_alone() -> None:
+    assert of_each_run(["quadratic_drag"]) == ""
+    said = of_each_run(["missed_counts", "external_vibration"])
+    assert "its own instants of the steps and phase and amplitude of the vibration" in said
+
+
+def test_no_share_in_the_json_is_above_all() -> None:
+    base = made_up.explained()
+    more = replace(base, effects=tuple(replace(e, share=1.4) for e in base.effects))
+    assert [e["share_removed"] for e in document(more)["effects"].values()] == [1.0]
 
 
 def test_a_curve_that_was_not_added_is_not_said_to_be() -> None:

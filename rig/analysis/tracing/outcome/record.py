@@ -38,7 +38,8 @@ def document(trace: Trace) -> dict[str, Any]:
         "candidates": [asdict(candidate) for candidate in trace.candidates],
         "verdict": asdict(trace.verdict),
         "effects": {
-            f.effect: {"parameters": _parameters(f.parameters), "share_removed": f.share} for f in trace.effects
+            f.effect: {"parameters": _parameters(f.parameters), "share_removed": min(f.share, 1.0)}
+            for f in trace.effects
         },
         "before": _errors(trace.before),
         "after": _errors(trace.after),

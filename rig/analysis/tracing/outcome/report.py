@@ -19,8 +19,11 @@ from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.fit.search import Found as Searched
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
+from rig.analysis.tracing.outcome.dismissed import dismissed
+from rig.analysis.tracing.outcome.each_run import of_each_run
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
+from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
@@ -52,7 +55,8 @@ def report(
     shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
     work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
     weighed = tuple(sorted(shares, key=lambda name: -work[name]))
-    baseline = parameters.baseline(empty)
+    fitted_runs = [p.eq.runs[i] for i in p.split.fitted]
+    baseline = honest(parameters.baseline(empty), fitted_runs)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
     ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
     final, curve = after, bool(cast(s))
@@ -64,12 +68,14 @@ def report(
         curve = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
         final = smooth if curve else after
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
-    words = p.own.parameters | dict(fitted)
+    words, first = p.own.parameters | dict(fitted), errors(p.eq, p.court, before)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
         lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ())
         tried = candidates(p, found.ranking, before, ruling.verdict.effects, shadowed)
-        refitted, ripple = parameters.baseline(s), ripples(p.campaign.runs)
+        tried = dismissed(tried, ruling.verdict, first.pooled)
+        refitted, ripple = honest(parameters.baseline(s), fitted_runs), ripples(p.campaign.runs)
         simulated, drawn = shown()
+    own_notes = [said] if (said := of_each_run(name for name in ruling.verdict.effects if name in shares)) else []
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -93,13 +99,13 @@ def report(
         effects=tuple(
             Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
         ),
-        before=with_free(errors(p.eq, p.court, before), simulated, 0),
+        before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
-        notes=(*(r.sentence() for r in ripple), *p.campaign.notes),
+        notes=(*own_notes, *(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
         curve=curve,
-        cannot=(*ruling.cannot, *cannot(p.campaign.runs)),
+        cannot=(*ruling.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
 

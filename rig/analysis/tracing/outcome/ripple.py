@@ -23,6 +23,8 @@ from rig.model.effect import MEASURED, Array
 
 Complex = npt.NDArray[np.complex128]
 HIGHEST: Final = 24  # order
+ROWS: Final = 3.0  # a period of an order, at least: the thinned rows hold no more
+PART: Final = 1 / 6  # of an output turn: less of it looks like a trend
 TOLD: Final = 4  # strongest orders
 TURNS: Final = 3.0  # of the motor in a run: fewer do not tell an order from its neighbours
 LATEST: Final = 5e-3  # s
@@ -35,7 +37,8 @@ FLOOR: Final = 2.0  # N·m that a load must differ by at least
 
 @dataclass(frozen=True)
 class Seen:
-    """One run: mean speed rad/s, mean |torque| N·m, start s, phasors (HIGHEST,) N·m, their standard error."""
+    """One run: mean speed rad/s, mean |torque| N·m, start s, phasors (HIGHEST,) N·m, their standard error; phasors are
+    NaN of orders that have too few rows a period."""
 
     speed: float
     load: float
@@ -70,7 +73,8 @@ class Ripple:
     def sentence(self) -> str:
         """For people."""
         name = {"tau_l": "shaft torque", "tau_m": "motor torque"}[self.channel]
-        said = [f"Ripple of the {name} at order {self.order} of the motor, {self.runs} runs: {self.constant:.3g} N·m"]
+        runs = f"{self.runs} run{'' if self.runs == 1 else 's'}"
+        said = [f"Ripple of the {name} at order {self.order} of the motor, {runs}: {self.constant:.3g} N·m"]
         if self.per_load is not None:
             said.append(f"{1e3 * self.per_load:.3g} mN·m more per N·m of load")
         if self.per_speed_squared is not None:
@@ -105,21 +109,36 @@ def of_run(run: Recording, channel: str) -> Seen | None:
     if channel not in run.has or run.locked or not moving or turns < TURNS or not np.isfinite(torque).all():
         return None
     x = piece.theta_m - piece.theta_m.mean()
-    angles = np.multiply.outer(piece.theta_m, np.arange(1, HIGHEST + 1))
-    z = np.hstack([np.ones((x.size, 1)), (x / np.ptp(x))[:, None], np.cos(angles), np.sin(angles)])
+    shown = min(HIGHEST, int(x.size / turns / ROWS))
+    if shown < 1:
+        return None
+    angles = np.multiply.outer(piece.theta_m, np.arange(1, shown + 1))
+    slow = _slow(piece.theta_m / run.ratio, x / np.ptp(x))
+    z = np.hstack([slow, np.cos(angles), np.sin(angles)])
     c = np.linalg.lstsq(z, torque, rcond=None)[0]
     left = torque - z @ c
     # rows a tenth of a turn apart are taken as independent
     independent = max(10.0 * turns, 1.0)
-    phasors = c[2 : 2 + HIGHEST] - 1j * c[2 + HIGHEST :]
+    phasors = np.full(HIGHEST, np.nan, dtype=np.complex128)
+    phasors[:shown] = c[slow.shape[1] :][:shown] - 1j * c[slow.shape[1] :][shown:]
     error = float(np.std(left) * np.sqrt(2.0 / independent))
     return Seen(float(piece.omega_m.mean()), float(abs(torque.mean())), run.start, phasors, error)
+
+
+def _slow(output: Array, along: Array) -> Array:
+    """What no order of the motor makes (n, c): a constant and a trend, and over a good part of an output turn the once
+    and twice of it that weight makes. `output` rad, `along` the run."""
+    columns = [np.ones(along.size), along]
+    if np.ptp(output) > PART * 2 * np.pi:
+        columns += [wave(k * output) for k in (1, 2) for wave in (np.cos, np.sin)]
+    return np.stack(columns, 1)
 
 
 def _laws(channel: str, seen: Sequence[Seen], timed: bool) -> list[Ripple]:
     phasors = np.array([s.phasors for s in seen])
     weight = 1.0 / np.array([max(s.error, 1e-12) for s in seen])
-    strength = np.sqrt(np.mean(np.abs(phasors) ** 2, axis=0))
+    seen_in = np.isfinite(phasors).sum(0)
+    strength = np.sqrt(np.nansum(np.abs(phasors) ** 2, axis=0) / np.maximum(seen_in, 1))
     clear = strength > CLEAR * float(np.sqrt(np.mean([s.error**2 for s in seen])))
     best = [int(k) for k in np.argsort(-strength) if clear[k]][:TOLD]
     lag = _lag(seen, phasors, weight, best) if timed and best and _various([s.speed for s in seen]) else None
@@ -148,31 +167,40 @@ def _columns(seen: Sequence[Seen], timed: bool) -> tuple[Array, list[str]]:
 
 def _missed(z: Array, phasors: Complex, weight: Array, turned: Complex) -> tuple[float, Complex]:
     """Weighted sum of squares and coefficients of one order when its phase turns as `turned` (runs,)."""
-    design = z * turned[:, None] * weight[:, None]
-    c = np.linalg.lstsq(design, phasors * weight, rcond=None)[0]
-    return float(np.sum(np.abs(phasors * weight - design @ c) ** 2)), np.asarray(c, dtype=np.complex128)
+    there = np.isfinite(phasors)
+    design, y = (z * turned[:, None] * weight[:, None])[there], (phasors * weight)[there]
+    c = np.linalg.lstsq(design, y, rcond=None)[0]
+    return float(np.sum(np.abs(y - design @ c) ** 2)), np.asarray(c, dtype=np.complex128)
 
 
-def _lag(seen: Sequence[Seen], phasors: Complex, weight: Array, orders: Sequence[int]) -> tuple[float, float]:
-    """δ that all strong orders share, and half its interval from the curvature and the scatter that is left."""
+def _lag(seen: Sequence[Seen], phasors: Complex, weight: Array, orders: Sequence[int]) -> tuple[float, float] | None:
+    """δ that all strong orders share, and half its interval from the curvature and the scatter that is left; None where
+    no δ within LATEST is better than those beside it, or the interval is wider than that."""
     z, _ = _columns(seen, True)
     speed = np.array([s.speed for s in seen])
     grid = np.linspace(-LATEST, LATEST, 2001)
     total = np.array(
         [sum(_missed(z, phasors[:, k], weight, np.exp(-1j * (k + 1) * speed * d))[0] for k in orders) for d in grid]
     )
-    at = int(np.clip(np.argmin(total), 1, grid.size - 2))
+    at = int(np.argmin(total))
+    if not 0 < at < grid.size - 1:
+        return None
     bend = (total[at - 1] - 2 * total[at] + total[at + 1]) / (grid[1] - grid[0]) ** 2
+    if bend <= 0:
+        return None
     freedom = max(1, 2 * len(orders) * (len(seen) - z.shape[1]) - 1)
     scatter = max(1.0, total[at] / freedom)
-    shift = 0.5 * (total[at - 1] - total[at + 1]) / max(bend * (grid[1] - grid[0]), 1e-300)
-    return float(grid[at] + shift), float(1.96 * np.sqrt(2 * scatter / max(bend, 1e-300)))
+    shift = 0.5 * (total[at + 1] - total[at - 1]) / (bend * (grid[1] - grid[0]))
+    half = float(1.96 * np.sqrt(2 * scatter / bend))
+    return (float(grid[at] - shift), half) if half < LATEST else None
 
 
 def _law(
     channel: str, k: int, seen: Sequence[Seen], phasors: Complex, weight: Array, lag: tuple[float, float] | None,
     timed: bool,
 ) -> Ripple:  # fmt: skip
+    there = np.isfinite(phasors)
+    seen, phasors, weight = [s for s, ok in zip(seen, there, strict=True) if ok], phasors[there], weight[there]
     z, names = _columns(seen, timed)
     speed = np.array([s.speed for s in seen])
     turned = np.exp(-1j * (k + 1) * speed * (lag[0] if lag else 0.0))

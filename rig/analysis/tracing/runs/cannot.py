@@ -14,6 +14,10 @@ ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then d
 ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
 ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a start or a stop, not a direction
 
+ROWS: Final = 3.0  # a period, at least
+PASSED: Final = 2.1  # standard deviations of the low-pass: there a tenth is left
+ANY: Final = 1000  # order
+
 SENSORS: Final = {
     "t": "No run has a time column: rows have no known distance, so that inertias, damping and every effect of speed, "
     "time or frequency were left out; kinematic error, stiffness and friction were read against angle and torque.",
@@ -76,6 +80,14 @@ def one_speed(runs: Sequence[Recording]) -> bool:
     return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds)
 
 
+def highest_order(runs: Sequence[Recording]) -> int:
+    """Of the motor, that the run which turns most slowly can show: a third of its row rate, and what the low-pass
+    leaves a tenth of; where no run turns freely any order."""
+    free = [run for run in runs if not run.locked and run.procedure != "standstill" and run.turning > 0]
+    turns = [min(run.rate / ROWS, PASSED * run.smoother.sigma_hz) * 2 * np.pi / run.turning for run in free]
+    return int(max(turns, default=ANY))
+
+
 def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     if "t" not in has or not one_speed(runs):
         return []
@@ -99,10 +111,13 @@ def _one_load(runs: Sequence[Recording]) -> list[str]:
 def together(runs: Sequence[Recording]) -> tuple[tuple[str, ...], ...]:
     """Baseline parameters that stand before the same column, or nearly.
 
-    B_m and B_ml, and B_l with B_ml, stand before the same speed in equations 6 and 7 whatever is run.
+    B_m and B_ml, and B_l with B_ml, stand before the same speed in equations 6 and 7 whatever is run; the load's
+    friction counts as the motor's where no torque is measured between them.
     """
     moving = [run for run in runs if run.procedure != "standstill"]
     found: list[tuple[str, ...]] = [("B_m", "B_ml"), ("B_l", "B_ml")]
+    if "tau_l" not in frozenset().union(*(run.has for run in runs)):
+        found += [("B_m", "B_l"), ("tau_c", "tau_cl")]
     if moving and one_way(moving):
         found += [("tau_c", "tau_0"), ("tau_cl", "tau_l0")]
     if moving and one_speed(moving):

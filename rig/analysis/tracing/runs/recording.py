@@ -16,6 +16,7 @@ from scipy.ndimage import minimum_filter1d
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.tame import LARGEST, RATIOS, Tame, number
 from rig.analysis.tracing.runs.holes import without_holes
+from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
@@ -132,7 +133,7 @@ def record(whole_run: Run, start: float) -> Recording:
         rate=1 / dt,
         thinned=factor,
         noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ())),
+        notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         speed_rpm=abs(_stated(run.conditions, "speed_rpm", 0.0)),
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := _stated(run.declared, n, 0.0))},

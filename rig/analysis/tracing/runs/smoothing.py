@@ -7,7 +7,7 @@ the filter itself looks like an effect.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numba import njit
@@ -37,6 +37,17 @@ def kernel(sigma: float, dt: float, derivative: int) -> Array:
         taps = taps - odd * ((taps @ t) / (odd @ t))
     power = (-t) ** derivative / float(np.prod(np.arange(1, derivative + 1)))
     return np.asarray(taps / (taps @ power))
+
+
+def _in_time(sigma_hz: float) -> float:
+    """Standard deviation in s of a kernel that is one of `sigma_hz` in the spectrum."""
+    return float(1.0 / (2 * np.pi * sigma_hz))
+
+
+@lru_cache(maxsize=64)
+def _turned_round(sigma_hz: float, dt: float, derivative: int) -> Array:
+    """As a correlation takes it."""
+    return kernel(_in_time(sigma_hz), dt, derivative)[::-1].copy()
 
 
 @njit(cache=True, nogil=True)
@@ -72,13 +83,13 @@ class Smoother:
     dt: float
     step: int
 
-    @property
+    @cached_property
     def half(self) -> int:
         """Rows of the input lost at each end."""
         return int((self._kernel(0).size - 1) // 2)
 
     def _kernel(self, derivative: int) -> Array:
-        return kernel(float(1.0 / (2 * np.pi * self.sigma_hz)), self.dt, derivative)
+        return kernel(_in_time(self.sigma_hz), self.dt, derivative)
 
     def rows(self, n: int) -> int:
         """Rows that come out of `n` rows."""
@@ -92,7 +103,7 @@ class Smoother:
         """`x` (n,) or (n, k) → derivative 0..3 by time, (rows(n),) or (rows(n), k)."""
         wide = np.ascontiguousarray(x if x.ndim == 2 else x[:, None], dtype=np.float64)
         thin_out = _thinned_narrow if wide.shape[1] < WIDE else _thinned
-        out = thin_out(wide, self._kernel(derivative)[::-1].copy(), self.rows(x.shape[0]), self.step)
+        out = thin_out(wide, _turned_round(self.sigma_hz, self.dt, derivative), self.rows(x.shape[0]), self.step)
         return out if x.ndim == 2 else out[:, 0]
 
     def gain(self, derivative: int) -> float:

@@ -1,0 +1,61 @@
+"""The baseline's parameters as far as these runs tell them: no order beyond their rows, no interval narrower than what
+two parameters that go together leave open, and a word on what is not determined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import ORDERS
+from rig.analysis.tracing.runs.cannot import highest_order, one_speed
+from rig.analysis.tracing.runs.recording import Recording
+from rig.model.effect import Parameter
+
+ORDER: Final = "theta_p_order_"
+POSITIVE: Final = ("K", "J_m", "B_m", "tau_c", "J_l", "B_l", "tau_cl", "B_sp")
+"""What no gear has less than none of."""
+
+
+def honest(found: Sequence[Parameter], runs: Sequence[Recording]) -> tuple[Parameter, ...]:
+    """`found` of a fit to `runs`."""
+    most = highest_order(runs)
+    kept = [p for p in found if not p.name.startswith(ORDER) or int(p.name.removeprefix(ORDER)) <= most]
+    return tuple(_at_one_speed(kept, runs) if one_speed(runs) else kept)
+
+
+def _at_one_speed(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[Parameter]:
+    """τ_c + B_m·ω_m and τ_cl + B_l·ω_l are all that one speed tells: each of two may be none of it, or all."""
+    speed = float(np.mean([run.turning for run in runs if not run.locked]))
+    named = {p.name: p for p in found}
+    for constant, drag, omega in (("tau_c", "B_m", speed), ("tau_cl", "B_l", speed / runs[0].ratio)):
+        if constant in named and drag in named:
+            c, b = named[constant], named[drag]
+            whole = max(c.value + b.value * omega, 0.0)
+            named |= {constant: _wide(c, whole), drag: _wide(b, whole / omega)}
+    return list(named.values())
+
+
+def _wide(p: Parameter, most: float) -> Parameter:
+    return replace(p, ci95=(min(p.ci95[0], 0.0), max(p.ci95[1], most)))
+
+
+def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]:
+    """What `found` of a fit to `runs` leaves open, one sentence each."""
+    out = []
+    most = highest_order(runs)
+    if most < ORDERS and any(p.name.startswith(ORDER) for p in found):
+        out.append(
+            f"No run turns slowly enough for its rows to show orders above {most} of the kinematic error: they were "
+            "fitted, for what they take from the others, and are not given."
+        )
+    open = [p for p in found if p.name in POSITIVE and p.ci95[0] <= 0]
+    if open:
+        words = ", ".join(f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in open)
+        out.append(
+            f"The fitted runs do not determine {words}: by them it may be zero or below, and in every gear it is above."
+        )
+    return out

@@ -1,0 +1,129 @@
+"""Parameters are given as far as the runs tell them, and a suspect that does most is dismissed with a reason."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.outcome.dismissed import dismissed
+from rig.analysis.tracing.outcome.honest import honest, not_told
+from rig.analysis.tracing.outcome.result import Candidate, Errors, Status, Verdict
+from rig.analysis.tracing.runs.cannot import highest_order, together
+from rig.analysis.tracing.runs.meanings import computed_torque
+from rig.model.effect import Parameter, parameter
+
+RPM = np.pi / 30
+
+
+def run(rpm: float, rate: float = 250.0, locked: bool = False) -> Any:
+    piece = SimpleNamespace(theta_m=np.array([0.0, 1.0, 0.0]))
+    return SimpleNamespace(
+        turning=rpm * RPM,
+        locked=locked,
+        procedure="other",
+        rate=rate,
+        ratio=100.0,
+        smoother=SimpleNamespace(sigma_hz=36.0),
+        pieces=(piece,),
+        has=frozenset({"tau_l"}),
+    )
+
+
+BASELINE = (
+    parameter("K", 7000.0, 10.0, "N·m/rad"),
+    parameter("B_m", 4e-3, 1e-4, "N·m·s/rad"),
+    parameter("tau_c", 0.1, 1e-3, "N·m"),
+    parameter("B_l", 1.0, 0.1, "N·m·s/rad"),
+    parameter("tau_cl", 0.2, 0.05, "N·m"),
+    *(parameter(f"theta_p_order_{n}", 10.0, 1.0, "arcsec") for n in range(1, 16)),
+)
+
+
+def named(found: tuple[Parameter, ...]) -> dict[str, Parameter]:
+    return {p.name: p for p in found}
+
+
+def test_at_two_speeds_every_parameter_is_given_as_fitted() -> None:
+    assert honest(BASELINE, [run(9.6), run(300.0)]) == BASELINE
+    assert not_told(BASELINE, [run(9.6), run(300.0)]) == []
+
+
+def test_at_one_speed_constant_friction_and_drag_may_each_be_all_of_it() -> None:
+    found = named(honest(BASELINE, [run(300.0), run(310.0), run(0.0, locked=True)]))
+    omega = 305.0 * RPM
+    assert found["tau_c"].value == 0.1
+    assert found["tau_c"].ci95 == pytest.approx((0.0, 0.1 + 4e-3 * omega))
+    assert found["B_m"].ci95 == pytest.approx((0.0, 0.1 / omega + 4e-3))
+    assert found["tau_cl"].ci95[1] == pytest.approx(0.2 + omega / 100)
+    assert found["B_l"].ci95[1] == pytest.approx(0.2 * 100 / omega + 1.0)
+    assert found["K"] == BASELINE[0]
+
+
+def test_orders_beyond_the_rows_of_the_slowest_run_are_not_given() -> None:
+    fast = [run(682.0, rate=250.0), run(600.0), run(0.1, locked=True)]
+    assert highest_order(fast) == 7
+    found = honest(BASELINE, fast)
+    assert [p.name for p in found if "order" in p.name][-1] == "theta_p_order_7"
+    assert "orders above 7 of the kinematic error" in not_told(BASELINE, fast)[0]
+    assert highest_order([run(600.0, rate=60.0)]) == 2  # rows, not the low-pass
+    assert highest_order([run(0.0, locked=True)]) > 15
+
+
+def test_what_may_be_zero_or_below_is_said_not_to_be_determined() -> None:
+    odd = (*BASELINE[:1], parameter("B_sp", -5933.0, 5278.0, "N·m·s/rad"), parameter("J_l", 0.7, 7.0, "kg·m²"))
+    (said,) = not_told(odd, [run(9.6)])
+    assert "B_sp (-5.93e+03 N·m·s/rad, 95 % -1.12e+04 to -655), J_l (0.7 kg·m², 95 % -6.3 to 7.7)" in said
+    assert "K (" not in said
+
+
+def test_without_a_shaft_torque_the_friction_of_both_sides_is_one() -> None:
+    bare = run(9.6)
+    bare.has = frozenset({"theta_m"})
+    assert ("B_m", "B_l") in together([bare, run_without_torque(300.0)])
+    assert ("B_m", "B_l") not in together([bare, run(300.0)])
+
+
+def run_without_torque(rpm: float) -> Any:
+    found = run(rpm)
+    found.has = frozenset({"theta_m"})
+    return found
+
+
+FLOORS = Errors(70.0, None, 60.0, 20.626, None, 1.5)
+GRAVITY = Candidate(
+    "gravity_unbalance",
+    1.0,
+    "alone it removes 100 % of the excess in the held-out shaft torque",
+    {"theta_l": 4.2e-4, "tau_l": 4.05},
+)
+
+
+def test_a_suspect_that_removes_all_of_one_channel_is_dismissed_with_what_it_leaves() -> None:
+    unknown = Verdict(Status.UNKNOWN, (), (), "load_angle", None, None, "")
+    (found,) = dismissed([GRAVITY], unknown, FLOORS)
+    assert found.why == (
+        f"{GRAVITY.why}, but leaves the kinematic error at 4.2 and the shaft torque at 2.7 times its floor, so that "
+        "it is not named"
+    )
+
+
+def test_one_beside_a_name_or_that_leaves_nothing_keeps_its_reason() -> None:
+    explained = Verdict(Status.EXPLAINED, ("lost_motion",), (), None, None, None, "")
+    unknown = Verdict(Status.UNKNOWN, (), (), "load", None, None, "")
+    quiet = Candidate("a", 1.0, GRAVITY.why, {"tau_l": 1.6})
+    weak = Candidate("b", 1.0, "alone it removes 48 % of it, 60 % would be asked for", {"tau_l": 30.0})
+    assert dismissed([GRAVITY], explained, FLOORS) == (GRAVITY,)
+    assert dismissed([quiet, weak], unknown, FLOORS) == (quiet, weak)
+
+
+def test_a_torque_that_was_computed_is_said_to_be() -> None:
+    def source(meaning: str, *channels: str) -> Any:
+        return SimpleNamespace(channels=channels, meaning=lambda name: meaning)
+
+    (said,) = computed_torque(source("joint torque, computed: feed-forward of the arm; no shaft sensor", "tau_l"))
+    assert "tau_l is no reading of a shaft sensor but “joint torque, computed" in said
+    assert computed_torque(source("torque sensor between gear and load", "tau_l")) == []
+    assert computed_torque(source("computed", "tau_m")) == []

@@ -1,0 +1,49 @@
+"""Runs named on the command line: what a shell adds to them is left out in a sentence, what is missing is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rig.commands.folders import expand
+from rig.core.errors import UsageError
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Path:
+    """Two runs, a folder with a third one, and what a trace leaves."""
+    for name in ("run-1", "run-2", "checks/proof"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "manifest.json").write_text("{}")
+    for name in ("report.html", "trace.json"):
+        (tmp_path / name).write_text("")
+    return tmp_path
+
+
+def test_files_among_the_runs_of_a_campaign_are_left_out_and_named(
+    campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = expand(sorted(campaign.iterdir()))
+    assert [path.name for path in found] == ["proof", "run-1", "run-2"]
+    assert capsys.readouterr().err == "left out, for they are files and no runs: report.html, trace.json\n"
+
+
+def test_a_file_alone_or_files_alone_are_refused(campaign: Path) -> None:
+    with pytest.raises(UsageError, match=r"report\.html is neither a run folder nor holds any"):
+        expand([campaign / "report.html"])
+    with pytest.raises(UsageError, match=r"report\.html, trace\.json: expected run folders, these are files"):
+        expand([campaign / "report.html", campaign / "trace.json"])
+
+
+def test_what_does_not_exist_or_is_empty_is_refused_among_others_too(campaign: Path) -> None:
+    (campaign / "empty").mkdir()
+    with pytest.raises(UsageError, match="run-3 does not exist"):
+        expand([campaign / "run-1", campaign / "run-3"])
+    with pytest.raises(UsageError, match="empty is neither"):
+        expand([campaign / "run-1", campaign / "empty"])
+
+
+def test_runs_alone_say_nothing(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert len(expand([campaign])) == 3
+    assert capsys.readouterr().err == ""
