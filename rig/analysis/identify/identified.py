@@ -98,12 +98,19 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     cannot += stand_in(found, fits, said, sigma)
     if "tau_s" not in found:
         unknown = found["tau_c"].note == NOTHING
-        note = NOTHING if unknown else "no fall of friction with speed was seen: none assumed"
+        note = NOTHING if unknown else _no_fall(fits)
         found["tau_s"] = Parameter(BREAKAWAY * found["tau_c"].value, origin="assumed", note=note)
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
     add_mode(found, fits)
     series = _series(fits, cannot)
     return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series))
+
+
+def _no_fall(fits: Fits) -> str:
+    """Why tau_s is taken as tau_c: slow runs on the line of fast ones, or too few speeds to tell how they leave it."""
+    if fits.motor_friction is not None and fits.motor_friction.doubt:
+        return "slow runs rub otherwise than fast ones, too few speeds to tell how: no fall assumed"
+    return "no fall of friction with speed was seen: none assumed"
 
 
 def _measured(value: float, u: float, solved: Solved, runs: tuple[str, ...], note: str = "") -> Parameter:
