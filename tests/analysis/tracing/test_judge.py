@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.judge import unresolved, unsteadiness
+from rig.analysis.tracing.court.judge import Worth, unresolved, unsteadiness
 from rig.analysis.tracing.fit.equations import Term
 from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
@@ -18,9 +19,9 @@ RNG = np.random.default_rng(2)
 KEYS = [(i, "M") for i in range(6)]
 
 
-def solved(true: dict[Any, Any], noise: float) -> float:
-    """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true`."""
-    f = {k: RNG.standard_normal(4000) for k in KEYS}
+def solved(true: dict[Any, Any], noise: float, shown: dict[Any, float] | None = None) -> float:
+    """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true`; `shown`: its RMS there."""
+    f = {k: (shown or {}).get(k, 1.0) * RNG.standard_normal(4000) for k in KEYS}
     e = {k: (true[k] - 1.0) * f[k] + noise * RNG.standard_normal(4000) for k in KEYS}
     left = {"with": e, "without": {k: e[k] + f[k] for k in KEYS}}
     design: Any = SimpleNamespace(
@@ -41,6 +42,20 @@ def test_the_same_size_everywhere_is_steady_whatever_the_noise() -> None:
 def test_a_compromise_between_runs_is_told_by_its_spread() -> None:
     halves = {k: 1.5 if i % 2 else 0.5 for i, k in enumerate(KEYS)}
     assert solved(halves, 0.3) == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_run_in_which_it_hardly_shows_does_not_say_how_large_it_is() -> None:
+    wrong = dict.fromkeys(KEYS, 1.0) | {KEYS[0]: 25.0}
+    assert solved(wrong, 0.3, {KEYS[0]: 0.02}) < 0.02
+    assert solved(wrong, 0.3, {KEYS[0]: 0.3}) > 1.0
+
+
+def test_a_worth_is_fair_within_a_fifth() -> None:
+    plain = Worth("stribeck_friction", 1.0, 1.2, 0.9, 1.1, (), unsteady=0.1, apart=0.15)
+    assert plain.fairly
+    assert not replace(plain, true=1.3).fairly
+    assert not replace(plain, unsteady=0.25).fairly
+    assert not replace(plain, apart=0.25).fairly
 
 
 def found(frequency: float, *scales: tuple[float, float]) -> list[str]:

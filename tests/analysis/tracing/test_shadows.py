@@ -16,7 +16,7 @@ from rig.model.effects import LIBRARY
 from rig.model.references import REFERENCES
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
-from tests.contract.test_effects import motion
+from tests.contract.test_effects import REACH, motion
 
 
 def test_a_shadow_bears_no_name_of_the_library_and_casts_on_one_that_does() -> None:
@@ -45,6 +45,11 @@ def test_creep_closes_its_loop_when_it_is_gone_round_slowly() -> None:
         return float(abs(column[n // 2]))  # back at zero torque
 
     assert gap(400.0) < 0.05 * gap(4.0)
+
+
+def test_a_campaign_shorter_than_its_lags_shows_no_creep() -> None:
+    assert Creep().shapes(REACH) == ((),)
+    assert Creep().shapes(replace(REACH, duration=8.0)) == ()
 
 
 def test_droop_gives_as_it_takes_where_friction_would_take_both_ways() -> None:
