@@ -76,9 +76,12 @@ def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
     from rig.report.numbers import counted
     from rig.report.trace.sizes import said
+    from rig.report.trace.words import remainder
 
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
     print(f"  {found.verdict.sentence}")
+    if rest := remainder(found):
+        print(f"  {rest}")
     for effect in found.effects:
         for p in effect.parameters:
             print(f"  {effect.effect} {p.name} {said(p)}")

@@ -38,7 +38,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     for sensor, panel in zip(shown, panels, strict=True):
         pair = _pair(curves, sensor)
         values = np.concatenate(pair)
-        log_axis(panel, min(0.7, 0.8 * float(np.nanmin(values))), max(2.2, 1.5 * float(np.nanmax(values))))
+        log_axis(panel, min(0.5, 0.8 * float(np.nanmin(values))), max(3.0, 1.5 * float(np.nanmax(values))))
         panel.axhline(1.0, **FLOOR)
         panel.axhline(EXPLAINED, color=LIGHT["grid"], lw=1.4)
         for x, style, filled in zip(pair, (BEFORE, AFTER), (False, True), strict=True):

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rig.analysis.result import Array
-from rig.analysis.tracing.outcome.each_run import OWN
+from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
 from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.analysis.tracing.workers import each
 from rig.report import page as run_page
@@ -44,13 +44,14 @@ def render(trace: Trace, source: Provenance) -> str:
     heads, each = tables.each_run(trace)
     physical, orders = tables.moved(trace)
     plots = _plots((*WHERE, *BEFORE_AFTER), curves, origin.mark)
+    meant = beside_the_numbers(e.effect for e in trace.effects)  # said where the numbers stand
     view: dict[str, Any] = {
         "trace": trace,
         "origin": origin,
         "heading": words.heading(trace),
         "facts": source.facts(trace),
         "sentence": words.plainly(trace.verdict.sentence),
-        "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes) if s != words.of_each_run(trace)],
+        "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes) if s not in meant],
         "remainder": words.remainder(trace),
         "ruling": words.RULINGS[trace.verdict.status],
         "meaning": words.meant(trace),

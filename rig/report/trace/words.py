@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.outcome.each_run import LOADED
 from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
 from rig.analysis.tracing.outcome.result import Found, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
@@ -54,7 +55,6 @@ PARAMETERS = {  # of the baseline: symbol, what it is
 }
 
 ORDER = "theta_p_order_"
-LOADED = "load_dependent_kinematic_error"
 
 PLACES = {
     "motor_angle": "the motor angle",

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.outcome.each_run import of_each_run
+from rig.analysis.tracing.outcome.each_run import AT_LOAD, beside_the_numbers, of_each_run
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
 from rig.model.effect import parameter
@@ -69,6 +69,15 @@ def test_what_each_run_has_to_itself_is_said_of_vibrations_and_steps_alone() -> 
     assert of_each_run(["quadratic_drag"]) == ""
     said = of_each_run(["missed_counts", "external_vibration"])
     assert "its own instants of the steps and phase and amplitude of the vibration" in said
+    assert beside_the_numbers(["missed_counts"]) == [of_each_run(["missed_counts"])]
+    assert beside_the_numbers(["load_dependent_kinematic_error"]) == [AT_LOAD]
+    assert beside_the_numbers(["quadratic_drag"]) == []
+
+
+def test_what_stands_beside_its_numbers_is_not_said_again_below() -> None:
+    words = read(bare(replace(made_up.explained(), notes=(AT_LOAD,)))).words
+    assert AT_LOAD not in words
+    assert "Amplitudes after are those that stay under a load many times T_c" in words
 
 
 def test_no_share_in_the_json_is_above_all() -> None:
@@ -99,7 +108,7 @@ def test_the_error_before_and_after_stands_beside_its_floor(pages: dict[str, Rea
     words = pages["explained"].words
     assert "8.20 → 0.910 arcsec" in words
     assert "9.10 → 1.01 × the floor" in words
-    assert "floor 0.900 arcsec" in words
+    assert "floor of their conditions 0.900 arcsec" in words
     assert "2.80 → 2.00 mN·m" in words  # 0.0028 and 0.002 N·m
 
 

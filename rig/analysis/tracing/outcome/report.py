@@ -20,7 +20,7 @@ from rig.analysis.tracing.fit.search import Found as Searched
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.dismissed import dismissed
-from rig.analysis.tracing.outcome.each_run import of_each_run
+from rig.analysis.tracing.outcome.each_run import beside_the_numbers
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
@@ -75,7 +75,7 @@ def report(
         tried = dismissed(tried, ruling.verdict, first.pooled)
         refitted, ripple = honest(parameters.baseline(s), fitted_runs), ripples(p.campaign.runs)
         simulated, drawn = shown()
-    own_notes = [said] if (said := of_each_run(name for name in ruling.verdict.effects if name in shares)) else []
+    meant = beside_the_numbers(name for name in ruling.verdict.effects if name in shares)
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -102,7 +102,7 @@ def report(
         before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
-        notes=(*own_notes, *(r.sentence() for r in ripple), *p.campaign.notes),
+        notes=(*meant, *(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
         curve=curve,
         cannot=(*ruling.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
