@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     if args.campaign.is_dir():  # a minute of thought is not lost to a wrong name
         refuse_unmatched([path.parent.name for path in args.campaign.glob("*/manifest.json")], args.hold_out)
         refuse_unwritable(target)
-    if args.json:
+    if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
     found = trace(args.campaign, args.hold_out)
     tell(found)

@@ -41,6 +41,19 @@ def test_what_cannot_be_done_with_the_answer_is_said_before_the_question(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["c", "file"]
 
 
+def test_the_json_may_lie_in_a_folder_that_is_made_for_the_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def asked(*_: object) -> None:
+        raise UsageError("traced")
+
+    monkeypatch.setattr("rig.analysis.tracing.trace.trace", asked)
+    folder, out = campaign(tmp_path / "c", lambda c: c), tmp_path / "new"
+    main(["trace", str(folder), "--out", str(out), "--json", str(out / "t.json")])
+    assert "cannot write" not in (said := capsys.readouterr().err)
+    assert "traced" in said
+
+
 def test_case_counts_in_a_pattern() -> None:
     refuse_unmatched(["run-0"], ["run-?"])
     refuse_unmatched([], ["anything"])
