@@ -30,7 +30,7 @@ from rig.analysis.tracing.fit.search import Found, polished, reduced, search, se
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
-from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
+from rig.analysis.tracing.thresholds import MISSING, MOSTLY, NAMED, PLAIN_TO_SEE, QUIET
 from rig.model.effect import Array, Parameter, Reach
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
     if not set(others.names) - stay:
         return case
     other = heard(case.p, others, runs, covered)
-    return other if _settles(other, stay) else case
+    return other if _settles(other, stay) or _stands_alone(other, stay) else case
 
 
 def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
@@ -118,7 +118,8 @@ def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) 
     for scored in [r for r in found.ranking[:ALONE_TRIED] if r.term.name not in stay]:
         s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
         other = heard(case.p, replace(found, solution=s), runs, covered)
-        if stay < {term.name for term in other.solution.design.terms} and _settles(other, stay):
+        more = stay < {term.name for term in other.solution.design.terms}
+        if more and (_settles(other, stay) or _stands_alone(other, stay)):
             return other
     return case
 
@@ -126,9 +127,20 @@ def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) 
 def _settles(other: Heard, stay: Collection[str]) -> bool:
     """Whether a second choice explains everything, and the numbers that scale its laws (a frequency, a torque) are
     known to a third of themselves: more is asked of it than that they are not zero."""
+    return not other.loud and _known(other, stay)
+
+
+def _known(other: Heard, stay: Collection[str]) -> bool:
     new = {term.name for term in other.solution.design.terms if term.name not in stay}
     known = [p for name in new for p in scales(other.solution, name, other.words)]
-    return not other.loud and all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
+    return all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
+
+
+def _stands_alone(other: Heard, stay: Collection[str]) -> bool:
+    """Whether a second choice, where nothing had a name, explains nearly all of what it acts on with one size in all
+    runs: it is named though something is left beside it."""
+    plain = all(w.share > MOSTLY and w.fairly and w.left < MISSING for w in other.worths)
+    return not stay and bool(other.worths) and plain and not cast(other.solution) and _known(other, stay)
 
 
 def beyond_doubt(case: Heard) -> bool:

@@ -157,7 +157,8 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
     true = float((before - after) / own)
     held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
     unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
-    acts = [[k for k in size if k[1] == c] for c in CHANNELS]
+    # at reversals stands what no effect that acts while the motor turns can be held to
+    acts = [[k for k in size if k[1] == c] for c in CHANNELS if c != "R" or {"R"} == {k[1] for k in size}]
     return Worth(
         name,
         float(share),

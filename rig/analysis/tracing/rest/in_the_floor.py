@@ -32,6 +32,9 @@ MOST: Final = 20_000  # of them: eight hours; each costs a fit
 HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
 FEWEST: Final = 4  # runs
 
+SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (lambda r: _scaled(r.at["speed"]), lambda r: _scaled(r.at["load"]))
+"""What a wave may multiply besides: drag by the speed, a spring by the torque."""
+
 
 def in_the_floor(
     eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float]
@@ -72,7 +75,7 @@ def _in_channel(
 
 
 def _readings(train: Rest, channel: str) -> list[Home]:
-    waved = [_waves(train, sense) for sense in SENSES]
+    waved = [_waves(train, sense) for sense in (*SENSES, *SWINGS)]
     homes = [Home("time_periodic", channel, 0.0, frequency_hz=w[1], read=w[0]) for w in waved if w is not None]
     if np.isfinite(train.at["load_angle"]).all():
         homes.append(Home("load_angle", channel, 0.0, read=in_columns(lambda r: powers(r.at["load_angle"]))))
@@ -114,6 +117,12 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
         return np.asarray(made * sense(rest)[:, None])
 
     return in_columns(columns), best
+
+
+def _scaled(x: Array) -> Array:
+    """Over its largest, 0 where it is unknown."""
+    known = np.nan_to_num(x)
+    return np.asarray(known / max(float(np.max(np.abs(known), initial=0.0)), 1e-9))
 
 
 def _by_seconds(r: Rest, way: Array) -> tuple[Array, Array, Array, Array]:
