@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +19,13 @@ RATIO = 50
 STIFFNESS = 7200.0  # N·m/rad, of the open campaigns
 
 
-def spiked(to: Path, campaign: Path, law: Callable[[Columns, float], Columns]) -> Trace:
-    """A campaign traced with columns changed by `law`, which gets a run's columns and when it began [s]."""
+def spiked(
+    to: Path, campaign: Path, law: Callable[[Columns, float], Columns], only: Collection[str] | None = None
+) -> Trace:
+    """A campaign, or some runs of it, traced with columns changed by `law`, which gets a run's columns and when it
+    began [s]."""
     started: dict[str, float] = {}
-    for run in sorted(p for p in campaign.iterdir() if p.is_dir()):
+    for run in sorted(p for p in campaign.iterdir() if p.is_dir() and (only is None or p.name in only)):
         manifest = json.loads((run / "manifest.json").read_text())
         began = np.datetime64(manifest["started_utc"][:19]).astype(float)
         table = pq.read_table(run / "samples.parquet")

@@ -17,6 +17,9 @@ from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 PERIOD = 230.0  # s, between the shortest run and the campaign
 EVERY = 84.0  # s
 SEAL = 2.6  # s
+PUMP = 48.0  # s
+CAGE = 0.4512  # orders of the motor
+NO_REPEATS = ("slow_ke_1", "speed_120rpm_1", "speed_200rpm_1", "speed_300rpm_1", "lock_60_1")
 
 
 def breathing(c: Columns, began: float) -> Columns:
@@ -27,6 +30,15 @@ def breathing(c: Columns, began: float) -> Columns:
 def rubbing(c: Columns, began: float) -> Columns:
     on = np.mod(began + c["t"], EVERY) < EVERY / 3
     return under(c, 0.3 * on * np.sign(np.gradient(c["theta_m"])))
+
+
+def swelling(c: Columns, began: float) -> Columns:
+    wave = 4e-5 * np.cos(2 * c["theta_m"]) * np.sin(2 * np.pi * (began + c["t"]) / PUMP)  # rad
+    return {"theta_l": c["theta_l"] - wave}
+
+
+def untrue(c: Columns, began: float) -> Columns:
+    return {"theta_l": c["theta_l"] - 3e-5 * np.cos(CAGE * c["theta_m"] + 0.3)}
 
 
 def dragging(c: Columns, began: float) -> Columns:
@@ -43,7 +55,7 @@ def loaded(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("law", "period"), [(breathing, PERIOD), (rubbing, EVERY)])
+@pytest.mark.parametrize(("law", "period"), [(breathing, PERIOD), (rubbing, EVERY), (swelling, PUMP)])
 def test_what_follows_the_clock_makes_the_floor_and_is_told(
     tmp_path: Path, shared: Path, law: Callable[[Columns, float], Columns], period: float
 ) -> None:
@@ -59,6 +71,13 @@ def test_a_seal_that_rubs_within_every_run_is_told(tmp_path: Path, shared: Path)
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
     assert verdict.frequency_hz is not None
     assert 1 / verdict.frequency_hz == pytest.approx(SEAL, rel=0.01)
+
+
+@pytest.mark.slow
+def test_an_order_that_is_none_of_the_gears_is_told_where_nothing_was_repeated(tmp_path: Path, shared: Path) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", untrue, NO_REPEATS).verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "motor_angle")
+    assert verdict.order == pytest.approx(CAGE, abs=2e-3)
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
+from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.ticking import ticking
@@ -92,18 +93,25 @@ def decide(
 def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
     """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
     left = {key: s.residual(key) for key in s.keys}
-    home = in_the_floor(p.eq, left, after, {**floors, **p.court.floors})
+    floors = {**floors, **p.court.floors}
+    home = in_the_floor(p.eq, left, after, floors)
     of_what = "what unseen runs have beyond what neighbouring turns differ by"
     if home is None:
-        home, of_what = ticking(p.eq, left, after), "what unseen runs leave there"
+        home = ticking(p.eq, left, after) or hidden_order(p.eq, left, after, floors)
+        of_what = "what unseen runs leave there"
     if home is None:
         return None
-    what = f"something that comes and goes {_how_often(home)}" if home.frequency_hz else "the angle the output has gone"
+    what = "the angle the output has gone"
+    if home.frequency_hz:
+        what = f"something that comes and goes {_how_often(home)}"
+    elif home.order:
+        what = f"something that comes back {home.order:.3f} times a turn of the motor"
+    differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
     sentence = (
-        f"Repeats differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
+        f"{differing} differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
         "it is in the floor, and no effect of the library explains it."
     )
-    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
+    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
     return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
 
 

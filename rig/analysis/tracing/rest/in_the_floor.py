@@ -31,9 +31,15 @@ FINE: Final = 8  # frequencies tried for every whole wave more in the campaign
 MOST: Final = 20_000  # of them: eight hours; each costs a fit
 HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
 FEWEST: Final = 4  # runs
+LARGEST: Final = 2.0  # order of a two-lobed wave generator, the largest of its kinematic error
+ALIKE: Final = 1.5  # highest over lowest speed of runs that are told by each other
 
-SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (lambda r: _scaled(r.at["speed"]), lambda r: _scaled(r.at["load"]))
-"""What a wave may multiply besides: drag by the speed, a spring by the torque."""
+SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (
+    lambda r: _scaled(r.at["speed"]),
+    lambda r: _scaled(r.at["load"]),
+    lambda r: waves(r.at["motor_angle"], LARGEST),
+)
+"""What a wave may multiply besides, (n,) or (n, k): drag by the speed, a spring by the torque, the kinematic error."""
 
 
 def in_the_floor(
@@ -60,12 +66,12 @@ def _in_channel(
     train = rest(eq, fitted, still, channel) if still else None
     if train is None or np.unique(train.run).size < FEWEST or not keys:
         return None
-    before, n = _square(unseen, still, keys)
+    before, n = square(unseen, still, keys)
     if before < n * WANDERS**2:
         return None
 
     def foretold(home: Home) -> float:
-        after, _ = _square(smooth_term(eq, fitted, unseen, still, home), still, keys)
+        after, _ = square(smooth_term(eq, fitted, unseen, still, home), still, keys)
         return (before - max(after, n)) / (before - n)
 
     bare = foretold(Home("time", channel, 0.0, read=in_columns(lambda r: np.zeros((r.e.size, 0)))))
@@ -86,17 +92,23 @@ def _within_runs(
     eq: Equations, fitted: Mapping[Key, Array], floors: Mapping[Key, float], channel: str
 ) -> dict[Key, float]:
     """Floors with what differs from turn to turn within runs in the place of what differs from repeat to repeat."""
-    seen = [s.rms / floors[key] for key in fitted if key[1] == channel and (s := neighbours(eq, fitted, key))]
+    mine = [key for key in fitted if key[1] == channel]
+    seen = {key: s.rms / floors[key] for key in mine if (s := neighbours(eq, fitted, key))}
     if not seen:
         return {}
-    by = min(1.0, float(np.median(seen)))
-    return {key: floor * by for key, floor in floors.items() if key[1] == channel}
+
+    def by(run: int) -> float:
+        speed = eq.runs[run].turning
+        like = [r for (i, _), r in seen.items() if speed / ALIKE < eq.runs[i].turning < speed * ALIKE]
+        return min(1.0, float(np.median(like or [*seen.values()])))
+
+    return {key: floor * by(key[0]) for key, floor in floors.items() if key[1] == channel}
 
 
 def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | None:
     """The reading of the wave that explains most against the `sense` of the motion, and its frequency, Hz; None where
     the campaign is too short for two of them, or lasts for days."""
-    t, run, e, way = _by_seconds(r, sense(r))
+    t, run, e, way = _by_seconds(r, _wide(sense(r)))
     slow = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
     runs = (run[:, None] == np.unique(run)) * slow[:, None]
 
@@ -108,15 +120,25 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
         return None
     tried = np.arange(TWICE * FINE * step, SLOWEST, step)
     y = without_zeros(e)
-    tall = [_explained(without_zeros(waves(TURN * t, f) * way[:, None]), y) for f in tried]
+    tall = [_explained(without_zeros(_times(waves(TURN * t, f), way)), y) for f in tried]
     best = float(tried[int(np.argmax(tall))])
 
     def columns(rest: Rest) -> Array:
         time = TURN * rest.at["time"]
         made = np.hstack([waves(time, k * best) for k in range(1, HARMONICS + 1)])
-        return np.asarray(made * sense(rest)[:, None])
+        return _times(made, _wide(sense(rest)))
 
     return in_columns(columns), best
+
+
+def _wide(x: Array) -> Array:
+    """(n, k) of (n,) or (n, k)."""
+    return x.reshape(x.shape[0], -1)
+
+
+def _times(a: Array, b: Array) -> Array:
+    """All products of the columns of two, (n, k·m)."""
+    return np.asarray((a[:, :, None] * b[:, None, :]).reshape(a.shape[0], -1))
 
 
 def _scaled(x: Array) -> Array:
@@ -126,12 +148,12 @@ def _scaled(x: Array) -> Array:
 
 
 def _by_seconds(r: Rest, way: Array) -> tuple[Array, Array, Array, Array]:
-    """Time, run, rest and sense of the motion, means over seconds of a run; (n,) each."""
+    """Time, run, rest and `way` (n, k), means over seconds of a run."""
     second = np.floor(r.at["time"]).astype(int)
     _, first, place = np.unique(second * (1 + r.run.max()) + r.run, return_index=True, return_inverse=True)
     count = np.bincount(place)
-    t, e, w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, way))
-    return t, r.run[first], e, w
+    t, e, *w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, *way.T))
+    return t, r.run[first], e, np.stack(w, 1)
 
 
 def _explained(z: Array, y: Array) -> float:
@@ -139,5 +161,5 @@ def _explained(z: Array, y: Array) -> float:
     return float((z.T @ y) @ solved(z.T @ z, z.T @ y))
 
 
-def _square(e: Mapping[Key, Array], floors: Mapping[Key, float], keys: Sequence[Key]) -> tuple[float, int]:
+def square(e: Mapping[Key, Array], floors: Mapping[Key, float], keys: Sequence[Key]) -> tuple[float, int]:
     return float(sum(e[k] @ e[k] / floors[k] ** 2 for k in keys)), sum(e[k].size for k in keys)

@@ -16,8 +16,11 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = {"motor_angle": (0.001, 0.02), "load_angle": (0.02, 1.0)}  # orders apart: half a cycle over all the turns
-SPAN = {"motor_angle": (0.5, 130.0), "load_angle": (0.9, 400.0)}  # orders; what takes longer than a turn of the output
-# is an angle gone
+SPAN = {
+    "motor_angle": (0.3, 130.0),
+    "load_angle": (0.9, 400.0),
+}  # orders; a bearing's cage turns at 0.35 and more of its
+# shaft, and what takes longer than a turn of the output is an angle gone
 AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs

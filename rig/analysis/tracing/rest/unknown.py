@@ -19,6 +19,7 @@ from rig.analysis.tracing.rest.sudden import since
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
+WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 WITH_TIME = ("time", "temperature")
 SMOOTH: Sequence[tuple[str, Callable[[Rest], Array]]] = (
@@ -39,6 +40,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
     some = [best_order(h, name, channel, sense) for name in ("motor_angle", "load_angle") for sense in SENSES]
+    some = [_of_the_output(found, r) for found in some if found is not None]
     out += [found for found in (*some, _wound(h, channel)) if found is not None]
     out += _frequencies(h, seen, channel)
     out += _at_once(h, channel, alone)
@@ -55,6 +57,21 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     """`seen`: a line in runs of differing speed."""
     found = [home for home in (seen, by_the_day(h, channel)) if home is not None]
     return found + [by_the_clock(h, channel, sense) for sense in SENSES]
+
+
+def _of_the_output(found: Home, r: Rest) -> Home:
+    """An order of the motor that is none of its own, but a whole one of the output's turn, and no lobe of the wave
+    generator seen from the flexspline: the teeth of something on the output."""
+    load, motor = r.at["load_angle"], r.at["motor_angle"]
+    known = np.isfinite(load) & np.isfinite(motor)
+    if found.coordinate != "motor_angle" or not found.order or not known.any() or np.ptp(load[known]) == 0:
+        return found
+    ratio = float(np.polyfit(load[known], motor[known], 1)[0])
+    own, whole, lobes = found.order, found.order * ratio, found.order * ratio / (ratio + 1)
+    off = [abs(x - round(x)) for x in (own, whole, lobes)]
+    if off[1] < WHOLE_ORDER and off[0] > WHOLE_ORDER / 2 and off[2] > WHOLE_ORDER / 2:
+        return replace(found, coordinate="load_angle", order=float(round(whole)))
+    return found
 
 
 def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
