@@ -1,0 +1,54 @@
+"""An order of the motor that is in the floor: where nothing was repeated, the floor is what one turn differs from the
+next by, and what comes back with no whole order does. What the fitted runs show of it foretells the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.rest.binned import Halves, folds
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.in_the_floor import square
+from rig.analysis.tracing.rest.joined import rest
+from rig.analysis.tracing.rest.lines import SENSES, best_order
+from rig.analysis.tracing.rest.readings import in_columns
+from rig.analysis.tracing.rest.unknown import MOST, smooth_term
+from rig.analysis.tracing.thresholds import LOUD_LINE
+from rig.model.effect import Array
+
+NOTHING: Final = in_columns(lambda r: np.zeros((r.e.size, 0)))
+
+
+def hidden_order(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Home | None:
+    """The order of the motor that takes most of the unseen residuals, with its share of them; None where repeats tell
+    the floor, or none takes enough."""
+    if repeats(eq.runs, sorted({i for i, _ in fitted})):
+        return None
+    found = [home for channel in WHOLE for home in _in_channel(eq, fitted, unseen, floors, channel)]
+    best = max(found, key=lambda home: home.share, default=None)
+    return best if best is not None and best.share > LOUD_LINE else None
+
+
+def _in_channel(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float], channel: str
+) -> list[Home]:
+    train, keys = rest(eq, fitted, floors, channel), [key for key in unseen if key[1] == channel]
+    if train is None or not keys:
+        return []
+    r = train.thinned(MOST)
+    h = Halves(r, folds(r))
+    tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
+
+    def left(home: Home) -> float:
+        return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
+
+    bare = left(Home("motor_angle", channel, 0.0, read=NOTHING))
+    return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in tried if home is not None]
