@@ -73,6 +73,7 @@ def test_an_encoder_with_play_stays_behind_by_the_same_under_any_torque_and_rest
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_creep_is_not_called_hysteresis(tmp_path: Path) -> None:
     write_case(Request("outside", 11, "complete", "gear_creep", over_floor=4.0), tmp_path, "case")
     verdict = trace(tmp_path / "case").verdict

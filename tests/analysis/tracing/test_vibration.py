@@ -19,6 +19,7 @@ def swelling(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_vibration_that_swells_is_named_with_its_lines(tmp_path: Path, shared: Path) -> None:
     found = spiked(tmp_path, shared / "cases" / "open-1", swelling)
     assert found.verdict.status == Status.EXPLAINED

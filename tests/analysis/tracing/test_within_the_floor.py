@@ -55,7 +55,14 @@ def loaded(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("law", "period"), [(breathing, PERIOD), (rubbing, EVERY), (swelling, PUMP)])
+@pytest.mark.parametrize(
+    ("law", "period"),
+    [
+        pytest.param(breathing, PERIOD, marks=pytest.mark.long),
+        (rubbing, EVERY),
+        pytest.param(swelling, PUMP, marks=pytest.mark.long),
+    ],
+)
 def test_what_follows_the_clock_makes_the_floor_and_is_told(
     tmp_path: Path, shared: Path, law: Callable[[Columns, float], Columns], period: float
 ) -> None:
@@ -81,6 +88,7 @@ def test_an_order_that_is_none_of_the_gears_is_told_where_nothing_was_repeated(t
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_cable_that_pulls_along_the_way_gone_is_told(tmp_path: Path, shared: Path) -> None:
     verdict = spiked(tmp_path, shared / "cases" / "open-1", pulled).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "load_angle")
