@@ -80,7 +80,7 @@ def _in_channel(
 ) -> Interference | None:
     keys = [k for k in e if k[1] == channel and not eq.runs[k[0]].locked]
     with ThreadPoolExecutor(WORKERS) as pool:
-        tracked = pool.map(lambda k: _track(*_even(eq, k, e[k])), keys)
+        tracked = pool.map(lambda k: _track(*even_grid(eq, k, e[k])), keys)
         tracks = {k: t for k, t in zip(keys, tracked, strict=True) if t is not None}
     hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS and t.leaps < LEAP}
     if len(hits) < 3 or len(hits) < LINE_RUNS * len(tracks):
@@ -99,7 +99,7 @@ def _in_channel(
     return Interference(channel, usual, apart, share, {k: x[:, None] for k, x in lines.items()})
 
 
-def _even(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
+def even_grid(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
     """The residual on an even grid (zero where a row is left out), its step [s], and the place of each row."""
     t = clock(eq, key)
     dt = float(np.median(np.diff(t)))
@@ -154,7 +154,7 @@ def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:
 def _line(eq: Equations, key: Key, e: Array, about: float) -> Array:
     """The line in one run (n,): in every window the sinusoid that fits best near `about` Hz, windows faded into one
     another."""
-    even, dt, place = _even(eq, key, e)
+    even, dt, place = even_grid(eq, key, e)
     n = min(int(WINDOW / dt), even.size)
     step = max(n // 2, 1)
     start = np.unique(np.append(np.arange(0, even.size - n + 1, step), even.size - n))

@@ -98,7 +98,7 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
             return None
         hit = speed[hits[:, at]]
         if hit.max() > LINE_SPEEDS * hit.min():
-            return _sharpened(eq, e, keys, float(grid[at]))
+            return sharpened(eq, e, keys, float(grid[at]))
     return None
 
 
@@ -121,7 +121,7 @@ def _heights(t: Array, e: Array, grid: Array) -> Array:
     return np.asarray(np.interp(grid, hz, best / np.maximum(usual, 1e-300)))
 
 
-def _sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:
+def sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:
     """The frequency that takes most from all runs together, each with its own phase."""
     best = about
     # 0.002 Hz first, then a tenth of a turn in the longest run

@@ -5,9 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
-
-import numpy as np
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
@@ -17,12 +14,10 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import square
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order
-from rig.analysis.tracing.rest.readings import in_columns
+from rig.analysis.tracing.rest.readings import in_columns, nothing
 from rig.analysis.tracing.rest.unknown import MOST, smooth_term
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
-
-NOTHING: Final = in_columns(lambda r: np.zeros((r.e.size, 0)))
 
 
 def hidden_order(
@@ -50,5 +45,5 @@ def _in_channel(
     def left(home: Home) -> float:
         return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
 
-    bare = left(Home("motor_angle", channel, 0.0, read=NOTHING))
+    bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
     return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in tried if home is not None]

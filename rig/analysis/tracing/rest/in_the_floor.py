@@ -20,7 +20,7 @@ from rig.analysis.tracing.rest.binned import solved
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
-from rig.analysis.tracing.rest.readings import Reading, in_columns, powers, waves
+from rig.analysis.tracing.rest.readings import Reading, in_columns, nothing, powers, waves
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.thresholds import FORETOLD, WANDERS
 from rig.model.effect import Array
@@ -74,7 +74,7 @@ def _in_channel(
         after, _ = square(smooth_term(eq, fitted, unseen, still, home), still, keys)
         return (before - max(after, n)) / (before - n)
 
-    bare = foretold(Home("time", channel, 0.0, read=in_columns(lambda r: np.zeros((r.e.size, 0)))))
+    bare = foretold(Home("time", channel, 0.0, read=in_columns(nothing)))
     homes = [replace(home, share=foretold(home) - bare) for home in _readings(train, channel)]
     best = max(homes, key=lambda home: home.share, default=None)
     return best if best is not None and best.share > FORETOLD else None

@@ -52,6 +52,11 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
     return read
 
 
+def nothing(r: Rest) -> Array:
+    """No column, (n, 0): zeros of the runs and the baseline alone."""
+    return np.zeros((r.e.size, 0))
+
+
 def means(r: Rest, rows: Rows, of: Array | None = None) -> Array:
     """Mean over those `rows` of each run, of the rest (n,) or of columns (n, k), at every row; 0 without any."""
     values = (r.e if of is None else of).reshape(r.e.size, -1)

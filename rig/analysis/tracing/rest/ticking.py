@@ -13,8 +13,9 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, orthonormal
-from rig.analysis.tracing.floor.interference import around
+from rig.analysis.tracing.floor.interference import around, even_grid
 from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.floor.vibration import sharpened
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.readings import waves
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
@@ -29,7 +30,7 @@ PADDED: Final = 4  # finer than a run's own resolution
 CLOCKED: Final = 4.0  # times the power by the angle with one phase for all: what follows the angle has less than once
 SEEN: Final = 4.0  # power over its surroundings, mean of runs at other speeds: chance gives half of that
 HARMONICS: Final = 3  # of its frequency: what rubs for half of the time has as many
-FINER: Final = 40  # frequencies tried within a step of the grid on both sides
+FINER: Final = 40  # orders tried on each side, a quarter of what a run resolves apart
 
 Sense = Callable[[Array], Array]
 """From motor angle (n,) to the sign with which the rest is taken, (n,)."""
@@ -70,16 +71,14 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
     usual = np.nanmedian(np.where(able, heights, np.nan), axis=0)
     score = np.where(often & (count >= FEWEST), usual, 0.0)
     top = int(np.argmax(score))
-    return _sharpened(eq, e, float(grid[top])) if score[top] > 0 else None
+    return sharpened(eq, e, [*e], float(grid[top])) if score[top] > 0 else None
 
 
 def _spectrum(eq: Equations, key: Key, e: Array) -> tuple[float, float, Array, Array]:
     """Lowest and highest frequency that a run can tell, its frequencies, and its power there over what is usual around
     each, the largest within half of what it resolves."""
-    t = clock(eq, key)
-    dt, length = float(np.median(np.diff(t))), float(t[-1] - t[0])
-    even = np.zeros(round(length / dt) + 1)
-    even[np.minimum(np.round((t - t[0]) / dt).astype(int), even.size - 1)] = e - e.mean()
+    even, dt, _ = even_grid(eq, key, e - e.mean())
+    length = (even.size - 1) * dt
     power = np.abs(np.fft.rfft(even * np.hanning(even.size), PADDED * even.size)) ** 2
     hz = np.asarray(np.fft.rfftfreq(PADDED * even.size, dt))
     low, high = TIMES / length, FASTEST * 0.5 / dt
@@ -87,16 +86,6 @@ def _spectrum(eq: Equations, key: Key, e: Array) -> tuple[float, float, Array, A
     over = power[band] / np.maximum(around(power[None, :], hz, hz[band], 2 / length)[0], 1e-300)
     near = [np.roll(over, by) for by in range(-PADDED // 2, PADDED // 2 + 1)]
     return low, high, hz[band], np.max(near, axis=0)
-
-
-def _sharpened(eq: Equations, e: Mapping[Key, Array], about: float) -> float:
-    """The frequency that takes most from all runs together, each with its own phase."""
-    fine = about + GRID * np.linspace(-1, 1, 2 * FINER + 1)
-    total = np.zeros(fine.size)
-    for key, x in e.items():
-        t = clock(eq, key)
-        total += np.abs(np.exp(-1j * TURN * np.multiply.outer(fine, t - t.mean())) @ x) ** 2 / x.size
-    return float(fine[int(np.argmax(total))])
 
 
 def _of_the_clock(eq: Equations, e: Mapping[Key, Array], hz: float) -> bool:
