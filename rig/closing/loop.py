@@ -7,13 +7,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from rig.analysis.tracing.court.next_run import along
-from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
+from rig.analysis.tracing.outcome.result import CHANNELS, NextRun, Status, Trace
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
 from rig.closing.advice import Advice, advised, same
 from rig.closing.grow import grown
-from rig.closing.story import CHANNELS, End, Round, Story, left, told_by, write_story
+from rig.closing.story import End, Round, Story, left, told_by, write_story
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.report.numbers import counted
 from rig.session import Session

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.result import CHANNELS, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.errors import NotReady, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
@@ -59,9 +59,6 @@ class Round:
     plan: str = ""
     words: str = ""
     refused: str = ""
-
-
-CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
 
 
 def left(found: Round) -> str:

@@ -6,7 +6,7 @@ One definition serves the search for effects in measured runs, the refit, the si
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 import numpy.typing as npt
 
+from rig.core.once import Once
 from rig.model.fourier import FourierSeries
 
 Array = npt.NDArray[np.float64]
@@ -61,8 +62,9 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class Signals:
-    """A piece of one run on a uniform time grid, shapes (n,), SI, and what is known of the gear so far.
+class Signals(Once):
+    """A piece of one run on a uniform time grid, shapes (n,), SI, and what is known of the gear so far. What an effect
+    makes of it whatever its shape is made `once`: a refit asks for the columns of dozens of shapes.
 
     Angles are as read; speeds, accelerations and the torque are low-passed without phase. A channel that was not
     recorded is NaN throughout. `way` is the direction of the motor, −1, 0 (sticking or reversing) or 1.
@@ -126,17 +128,6 @@ class Signals:
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self.gear.kinematic_error.value(self.theta_m)
-
-    @cached_property
-    def _made(self) -> dict[str, tuple[Array, ...]]:
-        return {}
-
-    def once(self, name: str, make: Callable[[], tuple[Array, ...]]) -> tuple[Array, ...]:
-        """What an effect of that `name` makes of the signals whatever its shape: made once, for a refit asks for the
-        columns of dozens of shapes."""
-        if name not in self._made:
-            self._made[name] = make()
-        return self._made[name]
 
     def part(self, rows: slice) -> Signals:
         """Some rows of it."""

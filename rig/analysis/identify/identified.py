@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rig.analysis.angle import RPM
 from rig.analysis.flexibility import declared
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
@@ -26,7 +27,6 @@ AGREE = 3.0  # standard errors by which lock and turning runs may differ in stif
 WORTH_TELLING = 0.005  # of K: a smaller difference is within what sensors and windows distort
 BREAKAWAY = 1.0  # τ_s/τ_c assumed where nothing was seen of it: no fall of friction, so no stick-slip is predicted
 STRIBECK = 1.0  # rad/s, written beside it; without a fall it has no effect
-RPM = 30 / math.pi  # in a rad/s
 NEEDS = {
     "J_l": "runs at several speeds with torque sensor and load encoder",
     "K": "a lock run, or runs at several speeds, with torque sensor and load encoder",

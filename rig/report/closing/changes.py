@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
+from rig.analysis.tracing.outcome.result import CHANNELS
 from rig.model.effect import Parameter
 from rig.report.numbers import ABSENT, counted
 from rig.report.trace.sizes import said
 from rig.report.words import humanise
 
-CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
 APART: Final = 0.1  # of an error over its floor: less is what other held-out runs make of it
 
 

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from rig.analysis.angle import RPM
 from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.outcome.honest import in_words, left_open
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.thresholds import ALONE, MISSING
@@ -24,9 +26,7 @@ if TYPE_CHECKING:
 
 FURTHER: Final = 1.3  # of the speeds and torques fitted: up to there a law is taken on
 LEAST: Final = 2.0  # N·m beyond the torques fitted: less is a motor that starts
-POSITIVE: Final = ("K", "J_m", "B_m", "tau_c", "J_l", "B_l", "tau_cl")  # what no gear has less than none of
 NAMED: Final = 3  # runs
-RPM: Final = 30 / np.pi
 
 
 @dataclass(frozen=True)
@@ -58,10 +58,7 @@ class Beyond:
         )
         if not self.open:
             return f"{said}."
-        words = ", ".join(
-            f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in self.open
-        )
-        return f"{said}, and the fitted runs do not determine {words}, which no gear has below zero."
+        return f"{said}, and the fitted runs do not determine {in_words(self.open)}, which no gear has below zero."
 
 
 def _both(covered: tuple[float, float], asked: tuple[float, float], unit: str) -> str:
@@ -76,8 +73,9 @@ def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
     outside = tuple(i for i in p.court.runs if _is_outside(p.eq.runs[i], covered))
     if not outside:
         return None
-    open = tuple(q for q in baseline if q.name in POSITIVE and q.ci95[0] <= 0)
-    return Beyond(tuple(run.name for run in fitted), len(held), outside, covered, asked, open)
+    names = tuple(run.name for run in fitted)
+    told = left_open([q for q in baseline if q.name != "B_sp"])  # which filters that lag make of either sign
+    return Beyond(names, len(held), outside, covered, asked, told)
 
 
 def reach(runs: Sequence[Recording]) -> Range:

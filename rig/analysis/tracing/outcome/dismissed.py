@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final
 
 from rig.analysis.angle import ARCSEC
-from rig.analysis.tracing.outcome.result import Candidate, Errors, Verdict
+from rig.analysis.tracing.outcome.result import CHANNELS, Candidate, Errors, Verdict
 from rig.analysis.tracing.thresholds import EXPLAINED
-
-WORDS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
 
 
 def dismissed(found: Sequence[Candidate], verdict: Verdict, pooled: Errors) -> tuple[Candidate, ...]:
@@ -26,7 +23,7 @@ def _with_the_rest(c: Candidate, pooled: Errors) -> Candidate:
         "tau_l": pooled.floor_tau_l,
     }
     ratios = {s: c.heldout_rms[s] / floor for s, floor in floors.items() if floor and s in c.heldout_rms}
-    loud = [f"the {WORDS[s]} at {ratio:.1f}" for s, ratio in ratios.items() if ratio > EXPLAINED]
+    loud = [f"the {CHANNELS[s]} at {ratio:.1f}" for s, ratio in ratios.items() if ratio > EXPLAINED]
     if not loud or not c.why.startswith("alone it removes") or "would be asked for" in c.why or "nothing" in c.why:
         return c
     return replace(c, why=f"{c.why}, but leaves {' and '.join(loud)} times its floor, so that it is not named")

@@ -43,6 +43,16 @@ def _wide(p: Parameter, most: float) -> Parameter:
     return replace(p, ci95=(min(p.ci95[0], 0.0), max(p.ci95[1], most)))
 
 
+def left_open(found: Sequence[Parameter]) -> tuple[Parameter, ...]:
+    """Those of which no gear has less than none, and whose interval goes down to it."""
+    return tuple(p for p in found if p.name in POSITIVE and p.ci95[0] <= 0)
+
+
+def in_words(found: Sequence[Parameter]) -> str:
+    """Each with its value and interval."""
+    return ", ".join(f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in found)
+
+
 def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]:
     """What `found` of a fit to `runs` leaves open, one sentence each."""
     out = []
@@ -52,10 +62,9 @@ def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]
             f"No run turns slowly enough for its rows to show orders above {most} of the kinematic error: they were "
             "fitted, for what they take from the others, and are not given."
         )
-    open = [p for p in found if p.name in POSITIVE and p.ci95[0] <= 0]
-    if open:
-        words = ", ".join(f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in open)
+    if left := left_open(found):
         out.append(
-            f"The fitted runs do not determine {words}: by them it may be zero or below, and in every gear it is above."
+            f"The fitted runs do not determine {in_words(left)}: by them it may be zero or below, and in every gear "
+            "it is above."
         )
     return out

@@ -11,6 +11,8 @@ from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
 
 AT_REVERSALS: Final = "tau_m_at_reversals"  # beside the sensors' names: the motor torque where the motor turns back
+CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
+"""What is judged in each sensor, in words."""
 
 
 class Status(StrEnum):

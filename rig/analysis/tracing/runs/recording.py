@@ -5,8 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,11 +19,11 @@ from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
+from rig.core.once import Once
 from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
-Made = TypeVar("Made")
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
@@ -38,7 +37,7 @@ TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivativ
 
 
 @dataclass(frozen=True)
-class Recording:
+class Recording(Once):
     """One run. `pieces` hold no gap; `start` is s since the campaign began."""
 
     name: str
@@ -59,16 +58,6 @@ class Recording:
     step_m: float = 0.0  # rad, the smallest change of the motor angle in the file; 0 where there is none
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
-
-    @cached_property
-    def _made(self) -> dict[str, Any]:
-        return {}
-
-    def once(self, name: str, make: Callable[[], Made]) -> Made:
-        """What is made of the run again and again, made once."""
-        if name not in self._made:
-            self._made[name] = make()
-        return cast(Made, self._made[name])
 
     @property
     def knows(self) -> frozenset[str]:

@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.angle import RPM
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 
@@ -23,7 +24,6 @@ STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts 
 SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
 UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
 FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
-RPM: Final = 30 / np.pi
 
 
 def odd_angles(run: Recording) -> str | None:

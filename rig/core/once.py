@@ -1,0 +1,23 @@
+"""What is made of a value again and again, made once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, TypeVar, cast
+
+Made = TypeVar("Made")
+
+
+class Once:
+    """Base of values that never change: a changed copy makes all of it anew."""
+
+    @cached_property
+    def _made(self) -> dict[str, Any]:
+        return {}
+
+    def once(self, name: str, make: Callable[[], Made]) -> Made:
+        """What `make` gave when `name` was first asked for."""
+        if name not in self._made:
+            self._made[name] = make()
+        return cast(Made, self._made[name])
