@@ -9,6 +9,7 @@ import pytest
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor.steps import Steps, _jumps, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _heights
+from rig.model.effects.missed_counts import LOAD
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)
@@ -48,7 +49,7 @@ def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
     runs = [SimpleNamespace(ratio=50.0)] * len(angles)
     rows = {(i, "A"): SimpleNamespace(theta_m=theta) for i in range(len(angles))}
     at = {i: (int(np.searchsorted(theta, angle)),) for i, angle in enumerate(angles)}
-    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)))
+    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)), dict.fromkeys(at, (LOAD,)))
 
 
 def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts() -> None:
