@@ -32,8 +32,9 @@ class ChannelTimeSkew(Effect):
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Expansion points."""
-        return tuple((side, step) for side in (LOAD, MOTOR, TORQUE) for step in self.STEPS)
+        """Expansion points, for the sensors there are."""
+        sides = [side for side, reading in READING.items() if reading in reach.has]
+        return tuple((side, step) for side in sides for step in self.STEPS)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column; its coefficient is δ."""

@@ -139,7 +139,7 @@ def test_a_knee_at_no_torque_is_a_gap_and_no_spring() -> None:
 
 def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
     s, effect = motion(), LoadDependentKinematicError()
-    whole, apart = (effect.columns(s, (of, 3.0, 3e-3)) for of in (TORQUE, TORQUE + EACH))
+    whole, apart = (effect.columns(s, (of, 3.0, 3e-3, 1.0)) for of in (TORQUE, TORQUE + EACH))
     series = s.gear.kinematic_error
     a, b = ((*part, *4 * (0.0,)) for part in (series.a, series.b))
     alike = np.array([*(a[n - 1] for n in ORDERS), *(b[n - 1] for n in ORDERS), 1.0])
@@ -151,7 +151,7 @@ def test_the_share_of_an_order_that_stays_is_told_with_its_interval_whatever_the
     series = FourierSeries((0.0, 3e-5, 0.0, 1e-5), (0.0, 4e-5, 0.0, 0.0))
     known = dataclasses.replace(KNOWN, kinematic_error=series)
     gone = np.array([0.0, 12e-5, 0.0, 0.0, 16e-5, 0.0, 0.0])  # of orders 1, 2, 4: four times what stays of the second
-    fit = Fit(gone, (TORQUE + EACH, 2.0, 3e-3), np.diag([1e-12] * 7 + [0.0] * 3), known, N)
+    fit = Fit(gone, (TORQUE + EACH, 2.0, 3e-3, 1.0), np.diag([1e-12] * 7 + [0.0] * 4), known, N)
     found = {p.name: p for p in LoadDependentKinematicError().parameters(fit)}
     assert found["A_inf"].value == pytest.approx(0.2)
     assert found["A_inf"].ci95[1] - found["A_inf"].value == pytest.approx(1.96 * 0.2 * 1e-6 / 25e-5)
