@@ -9,13 +9,15 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rig.analysis.tracing.runs.smoothing import thin
-from rig.model.effect import Array, Fit, Moved, Port, Signals
+from rig.model.effect import Array, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
+from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
@@ -199,3 +201,30 @@ def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None
     delta = late or 1e-4
     now = 25.0 * np.sin(2 * np.pi * 0.7 * (s.t + delta) + 0.2)
     np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)
+
+
+def test_a_steeper_fall_goes_faster_beyond_its_torque_and_slower_below() -> None:
+    s, effect = motion(), LoadDependentKinematicError()
+    even, steep = (effect.columns(s, (TORQUE, 5.0, 1e-4, d))[Port.KINEMATIC_ERROR][:, 0] for d in (1.0, 2.0))
+    value = s.series_value
+    light, heavy = np.abs(s.torque) < 2.0, np.abs(s.torque) > 15.0
+    assert (even[light] / value[light]).mean() < (steep[light] / value[light]).mean()
+    assert (even[heavy] / value[heavy]).mean() > (steep[heavy] / value[heavy]).mean()
+
+
+def test_a_flattened_weight_has_a_third_wave_smaller_than_half_of_the_first() -> None:
+    effect, turn = GravityUnbalance(), np.linspace(0.0, 2 * np.pi, 500)
+    s = dataclasses.replace(motion(n=500), theta_l=turn)
+    z = effect.columns(s, (1.0, 3.0))[Port.LOAD_TORQUE]
+    c = np.linalg.lstsq(z, np.tanh(1.8 * np.sin(turn)), rcond=None)[0]
+    fit = Fit(c, (1.0, 3.0), np.eye(6), KNOWN, N)
+    assert effect.plausible(fit)
+    assert {p.name for p in effect.parameters(fit)} >= {"unbalance_amplitude", "three_times_a_turn_amplitude"}
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=c[[2, 3, 0, 1]]))
+
+
+def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() -> None:
+    effect = StribeckFriction()
+    assert effect.is_scaled(Parameter("omega_s", 0.3, (-2.0, 4.0), "rad/s"), REACH)
+    assert not effect.is_scaled(Parameter("omega_s", 9.0, (-20.0, 38.0), "rad/s"), REACH)
+    assert not NonlinearStiffness().is_scaled(Parameter("T_0", 0.3, (-2.0, 4.0), "N·m"), REACH)

@@ -1,5 +1,6 @@
 """Jumps are found where they are, and drift, waves and noise are no jumps."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
-from rig.analysis.tracing.floor.steps import Steps, _jumps, explained, lost_counts
+from rig.analysis.tracing.floor.steps import Steps, _jumps, _rested, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _heights
 from rig.model.effects.missed_counts import LOAD
+from tests.analysis.tracing.spiked import Columns, spiked, started
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)
@@ -71,3 +73,38 @@ def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_tor
     e = {(0, "A"): 5e-5 * (step - step.mean()), (0, "M"): 5e-3 * RNG.standard_normal(1000)}
     columns = {(0, "A"): step[:, None], (0, "M"): np.eye(1000)[:, 400:401]}
     assert explained(eq, e, columns) > 0.9
+
+
+def test_a_motor_that_goes_on_across_rows_that_are_held_out_has_not_rested() -> None:
+    t = np.arange(600) * 0.008
+    theta = 5.0 * t
+    held_out = np.delete(np.arange(600), np.arange(200, 300))
+    assert not _rested(theta[held_out], t[held_out]).any()
+    paused = np.where(t < 2.0, theta, np.maximum(theta - 3.0, 10.0))
+    assert np.flatnonzero(_rested(paused[held_out], t[held_out])).tolist() == [199]
+
+
+STEPS = {  # rad that a reading is off by from a moment on, by run
+    "load_10nm_1": ("theta_m", -33 * 2 * np.pi / 65536),
+    "speed_200rpm_1": ("theta_l", 12 * 2 * np.pi / 1296000),
+}
+
+
+@pytest.mark.slow
+def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated(tmp_path: Path, shared: Path) -> None:
+    names = ("slow_ke_1", "load_2.5nm_1", "load_10nm_1", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1")
+
+    def stepped(c: Columns, began: float) -> Columns:
+        name = next(name for name, at in starts.items() if at == began)
+        if name not in STEPS:
+            return {}
+        channel, size = STEPS[name]
+        return {channel: c[channel] + np.where(np.arange(c["t"].size) > 0.45 * c["t"].size, size, 0.0)}
+
+    campaign = shared / "cases" / "open-1"
+    starts = {name: started(campaign / name) for name in names}
+    found = spiked(tmp_path, campaign, stepped, names)
+    assert found.verdict.effects == ("missed_counts",)
+    values = {p.name: p.value for p in found.effects[0].parameters}
+    assert values["step_theta_m"] == pytest.approx(33 * 2 * np.pi / 65536 / 50, rel=0.1)
+    assert values["step_theta_l"] == pytest.approx(12 * 2 * np.pi / 1296000, rel=0.1)
