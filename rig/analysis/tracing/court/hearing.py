@@ -10,6 +10,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rig.analysis.tracing.court.judge import (
     Court,
     Worth,
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
 KNOWN = 1 / 3  # of itself: half a 95 % interval
 ALONE_TRIED = 2  # suspects: each costs a hearing
+ALIKE = 0.8  # of its evidence: a look-alike that may be what it is
 TURNS = 4  # effects the search found first, one after the other
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -140,6 +143,32 @@ def heard_in_turn(case: Heard, found: Found, runs: Sequence[int], covered: Reach
         if stay < {term.name for term in other.solution.design.terms} and _left(other) < _left(case):
             case, stay = other, {term.name for term in other.solution.design.terms}
     return case
+
+
+def heard_instead(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
+    """Where the one effect that stands wants another size from run to run: look-alikes that explained nearly as much,
+    each in its place. One that is steadier and leaves less of unseen runs is rather what it is."""
+    names = {term.name for term in case.solution.design.terms}
+    if len(names) != 1 or len(case.worths) != 1 or case.worths[0].fairly:
+        return case
+    mine = next((r.evidence for r in found.ranking if r.term.name in names), np.inf)
+    alike = [r for r in found.ranking if r.term.name not in names and r.evidence > ALIKE * mine]
+    for scored in alike[:ALONE_TRIED]:
+        s = settled(refine(case.p.baseline.design, scored.term, runs, covered)[1], runs, covered)
+        other = heard(case.p, replace(found, solution=s), runs, covered)
+        if len(other.worths) == 1 and _steadier(other, case) and _in_all(other) < _in_all(case):
+            case = other
+    return case
+
+
+def _steadier(one: Heard, other: Heard) -> bool:
+    return max(one.worths[0].unsteady, one.worths[0].apart) < max(other.worths[0].unsteady, other.worths[0].apart)
+
+
+def _in_all(case: Heard) -> float:
+    """RMS over floor of all channels of unseen runs together."""
+    left = case.p.court.residuals(case.solution, case.held)
+    return case.p.court.ratio(left, list(left))
 
 
 def _left(case: Heard) -> float:
