@@ -11,14 +11,19 @@ from scipy.integrate import solve_ivp
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
+from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
+from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
+from rig.model.effects.thermal_friction_drift import SOAK, ThermalFrictionDrift
+from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, REACH, N, motion
@@ -197,7 +202,7 @@ def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be:
 @pytest.mark.parametrize("late", [0.0, 4e-3])
 def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None:
     s = motion()
-    column = ChannelTimeSkew().columns(s, (TORQUE_LATE, late))[Port.READS_TAU_L][:, 0]
+    column = ChannelTimeSkew().columns(s, (TORQUE_LATE, late, 0.0))[Port.READS_TAU_L][:, 0]
     delta = late or 1e-4
     now = 25.0 * np.sin(2 * np.pi * 0.7 * (s.t + delta) + 0.2)
     np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)
@@ -228,3 +233,51 @@ def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() ->
     assert effect.is_scaled(Parameter("omega_s", 0.3, (-2.0, 4.0), "rad/s"), REACH)
     assert not effect.is_scaled(Parameter("omega_s", 9.0, (-20.0, 38.0), "rad/s"), REACH)
     assert not NonlinearStiffness().is_scaled(Parameter("T_0", 0.3, (-2.0, 4.0), "N·m"), REACH)
+
+
+def test_a_fan_of_curved_blades_drags_otherwise_backwards() -> None:
+    effect = QuadraticDrag()
+    ways = [effect.columns(motion(sign), (1.0, 2.0))[Port.MOTOR_TORQUE] for sign in (1.0, -1.0)]
+    whole = [effect.columns(motion(sign), (0.0, 2.0))[Port.MOTOR_TORQUE][:, 0] for sign in (1.0, -1.0)]
+    for i, (columns, drag) in enumerate(zip(ways, whole, strict=True)):
+        np.testing.assert_array_equal(columns[:, i], drag)
+        assert not columns[:, 1 - i].any()
+
+
+def test_heat_that_soaks_in_falls_with_the_root_of_the_time() -> None:
+    at = dataclasses.replace(motion(n=3), t=np.array([0.0, 1.0, 4.0]), way=np.ones(3))
+    column = ThermalFrictionDrift().columns(at, (1e4, SOAK, 1e-3))[Port.MOTOR_TORQUE][:, 0]
+    np.testing.assert_allclose((column[0] - column[1:]) / (column[0] - column[1]), [1.0, 2.0], rtol=0.01)
+
+
+def test_a_warm_up_that_outlasts_the_campaign_is_known_without_its_end() -> None:
+    effect = ThermalFrictionDrift()
+    assert effect.is_scaled(Parameter("t_w", 1.5 * REACH.duration, (-9e3, 2e4), "s"), REACH)
+    assert not effect.is_scaled(Parameter("t_w", 0.1 * REACH.duration, (-9e3, 2e4), "s"), REACH)
+
+
+def test_clocks_that_run_apart_make_the_skew_grow_with_the_time() -> None:
+    effect, s = ChannelTimeSkew(), motion()
+    late = dataclasses.replace(s, t=s.t + 500.0)
+    for side in (LOAD_LATE, MOTOR_LATE, TORQUE_LATE):
+        (steady,) = effect.columns(late, (side, 0.0, 0.0)).values()
+        (drifting,) = effect.columns(late, (side, 0.0, 1.0)).values()
+        np.testing.assert_allclose(drifting[:, 0], steady[:, 0])
+        np.testing.assert_allclose(drifting[:, 1], steady[:, 0] * late.t / 1000.0)
+    assert effect.about((LOAD_LATE, 0.0, 1.0), np.array([1e-3, 1e-3])) == (LOAD_LATE, 0.0, 1.0)
+
+
+def test_no_torque_sensor_is_late_where_there_is_none() -> None:
+    there = {shape[0] for shape in ChannelTimeSkew().shapes(REACH)}
+    assert there == {LOAD_LATE, MOTOR_LATE, TORQUE_LATE}
+    without = dataclasses.replace(REACH, has=REACH.has - {"tau_l"})
+    assert {shape[0] for shape in ChannelTimeSkew().shapes(without)} == {LOAD_LATE, MOTOR_LATE}
+
+
+def test_a_field_that_the_current_turns_is_a_ripple_that_grows_with_the_torque() -> None:
+    """τ·cos(kθ + c·τ) by its two pairs, where the turn is small."""
+    s, c = motion(), 0.1
+    z = TorqueRipple().columns(s, (12.0, 1.0))[Port.MOTOR_TORQUE]
+    turned = s.tau_m * np.cos(12.0 * s.theta_m + c * s.tau_m)
+    coefficients = np.linalg.lstsq(z, turned, rcond=None)[0]
+    np.testing.assert_allclose(coefficients, [1.0, 0.0, 0.0, -c], atol=0.01)

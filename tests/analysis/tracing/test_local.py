@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor.steps import Steps, _jumps, _rested, explained, lost_counts
-from rig.analysis.tracing.floor.vibration import _heights
+from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.model.effects.missed_counts import LOAD
 from tests.analysis.tracing.spiked import Columns, spiked, started
 
@@ -108,3 +108,24 @@ def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated
     values = {p.name: p.value for p in found.effects[0].parameters}
     assert values["step_theta_m"] == pytest.approx(33 * 2 * np.pi / 65536 / 50, rel=0.1)
     assert values["step_theta_l"] == pytest.approx(12 * 2 * np.pi / 1296000, rel=0.1)
+
+
+@pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])
+def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_torque_as_one(
+    of_the_load: bool, share: float
+) -> None:
+    """In the proportion 1/K to 1/N; what one sensor picks up shows in one of them."""
+    t = np.arange(4000) * 0.008
+    wave = np.stack([np.cos(70.0 * t), np.sin(70.0 * t)], 1)
+    columns = {(0, "A"): wave / 7200.0, (0, "M"): wave / 50.0}
+    torque = wave @ np.array([0.2, 0.1])
+    e = {
+        (0, "A"): torque / 7200.0 + 5e-6 * RNG.standard_normal(t.size),
+        (0, "M"): (torque / 50.0 if of_the_load else 0.0) + 2e-3 * RNG.standard_normal(t.size),
+    }
+    noise = Noise({"A": 5e-6, "M": 2e-3}, {"A": 1.0, "M": 1.0}, {"A": np.inf, "M": np.inf})
+    run: Any = SimpleNamespace(locked=False)
+    as_one, sizes = _as_one(Equations((run,), {}, noise), e, columns)
+    assert as_one > share if of_the_load else as_one < share
+    if of_the_load:
+        assert sizes == [pytest.approx(np.hypot(0.2, 0.1), rel=0.01)]

@@ -18,7 +18,7 @@ from rig.model.effects.external_vibration import ExternalVibration
 VIBRATION = EACH_RUN["external_vibration"]
 ZOOM = 4  # finer than a run's own resolution
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
-AS_ONE = 0.7  # an interference in one sensor would have half of it at most
+AS_ONE = 0.7  # an interference in one sensor alone has 0
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
 
@@ -26,7 +26,7 @@ SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than th
 class Line:
     """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque, and the
     torque itself. `as_one`:
-    share of its power in all channels that one torque on the load makes."""
+    how much of it one torque on the load makes, in angle and motor torque alike."""
 
     frequency_hz: float
     amplitude: dict[str, float]
@@ -165,23 +165,22 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
 
 
 def _as_one(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> tuple[float, list[float]]:
-    """Share of what cosine and sine take from A and M of every run, each with coefficients of its own, that they take
-    with one pair of them in both; and the size of that pair in every run, N·m."""
-    one = apart = 0.0
+    """How much one torque in every run makes of what A and M show, each by itself: 1 where the torques they ask for are
+    the same, 0 where one of them asks for none. And the size of the torque both together ask for in every run, N·m."""
+    apart = asked = 0.0
     sizes: list[float] = []
     for run in sorted({i for i, c in columns if (i, c) in e}):
         keys = [(run, c) for c in "AM" if (run, c) in e and (run, c) in columns]
-        grams, rights = [], []
-        for key in keys:
-            z, w = eq.without_offset(key, columns[key]), eq.noise.weight(key[1])
-            grams.append(w * z.T @ z)
-            rights.append(w * z.T @ e[key])
-        if len(keys) == 2:
-            apart += sum(float(r @ np.linalg.pinv(g) @ r) for g, r in zip(grams, rights, strict=True))
-            pair = np.linalg.pinv(sum(grams)) @ sum(rights)
-            one += float(sum(rights) @ pair)
-            sizes.append(float(np.hypot(*pair)))
-    return (one / apart if apart > 0 else 0.0), sizes
+        if len(keys) < 2:
+            continue
+        made = [(eq.without_offset(key, columns[key]), eq.noise.weight(key[1])) for key in keys]
+        grams = [w * z.T @ z for z, w in made]
+        rights = [w * z.T @ e[key] for key, (z, w) in zip(keys, made, strict=True)]
+        a, m = (np.linalg.pinv(g) @ r for g, r in zip(grams, rights, strict=True))
+        apart += float((a - m) @ (a - m))
+        asked += max(float(a @ a), float(m @ m))
+        sizes.append(float(np.hypot(*(np.linalg.pinv(sum(grams)) @ sum(rights)))))
+    return (1.0 - apart / asked if asked > 0 else 0.0), sizes
 
 
 def _size(e: Array, columns: Array) -> float:
