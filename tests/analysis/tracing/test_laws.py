@@ -16,6 +16,7 @@ from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.gravity_unbalance import GravityUnbalance
+from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
@@ -29,6 +30,7 @@ from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
+STRAIGHT = dataclasses.replace(KNOWN, kinematic_error=FourierSeries((), ()))
 
 
 @pytest.mark.parametrize("hz", [10.0, 60.0, 80.0, 125.0, 170.0, 250.0, 430.0, 510.0, 853.0, 990.0])
@@ -281,3 +283,24 @@ def test_a_field_that_the_current_turns_is_a_ripple_that_grows_with_the_torque()
     turned = s.tau_m * np.cos(12.0 * s.theta_m + c * s.tau_m)
     coefficients = np.linalg.lstsq(z, turned, rcond=None)[0]
     np.testing.assert_allclose(coefficients, [1.0, 0.0, 0.0, -c], atol=0.01)
+
+
+def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
+    """Gone round slowly forth and back, the branches lie as far apart as the torque is large."""
+    effect, n = HystereticStiffness(), 8000
+    torque = 40.0 * np.sin(np.linspace(0.0, 6 * np.pi, n))
+    phi = torque / KNOWN.K
+    s = dataclasses.replace(motion(n=n), torque=torque, theta_m=np.zeros(n), theta_l=-phi, gear=STRAIGHT)
+    column = effect.columns(s, (1.5, effect.WEDGE))[Port.WIND_UP][:, 0]
+    rising = np.gradient(torque) > 0
+    late = np.arange(n) > n // 3
+
+    def gap(at: float) -> float:
+        near = late & (np.abs(torque - at) < 0.3)
+        return float(column[near & rising].mean() - column[near & ~rising].mean())
+
+    assert gap(20.0) == pytest.approx(2 * gap(10.0), rel=0.05)
+    assert abs(gap(0.0)) < 0.05 * gap(20.0)
+    fit = Fit(np.array([-1e-6]), (1.5, effect.WEDGE), np.eye(3), KNOWN, N)
+    assert effect.plausible(fit)
+    assert effect.parameters(fit)[0].value == pytest.approx(1e-6 * gap(effect.AT), rel=0.05)
