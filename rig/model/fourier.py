@@ -60,8 +60,8 @@ class FourierSeries:
         return self._summed(theta_m, 2)
 
     def _summed(self, theta_m: Array, derivative: int) -> Array:
-        """Re Σ (i·n)^derivative·(a_n − i·b_n)·e^{inθ}, by Horner's rule: one sine and cosine an angle, not one an order.
-        In blocks that stay in the cache."""
+        """Re Σ (i·n)^derivative·(a_n − i·b_n)·e^{inθ}, by Horner's rule: one sine and cosine an angle,
+        not one an order; in blocks that stay in the cache."""
         terms = (1j * self.orders) ** derivative * (np.asarray(self.a) - 1j * np.asarray(self.b))
         angles = np.asarray(theta_m, dtype=np.float64)
         flat, out = angles.reshape(-1), np.zeros(angles.size)
