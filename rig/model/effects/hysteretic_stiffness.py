@@ -40,6 +40,10 @@ class HystereticStiffness(Effect):
         plays = [(w, self.PLAYS) for w in widths]
         return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT))
 
+    def has_state(self) -> bool:
+        """A loop."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One operator a half width, or the friction's state."""
         width, law = shape

@@ -43,6 +43,10 @@ class LoadDependentKinematicError(Effect):
         laws = ((TORQUE, self.TORQUES), (SIZE, self.TORQUES), (TORQUE + EACH, self.FEW), (SIZE + EACH, self.FEW))
         return tuple((of, c, self.LAG) for of, torques in laws for c in torques if c < 1.5 * reach.torque)
 
+    def has_state(self) -> bool:
+        """The torque is lagged."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """The fitted series times the decay, and its lever; by orders where each has its own share."""
         of, t_c, lag = shape

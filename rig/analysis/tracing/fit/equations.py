@@ -146,12 +146,12 @@ def orthonormal(x: Array) -> Array:
 
 
 def acting(run: Recording, term: Term) -> list[dict[Port, Array]]:
-    """What a term does along each piece, (n, k) a port. Parts of one piece are cut from what it does along the whole: a
-    loop or a resonance that began anew at every cut would be another one."""
+    """What a term does along each piece, (n, k) a port. Of an effect with a state, parts of one piece are cut from what
+    it does along the whole: a loop or a resonance that began anew at every cut would be another one."""
     wholes: dict[int, Mapping[Port, Array]] = {}
     out = []
     for piece in run.pieces:
-        if piece.cut is None:
+        if piece.cut is None or not term.effect.has_state():
             out.append(dict(term.effect.columns(piece, term.shape)))
             continue
         whole = piece.cut.whole
