@@ -66,7 +66,8 @@ class FourierSeries:
         angles = np.asarray(theta_m, dtype=np.float64)
         flat, out = angles.reshape(-1), np.zeros(angles.size)
         for start in range(0, flat.size, BLOCK):
-            wave = np.exp(1j * flat[start : start + BLOCK])
+            block = flat[start : start + BLOCK]
+            wave = np.cos(block) + 1j * np.sin(block)
             total = np.zeros_like(wave)
             for term in terms[::-1]:
                 total += term

@@ -74,7 +74,7 @@ class Rows:
     y: Array
     z: Array
     at: tuple[int, ...]
-    keep: Array  # bool, before masking
+    keep: npt.NDArray[np.bool_]  # before masking
     theta_m: Array  # rad, (n,)
     own: Array
 
