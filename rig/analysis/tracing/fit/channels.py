@@ -74,7 +74,7 @@ class Rows:
     y: Array
     z: Array
     at: tuple[int, ...]
-    keep: npt.NDArray[np.bool_]  # before masking
+    keep: Array  # bool, before masking
     theta_m: Array  # rad, (n,)
     own: Array
 

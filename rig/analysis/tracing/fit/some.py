@@ -55,7 +55,7 @@ class Stretches:
 
     def rows(self, rows: Rows) -> Rows:
         """Those rows of a channel."""
-        left, keep = self.of(rows), np.zeros_like(self.made)
+        left, keep = self.of(rows), np.zeros_like(rows.keep, shape=self.made.shape)
         keep[self.made] = rows.keep[self.wanted]
         return replace(rows, y=rows.y[left], z=rows.z[left], keep=keep, theta_m=rows.theta_m[left], own=rows.own[left])
 
