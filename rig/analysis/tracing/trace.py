@@ -25,6 +25,7 @@ from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.workers import give_back
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
@@ -62,7 +63,9 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
     bank = fill(some(p.eq, runs), suspects, runs, covered)
     found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
+    give_back()
     again, found = _looked_again(p, found, bank, covered)
+    give_back()
     case = heard(again, found, runs, covered)
     if not quiet:
         case = heard_again(case, found, bank, runs, covered)
@@ -71,6 +74,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
         found = Found(start, found.ranking)
         case = heard(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes
+    give_back()
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 
