@@ -19,6 +19,7 @@ from rig.core.once import Once
 from rig.model.fourier import FourierSeries
 
 Array = npt.NDArray[np.float64]
+Rows = npt.NDArray[np.int64]
 Shape = tuple[float, ...]
 """The parameters an effect depends on nonlinearly (a Stribeck speed, an order), in `shape_names`' order."""
 
@@ -129,14 +130,13 @@ class Signals(Once):
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self.gear.kinematic_error.value(self.theta_m)
 
-    def part(self, rows: slice) -> Signals:
-        """Some rows of it."""
+    def part(self, rows: slice | Rows) -> Signals:
+        """Some rows of it: a slice, or their numbers (m,) in rising order, stretches side by side."""
         arrays: dict[str, Any] = {
             f.name: v[rows] for f in fields(self) if isinstance(v := getattr(self, f.name), np.ndarray)
         }
-        if self.cut is None:
-            return replace(self, **arrays, cut=Cut(self, range(self.t.size)[rows]))
-        return replace(self, **arrays, cut=Cut(self.cut.whole, self.cut.rows[rows]))
+        cut = Cut(self, range(self.t.size)) if self.cut is None else self.cut
+        return replace(self, **arrays, cut=cut.part(rows))
 
 
 @dataclass(frozen=True)
@@ -144,11 +144,21 @@ class Cut:
     """Where a part of a piece was taken from: `rows` of `whole`."""
 
     whole: Signals
-    rows: range
+    rows: range | Rows
 
     def of(self, x: Array) -> Array:
         """Those rows of `x` (n, ...)."""
-        return x[self.rows.start : self.rows.stop]
+        return x[self.rows.start : self.rows.stop] if isinstance(self.rows, range) else x[self.rows]
+
+    def part(self, rows: slice | Rows) -> Cut:
+        """Some of those rows."""
+        if isinstance(rows, slice):
+            return Cut(self.whole, self.rows[rows])
+        return Cut(self.whole, self.rows.start + rows if isinstance(self.rows, range) else self.rows[rows])
+
+    def again(self, whole: Signals) -> Signals:
+        """The same rows of another one."""
+        return whole.part(slice(self.rows.start, self.rows.stop) if isinstance(self.rows, range) else self.rows)
 
 
 @dataclass(frozen=True)
@@ -263,6 +273,11 @@ class Effect(ABC):
         if grid.size == 0:
             return ()
         return tuple((float(low), float(high)) for low, high in zip(grid.min(0) / 3, grid.max(0) * 3, strict=True))
+
+    def has_state(self) -> bool:
+        """Whether what it does at a row depends on more than that row and its neighbours: then its columns in a part of
+        a piece have to be cut from those of the whole."""
+        return False
 
     def moved_by_noise(self) -> bool:
         """True when noise of a reading moves a state of its own, and does not add to its columns."""

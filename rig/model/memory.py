@@ -11,7 +11,7 @@ from numba import njit
 Array = npt.NDArray[np.float64]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def play(x: Array, half_width: float) -> Array:
     """Play of `half_width` (unit of x): follows x at a distance, rests when x turns back. Starts at 0, shape (n,)."""
     out = np.empty_like(x)
@@ -22,7 +22,7 @@ def play(x: Array, half_width: float) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def follower(x: Array, now: float, before: float, keep: float, state: float) -> Array:
     """y_i = keep·y_{i−1} + now·x_i + before·x_{i−1}, (n,); `state` is keep·y + before·x of the row before the first."""
     out = np.empty_like(x)
@@ -32,7 +32,7 @@ def follower(x: Array, now: float, before: float, keep: float, state: float) -> 
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) -> Array:
     """States (n, 2) from `start` on: each is `step` (2, 2) of the one before, and `by` and `by_next` (2,) times the
     drive (n,) of that row and of its own."""
@@ -49,7 +49,7 @@ def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) 
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def presliding(theta: Array, x0: float) -> Array:
     """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step; starts at 0, shape (n,)."""
     out = np.empty_like(theta)
@@ -69,7 +69,7 @@ def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
     return resonance(x, dt, omega, zeta)[0]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def resonance(x: Array, dt: float, omega: float, zeta: float) -> tuple[Array, Array]:
     """`resonated` and its second derivative, both shapes (n,).
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.model.fourier import FourierSeries
+from rig.model.fourier import BLOCK, FourierSeries
 
 COEFFICIENTS = st.lists(st.floats(-1e-3, 1e-3), min_size=1, max_size=15)
 
@@ -56,3 +56,14 @@ def test_one_order_swings_by_twice_its_amplitude() -> None:
 def test_unequal_lists_are_refused_with_their_lengths() -> None:
     with pytest.raises(ValueError, match="2 cosine and 1 sine"):
         FourierSeries((0.0, 1.0), (0.0,))
+
+
+def test_the_sum_by_horner_is_the_sum_of_equation_8_over_more_angles_than_a_block() -> None:
+    s = FourierSeries((3e-4, -1e-4, 2e-5), (1e-4, 2e-4, -3e-5))
+    theta = np.linspace(-300.0, 300.0, 2 * BLOCK + 7)
+    each = np.array(
+        [[a * np.cos(n * theta), b * np.sin(n * theta)] for n, (a, b) in enumerate(zip(s.a, s.b, strict=True), 1)]
+    )
+    assert np.allclose(s.value(theta), each.sum((0, 1)), atol=1e-15)
+    assert s.value(theta.reshape(-1, 1)).shape == (theta.size, 1)
+    assert not np.any(FourierSeries((), ()).slope(theta))

@@ -23,7 +23,8 @@ from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
 from rig.analysis.tracing.fit.model import Solution, design, fit
-from rig.analysis.tracing.fit.search import Found, relawed, search, still
+from rig.analysis.tracing.fit.search import Found, relawed, still
+from rig.analysis.tracing.fit.some import search_some, some
 from rig.analysis.tracing.floor.noise import Measured, floor_of, guess, measure, quieter
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.outcome.report import report
@@ -32,6 +33,7 @@ from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.workers import give_back
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
@@ -67,9 +69,11 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     quiet = still(start, p.floors)
     covered = with_lines(covered, start, runs)
     suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
-    bank = fill(p.eq, suspects, runs, covered)
-    found = search(start.design, bank, runs, start.keys, covered, p.floors, quiet=quiet)
+    bank = fill(some(p.eq, runs), suspects, runs, covered)
+    found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
+    give_back()
     again, found = _looked_again(p, found, bank, covered)
+    give_back()
     case = heard(again, found, runs, covered)
     if not quiet:
         case = heard_in_turn(case, found, runs, covered)
@@ -80,6 +84,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
         found = Found(start, found.ranking)
         case = heard(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes
+    give_back()
     found = replace(found, ranking=of_the_library(found.ranking))
     return report(case.p, found, case.solution, case.held, case.worths, case.words)
 
@@ -135,4 +140,4 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
         measured = replace(measured, noise=measured.noise.free("A"))
     again = replace(_built(p.campaign, p.split, eq, measured, own), first=p.first)
     s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
-    return again, search(s.design, bank, runs, s.keys, covered, again.floors, found.ranking)
+    return again, search_some(s.design, bank, runs, covered, again.floors, ranking=found.ranking)

@@ -8,6 +8,7 @@ of the work, and leaves what it made in memory that both see.
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import gc
 import mmap
 import os
@@ -62,6 +63,12 @@ def meanwhile(of: Callable[[], R]) -> Iterator[Callable[[], R]]:
         yield result
 
 
+def give_back() -> None:
+    """Memory that was freed, to the machine: the C library keeps it for what may come, and a copy would have it too."""
+    with contextlib.suppress(OSError, AttributeError):  # of glibc alone
+        ctypes.CDLL(None).malloc_trim(0)
+
+
 def _may_fork() -> bool:
     """Not beside other threads: a lock that one of them holds would be held in the copy for ever."""
     return WORKERS > 1 and hasattr(os, "memfd_create") and threading.active_count() == 1
@@ -76,6 +83,7 @@ def _taken(source: int) -> Iterator[int]:
 @contextlib.contextmanager
 def _copy(work: Callable[[], Iterator[tuple[int, R]]]) -> Iterator[Callable[[], dict[int, R]]]:
     """A forked copy that does `work`; what is given waits for it and returns what it made. Gone when the block ends."""
+    give_back()
     shared = os.memfd_create("trace")
     child = os.fork()
     if child == 0:

@@ -45,6 +45,10 @@ class HystereticStiffness(Effect):
         wedges = [(w, self.WEDGE) for w in widths]
         return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges)
 
+    def has_state(self) -> bool:
+        """A loop."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One operator a half width, or the friction's state."""
         width, law = shape

@@ -50,6 +50,10 @@ class LoadDependentKinematicError(Effect):
         other = [(of, c, delta) for of in (TORQUE, EACH) for delta in (self.SPREAD, self.SUDDEN) for c in self.LATER]
         return tuple((of, c, self.LAG, delta) for of, c, delta in (*whole, *orders, *other) if c < 1.5 * reach.torque)
 
+    def has_state(self) -> bool:
+        """The torque is lagged."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """The fitted series times the decay, and its lever; by orders where each has its own share."""
         of, t_c, lag, delta = shape

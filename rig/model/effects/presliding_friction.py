@@ -32,6 +32,10 @@ class PreslidingFriction(Effect):
         """The friction of a motor that rests builds up with the way its encoder seems to go."""
         return True
 
+    def has_state(self) -> bool:
+        """It builds up."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         way = np.sign(signals.omega_m)

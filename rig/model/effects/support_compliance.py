@@ -44,6 +44,10 @@ class SupportCompliance(Effect):
         """A mode that the fit pushed out of the band."""
         return shape[1] > 1.15 * reach.band
 
+    def has_state(self) -> bool:
+        """It swings."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, in both readings or in the wind-up."""
         held, frequency, zeta = shape

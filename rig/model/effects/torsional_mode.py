@@ -83,6 +83,10 @@ class TorsionalMode(Effect):
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
         return shape[0] in (LOAD, MOTOR) and shape[1] > 1.15 * reach.band
 
+    def has_state(self) -> bool:
+        """It swings."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
         two, for J_2 and for J_2/k; of a soft coupling three, for 1/k, 1/ω² and J_2/ω²."""

@@ -7,7 +7,7 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import BASELINE
 from rig.analysis.tracing.fit.covariance import covariance
-from rig.analysis.tracing.fit.equations import Equations, Noise
+from rig.analysis.tracing.fit.equations import Bare, Equations, Noise
 from rig.analysis.tracing.fit.model import Design, Part, Solution, fit, inverse, normal
 
 RUNS, ROWS, SLOPE = 16, 200, 2.0
@@ -20,7 +20,7 @@ def solved(seed: int, gain: float) -> Solution:
     for run in range(RUNS):
         x = rng.normal(0, 1, ROWS)
         y[run, "A"] = SLOPE * (1 + gain * rng.normal()) * x + rng.normal(0, 1, ROWS)
-        parts[run, "A"] = (Part(x[:, None], np.array([0]), None),)
+        parts[run, "A"] = (Part(Bare(x[:, None]), np.array([0]), None),)
     eq = Equations((), {}, Noise({"A": 1.0}, {"A": 1.0}, {"A": np.inf}))
     size = len(BASELINE)
     d = Design(eq, (), (), y, {}, parts, np.zeros((size, size)), np.zeros(size))

@@ -2,63 +2,104 @@
 
 from __future__ import annotations
 
-import sys
+import itertools
 import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
 from tests.bench.built import Unavailable
+from tests.bench.campaign import made, size
 from tests.bench.child import HDRIG, Cost, cost
 from tests.bench.figure import AtMost, Figure, Shown, not_measured, ratio
 from tests.bench.row import Row
-from tests.bench.turns import Rounds, Side, take_turns
+from tests.bench.turns import Rounds
 from tests.bench.worker import Worker
 
 PEERS = ("boosting", "gaussian", "pysindy")
-CASE = ("--kind", "single", "--effect", "stribeck_friction", "--seed", "7")
+LENGTHS = (0.25, 1.0, 4.0)  # of 45 minutes
+TRACES = 2  # of each length: they agree to a few per cent, and the row has five minutes
+WALL, MEMORY, LINEAR = AtMost(10.0), AtMost(1536.0), AtMost(1.15)
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A campaign of so many rows and minutes, and what its traces cost."""
+
+    rows: int
+    minutes: float
+    costs: Sequence[Cost]
+
+    @property
+    def label(self) -> str:
+        """As it was counted."""
+        return f"{self.rows / 1e6:.2f} million rows of {self.minutes:.0f} min"
 
 
 @final
 class Trace(Row):
-    """The blind test's campaign of 36 runs for all; the peers are given every row, and tune themselves as there.
+    """Campaigns of the twin of a quarter of, once and four times 45 minutes, the same runs but for their length. The
+    peers get the second, every row of its five channels and our split into fitted and held out, and tune themselves as
+    in the blind test. They are asked once: that takes a minute.
 
     They predict what the baseline leaves and stop; hdrig tries 30 effects on every channel, names one or says that it
     cannot, gives intervals and writes the report: all of that is in its time. Found: a fifth of the fastest of them is
-    out of reach as long as that is compared; what a person waits for is the last figure.
+    out of reach as long as that is compared; what a person waits for is the wall time.
     """
 
     number: ClassVar[int] = 9
     name: ClassVar[str] = "hdrig trace on a complete campaign"
-    against: ClassVar[str] = "the same evidence with scikit-learn GP and boosting; pysindy"
+    against: ClassVar[str] = "the same rows with scikit-learn GP and boosting; pysindy; itself at other lengths"
 
     def measure(self, rounds: Rounds) -> list[Figure]:
-        with tempfile.TemporaryDirectory() as root:
-            cost([sys.executable, "-m", "tests.blind.generate", *CASE, "--out", root])
-            (campaign,) = [p for p in Path(root).iterdir() if p.is_dir() and p.name != "truth"]
-            return [*self._beside(campaign, Path(root), rounds), *self._long(Path(root), rounds)]
+        with tempfile.TemporaryDirectory() as name:
+            root, lengths = Path(name), LENGTHS[:1] if rounds.quick else LENGTHS
+            folders = [made(root, length) for length in lengths]
+            traced = [self._traced(folder, 1 if rounds.quick else TRACES) for folder in folders]
+            asked = min(1, len(folders) - 1)
+            beside = self._beside(folders[asked], traced[asked], root)
+        return [*beside, *self._alone(traced[asked]), *self._growth(traced)]
 
-    def _trace(self, campaign: Path, root: Path) -> Cost:
-        return cost([*HDRIG, "trace", str(campaign), "--out", str(root / "out")], allowed=(0, 6))
+    def _traced(self, campaign: Path, times: int) -> Traced:
+        command = [*HDRIG, "trace", str(campaign), "--out", str(campaign.parent / "out")]
+        return Traced(*size(campaign), [cost(command, allowed=(0, 6)) for _ in range(times)])
 
-    def _beside(self, campaign: Path, root: Path, rounds: Rounds) -> list[Figure]:
-        target = AtMost(0.2)
+    def _beside(self, campaign: Path, ours: Traced, root: Path) -> list[Figure]:
+        target, runs = AtMost(0.2), root / "runs"
+        runs.mkdir()
+        for manifest in campaign.glob("*/manifest.json"):  # the peers read nothing but runs
+            (runs / manifest.parent.name).symlink_to(manifest.parent)
+        told = {"campaign": str(runs), "trace": str(campaign.parent / "out" / "trace.json")}
         try:
             with Worker("tracing") as peer:
-                sides: dict[str, Side] = {"ours": lambda: self._trace(campaign, root).cpu}
-                sides |= {m: lambda m=m: float(peer.ask(method=m, campaign=str(campaign))["cpu"]) for m in PEERS}
-                found = take_turns(sides, min(rounds.count, 2))
+                theirs = {method: float(peer.ask(method=method, **told)["cpu"]) for method in PEERS}
         except Unavailable as why:
             return [not_measured(f"CPU time over {method}", target, str(why)) for method in PEERS]
-        return [ratio(f"CPU time over {method}", found["ours"], found[method], target) for method in PEERS]
+        mine = [c.cpu for c in ours.costs]
+        return [ratio(f"CPU time over {m}, {ours.label}", mine, [theirs[m]] * len(mine), target) for m in PEERS]
 
-    def _long(self, root: Path, rounds: Rounds) -> list[Figure]:
-        """The program's own complete campaign on the twin, 1 kHz."""
-        if rounds.quick:
-            return [not_measured("1.5 million samples, wall time on two cores", AtMost(10.0), "quick")]
-        cost([*HDRIG, "campaign", "complete", "--clock", "virtual", "--out", str(root / "complete")], allowed=(0, 1, 6))
-        (campaign,) = (root / "complete").iterdir()
-        found = [self._trace(campaign, root) for _ in range(2)]
+    def _alone(self, of: Traced) -> list[Figure]:
         return [
-            Figure("1.5 million samples, wall time on two cores", [c.wall for c in found], AtMost(10.0), "s"),
-            Figure("1.5 million samples, CPU time", [c.cpu for c in found], Shown(), "s"),
+            Figure(f"{of.label}: wall time on two cores", [c.wall for c in of.costs], WALL, "s"),
+            Figure(f"{of.label}: CPU time", [c.cpu for c in of.costs], Shown(), "s"),
+            Figure(f"{of.label}: most memory of both processes", [c.all_mib for c in of.costs], MEMORY, "MiB"),
         ]
+
+    def _growth(self, traced: Sequence[Traced]) -> list[Figure]:
+        """Of time and memory for each row, from each length to the next."""
+        out = []
+        for few, many in itertools.pairwise(traced):
+            times = many.rows / few.rows
+            words = f"{times:.1f} times the rows ({many.label})"
+            cpu, wall, memory = (
+                [getattr(b, what) / getattr(a, what) / times for a, b in zip(few.costs, many.costs, strict=True)]
+                for what in ("cpu", "wall", "all_mib")
+            )
+            out += [
+                Figure(f"{words}: CPU time of a row over that before", cpu, LINEAR),
+                Figure(f"{words}: wall time of a row over that before", wall, LINEAR),
+                Figure(f"{words}: memory of a row over that before", memory, LINEAR),
+                Figure(f"{words}: most memory of both processes", [c.all_mib for c in many.costs], Shown(), "MiB"),
+            ]
+        return out

@@ -16,6 +16,7 @@ from tests.blind.taken import Taken
 
 LAGS = (0.02, 0.1, 0.5)  # s, history offered to those who want it
 ROWS_PER_RUN = 400
+CHANNELS = ("t", "theta_m", "theta_l", "tau_l", "tau_m")
 
 
 def read_runs(campaign: Path) -> list[Taken]:
@@ -23,7 +24,7 @@ def read_runs(campaign: Path) -> list[Taken]:
     found = []
     for path in sorted(p for p in campaign.iterdir() if p.is_dir()):
         about = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
-        table = pq.read_table(path / "samples.parquet")
+        table = pq.read_table(path / "samples.parquet", columns=list(CHANNELS))
         columns = {name: table[name].to_numpy() for name in table.column_names}
         given = about["conditions"]
         plan = RunPlan(

@@ -28,7 +28,8 @@ from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.refine import refine
-from rig.analysis.tracing.fit.search import Found, polished, reduced, search, settled
+from rig.analysis.tracing.fit.search import Found, polished, reduced, settled
+from rig.analysis.tracing.fit.some import search_some
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
@@ -70,7 +71,8 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
     if len(solution.design.terms) < len(found.solution.design.terms):
         p = _floored(p, solution, runs)
         solution, held, worths = convicted(solution, p.court)
-    if len(solution.design.terms) < len(found.solution.design.terms) or len(solution.design.terms) > 1:
+    fewer = len(solution.design.terms) < len(found.solution.design.terms)
+    if fewer or found.rough or len(solution.design.terms) > 1:
         solution, held, worths = _polished(p, solution, (solution, held, worths), runs, covered)
     p, solution = _own_convicted(p, solution)
     solution, held, worths = convicted(unmasked(solution, runs, covered), p.court)
@@ -106,7 +108,7 @@ def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], cove
     if not refused or case.p.own.line is not None or not case.loud:
         return case
     d = case.solution.design
-    others = search(d, bank, runs, case.solution.keys, covered, case.p.floors, found.ranking, refused)
+    others = search_some(d, bank, runs, covered, case.p.floors, ranking=found.ranking, refused=refused)
     if not set(others.names) - stay:
         return case
     other = heard(case.p, others, runs, covered)

@@ -33,6 +33,10 @@ class Creep(Effect):
         """One; none in a campaign shorter than its lags, where they are powers of the time and foretell any drift."""
         return ((),) if reach.duration > self.LAGS[-1] else ()
 
+    def has_state(self) -> bool:
+        """It comes late."""
+        return True
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One follower a lag, in balance when the run begins."""
         torque = np.nan_to_num(signals.torque)
@@ -84,6 +88,10 @@ class CouplingPlay(Effect):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One."""
         return ((),)
+
+    def has_state(self) -> bool:
+        """It stays behind."""
+        return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading, for half the play of 1 rad."""

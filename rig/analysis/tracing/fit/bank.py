@@ -12,7 +12,7 @@ from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.laid import Block, Index, Single, laid
 from rig.analysis.tracing.runs.recording import Recording, settled
-from rig.analysis.tracing.workers import each
+from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array, Effect, Reach
 
 Products = tuple[dict[str, Array], ...]
@@ -70,6 +70,7 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     clean, noise = ({k: b for found in part for k, b in found.items()} for part in zip(*each(of, runs), strict=True))
     wide = {c: _widest([b for (_, channel), b in clean.items() if channel == c], len(terms)) for c in CHANNELS}
     clean, noise = ({key: b.spread(wide[key[1]]) for key, b in blocks.items()} for blocks in (clean, noise))
+    give_back()  # columns of single terms, half as much again as the bank
     return Bank(
         terms,
         {key: b.columns for key, b in clean.items()},

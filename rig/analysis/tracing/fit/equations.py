@@ -58,6 +58,35 @@ class Term:
 
 
 @dataclass(frozen=True)
+class Bare:
+    """Columns `x` (n, k) without what a run has to itself, which are never written out as long as it can be helped: of
+    the baseline there are 80 numbers a row, and many designs. `less` (k,) is taken off each, then what lies along
+    `local` (n, q), orthonormal; both None of columns that are bare already.
+    """
+
+    x: Array
+    less: Array | None = None
+    local: Array | None = None
+
+    def times(self, c: Array) -> Array:
+        """Their sum with coefficients `c` (k,), (n,)."""
+        return self._apart(self.x @ c if self.less is None else self.x @ c - self.less @ c)
+
+    def onto(self, v: Array) -> Array:
+        """Their products with `v` (n,) or (n, m): (k,) or (k, m)."""
+        v = self._apart(v)
+        made = self.x.T @ v
+        return np.asarray(made if self.less is None else made - np.multiply.outer(self.less, v.sum(0)))
+
+    def whole(self) -> Array:
+        """Written out, (n, k)."""
+        return self._apart(self.x if self.less is None else self.x - self.less)
+
+    def _apart(self, v: Array) -> Array:
+        return v if self.local is None else np.asarray(v - self.local @ (self.local.T @ v))
+
+
+@dataclass(frozen=True)
 class Equations:
     """`rows` of every run and channel as they are; `own` are columns (n, q) each run has to itself."""
 
@@ -95,6 +124,10 @@ class Equations:
         local = self.local.get(key)
         return x if local is None else np.asarray(x - local @ (local.T @ x))
 
+    def bared(self, key: Key, x: Array) -> Bare:
+        """The same of `x` (n, k), not written out."""
+        return Bare(x, self.share_of_mean(key, x.shape[0]) * x.mean(0), self.local.get(key))
+
     def kept(self, run: int) -> dict[str, Rows]:
         """Rows of a run by channel."""
         return {c: r for c in CHANNELS if (r := self.rows.get((run, c))) is not None}
@@ -107,13 +140,12 @@ class Equations:
         """The same in all rows, (n, k); `noisy`: with sensor noise once more."""
         return unmasked_columns(self.noisy[run] if noisy else self.runs[run], term, self.kept(run))
 
-    def spoilt(self, run: int) -> dict[str, tuple[Array, Array]]:
+    def spoilt(self, run: int) -> dict[str, tuple[Array, Bare]]:
         """What sensor noise does to the response (n,) and to the baseline's columns (n, b) of one run, bare."""
         noisy, out = self.noisy[run], {}
         for c, r in self.kept(run).items():
-            y, z, at = noisy.once(c, partial(unmasked, noisy, c))
-            shared = z[:, shared_columns(noisy, c, at)]
-            out[c] = self.bare((run, c), y[r.keep] - r.y), self.bare((run, c), shared[r.keep] - r.z)
+            y, z = noisy.once(c, partial(_beside, noisy, c, r))
+            out[c] = self.bare((run, c), y), self.bared((run, c), z)
         return out
 
     def spoilt_term(self, run: int, term: Term, clean: dict[str, Array]) -> dict[str, Array]:
@@ -139,6 +171,12 @@ class Equations:
         return replace(self, rows={**self.rows, **made})
 
 
+def _beside(noisy: Recording, channel: str, r: Rows) -> tuple[Array, Array]:
+    """What a noisy run's response (n,) and columns (n, b) have more than those of the run itself."""
+    y, z, at = unmasked(noisy, channel)
+    return y[r.keep] - r.y, z[r.keep][:, shared_columns(noisy, channel, at)] - r.z
+
+
 def orthonormal(x: Array) -> Array:
     """An orthonormal basis (n, q) of the columns of `x`."""
     q, r = np.linalg.qr(x)
@@ -146,12 +184,12 @@ def orthonormal(x: Array) -> Array:
 
 
 def acting(run: Recording, term: Term) -> list[dict[Port, Array]]:
-    """What a term does along each piece, (n, k) a port. Parts of one piece are cut from what it does along the whole: a
-    loop or a resonance that began anew at every cut would be another one."""
+    """What a term does along each piece, (n, k) a port. Of an effect with a state, parts of one piece are cut from what
+    it does along the whole: a loop or a resonance that began anew at every cut would be another one."""
     wholes: dict[int, Mapping[Port, Array]] = {}
     out = []
     for piece in run.pieces:
-        if piece.cut is None:
+        if piece.cut is None or not term.effect.has_state():
             out.append(dict(term.effect.columns(piece, term.shape)))
             continue
         whole = piece.cut.whole

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
-from rig.analysis.tracing.fit.equations import Equations, Key, Term
+from rig.analysis.tracing.fit.equations import Bare, Equations, Key, Term
 from rig.analysis.tracing.thresholds import LAG, LATEST, MESH, SECOND
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
@@ -22,14 +22,14 @@ PINNED = 1e6  # times what the data know of it
 
 @dataclass(frozen=True)
 class Part:
-    """Some of the model's columns in one block, bare, (n, k), and their places among all coefficients (k,).
+    """Some of the model's columns in one block, (n, k), and their places among all coefficients (k,).
 
     `spoilt` is what sensor noise does to them (n, k), in the blocks that stand for all; else None.
     """
 
-    z: Array
+    z: Bare
     at: npt.NDArray[np.int64]
-    spoilt: Array | None
+    spoilt: Bare | None
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Design:
         """What coefficients `x` (p,) leave in a block, (n,)."""
         e = self.y[key]
         for part in self.parts[key]:
-            e = e - part.z @ x[part.at]
+            e = e - part.z.times(x[part.at])
         return e
 
     def noise_left(self, key: Key, x: Array) -> Array:
@@ -68,13 +68,13 @@ class Design:
         e = self.noise[key]
         for part in self.parts[key]:
             if part.spoilt is not None:
-                e = e - part.spoilt @ x[part.at]
+                e = e - part.spoilt.times(x[part.at])
         return e
 
     def whole(self, key: Key) -> tuple[Array, npt.NDArray[np.int64]]:
         """All columns of a block side by side, and their places."""
         parts = self.parts[key]
-        return np.hstack([part.z for part in parts]), np.concatenate([part.at for part in parts])
+        return np.hstack([part.z.whole() for part in parts]), np.concatenate([part.at for part in parts])
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
 
     def of(key: Key) -> tuple[Array, Part]:
         r, noise = eq.rows[key], spoilt[key][1] if key in spoilt else None
-        return eq.bare(key, r.y), Part(eq.bare(key, r.z), np.array(r.at), noise)
+        return eq.bare(key, r.y), Part(eq.bared(key, r.z), np.array(r.at), noise)
 
     keys = eq.of(runs)
     with ThreadPoolExecutor(WORKERS) as pool:
@@ -140,7 +140,7 @@ def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
         made = {key: c for part in pool.map(of, runs) for key, c in part.items() if key in d.y}
     width = next(iter(made.values()))[0].shape[1] if made else 0
     at = np.arange(d.size, d.size + width)
-    new = {key: Part(z, at, spoilt) for key, (z, spoilt) in made.items()}
+    new = {key: Part(Bare(z), at, None if noise is None else Bare(noise)) for key, (z, noise) in made.items()}
     parts = {key: (*old, new[key]) if key in new else old for key, old in d.parts.items()}
     out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), parts=parts)
     part, right = normal(out, new)
@@ -168,17 +168,17 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
 
 def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, Array]]:
     """Of each part of a block with `mine`, and of that one with y."""
-    w = d.eq.noise.weight(key[1])
-    along = w * (mine.z.T @ d.y[key])
+    w, z = d.eq.noise.weight(key[1]), mine.z.whole()
+    along = w * (z.T @ d.y[key])
     if mine.spoilt is None:
-        return [(part, mine, w * (part.z.T @ mine.z), along) for part in d.parts[key]]
-    v = w * d.eq.stands_for[key]
-    along -= v * (mine.spoilt.T @ d.noise[key])
+        return [(part, mine, w * part.z.onto(z), along) for part in d.parts[key]]
+    v, noise = w * d.eq.stands_for[key], mine.spoilt.whole()
+    along -= v * (noise.T @ d.noise[key])
     out = []
     for part in d.parts[key]:
-        across = w * (part.z.T @ mine.z)
+        across = w * part.z.onto(z)
         if part.spoilt is not None:
-            across -= v * (part.spoilt.T @ mine.spoilt)
+            across -= v * part.spoilt.onto(noise)
         out.append((part, mine, across, along))
     return out
 

@@ -54,10 +54,10 @@ def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, A
         made: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.floating]]] = []
         for part in (p for p in d.parts[key] if p.at[0] >= first):
             w = d.eq.noise.weight(key[1])
-            made.append((part.at, w * (part.z.T.astype(np.float32) @ bank.columns[key])))
+            made.append((part.at, w * (part.z.whole().T.astype(np.float32) @ bank.columns[key])))
             if key in bank.spoilt and part.spoilt is not None:
                 w *= d.eq.stands_for[key]
-                made.append((part.at, -w * (part.spoilt.T.astype(np.float32) @ bank.spoilt[key])))
+                made.append((part.at, -w * (part.spoilt.whole().T.astype(np.float32) @ bank.spoilt[key])))
         return made
 
     out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}

@@ -32,10 +32,12 @@ class Scored:
 
 @dataclass(frozen=True)
 class Found:
-    """Terms in the model and the fit; `ranking` is the first round's, best shape of each effect."""
+    """Terms in the model and the fit; `ranking` is the first round's, best shape of each effect. `rough`: shapes were
+    found on some of the rows."""
 
     solution: Solution
     ranking: tuple[Scored, ...]
+    rough: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -32,6 +32,10 @@ class Slope(Effect):
         """As the effect."""
         return self.of.moved_by_noise()
 
+    def has_state(self) -> bool:
+        """As the effect."""
+        return self.of.has_state()
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """(n, 1) at every port of the effect."""
         up, down = (

@@ -280,7 +280,7 @@ def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tu
         if id(whole) not in wholes:
             wholes[id(whole)] = change(whole)
         made = wholes[id(whole)]
-        out.append(made if piece.cut is None else made.part(slice(piece.cut.rows.start, piece.cut.rows.stop)))
+        out.append(made if piece.cut is None else piece.cut.again(made))
     return tuple(out)
 
 
