@@ -283,6 +283,11 @@ class Effect(ABC):
         """True when noise of a reading moves a state of its own, and does not add to its columns."""
         return False
 
+    def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
+        """Whether the number that scales the law (a speed, a torque, a time), with its interval, says anything of it;
+        else what it explains is a difference between some runs and others, which many laws make."""
+        return not scale.ci95[0] <= 0 <= scale.ci95[1]
+
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
         return False

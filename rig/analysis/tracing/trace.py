@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import beyond_doubt, heard, heard_again, heard_alone, is_calm
+from rig.analysis.tracing.court.hearing import beyond_doubt, heard, is_calm
 from rig.analysis.tracing.court.judge import Court, court
+from rig.analysis.tracing.court.second import heard_further
 from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
 from rig.analysis.tracing.fit.channels import known_of
@@ -68,8 +69,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     give_back()
     case = heard(again, found, runs, covered)
     if not quiet:
-        case = heard_again(case, found, bank, runs, covered)
-        case = heard_alone(case, found, runs, covered)
+        case = heard_further(case, found, bank, runs, covered)
     if (quiet or is_calm(p)) and not beyond_doubt(case):
         found = Found(start, found.ranking)
         case = heard(p, found, runs, covered)

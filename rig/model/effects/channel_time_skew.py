@@ -19,31 +19,38 @@ class ChannelTimeSkew(Effect):
 
     From the reading θ: −[θ(t + δ) − θ(t)] = −δ·(ω + δ·α/2 + δ²·j/6) with speed, acceleration and jerk as read; the
     motor's jerk is left out, most of it is noise. In A a late motor angle is an early load angle; what tells them apart
-    is which inertia's torque comes late.
+    is which inertia's torque comes late. Where two clocks run apart, δ grows along the campaign: δ + δ'·t.
     """
 
     name: ClassVar[str] = "channel_time_skew"
     in_short: ClassVar[str] = "one channel read later than another"
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("side", "about")  # about: s, the skew the expansion is made at
-    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "about", "drifts")  # about: s, the skew the expansion is made at
+    loose: ClassVar[tuple[bool, ...]] = (False, False, False)
+    LONG: Final = 1e3  # s, after which δ' is told
     LARGEST: Final = 7e-3  # s, a quarter of a period at 36 Hz
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Expansion points."""
-        return tuple((side, step) for side in (LOAD, MOTOR, TORQUE) for step in self.STEPS)
+        """Expansion points, for the sensors there are."""
+        sides = [side for side, reading in READING.items() if reading in reach.has]
+        steady = [(side, step, 0.0) for side in sides for step in self.STEPS]
+        return (*steady, *((side, 0.0, 1.0) for side in sides))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column; its coefficient is δ."""
-        side, delta = shape
+        """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG."""
+        side, delta, drifts = shape
+        port, late = self._late(signals, side, delta)
+        return {port: -np.stack([late, late * signals.t / self.LONG], 1) if drifts else -late[:, None]}
+
+    def _late(self, s: Signals, side: float, delta: float) -> tuple[Port, Array]:
+        """What a reading changes by in δ, over δ."""
         if side == MOTOR:
-            return {Port.READS_THETA_M: -(signals.omega_m + delta / 2 * signals.alpha_m)[:, None]}
+            return Port.READS_THETA_M, s.omega_m + delta / 2 * s.alpha_m
         if side == TORQUE:
-            return {Port.READS_TAU_L: -self._rate(signals, delta)[:, None]}
-        late = signals.omega_l + delta / 2 * signals.alpha_l + delta**2 / 6 * signals.jerk_l
-        return {Port.READS_THETA_L: -late[:, None]}
+            return Port.READS_TAU_L, self._rate(s, delta)
+        return Port.READS_THETA_L, s.omega_l + delta / 2 * s.alpha_l + delta**2 / 6 * s.jerk_l
 
     def _rate(self, signals: Signals, delta: float) -> Array:
         """[T(t + δ) − T(t)]/δ of the smooth reading, N·m/s."""
@@ -54,15 +61,19 @@ class ChannelTimeSkew(Effect):
         return np.asarray((np.interp(at + delta, at, torque) - torque) / delta)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """δ of the load angle, the motor angle or the shaft torque."""
-        along = np.zeros(fit.covariance.shape[0])
-        along[0] = 1.0
-        return (parameter(f"skew_{READING[fit.shape[0]]}", fit.coefficients[0], fit.half_width(along), "s"),)
+        """δ of the load angle, the motor angle or the shaft torque; where it drifts, δ at first and δ'."""
+        unit, name = np.eye(fit.covariance.shape[0]), READING[fit.shape[0]]
+        skew = parameter(f"skew_{name}", fit.coefficients[0], fit.half_width(unit[0]), "s")
+        if not fit.shape[2]:
+            return (skew,)
+        rate = parameter(f"drift_{name}", fit.coefficients[1] / self.LONG, fit.half_width(unit[1]) / self.LONG, "s/s")
+        return skew, rate
 
     def expands(self, shape: Shape) -> bool:
         """About the skew itself."""
         return True
 
     def about(self, shape: Shape, coefficients: Array) -> Shape:
-        """The skew as found, within a quarter of a period of what the low-pass lets through."""
-        return (shape[0], float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST)))
+        """The skew as found, within a quarter of a period of what the low-pass passes; one that drifts is small."""
+        about = 0.0 if shape[2] else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
+        return (shape[0], about, shape[2])

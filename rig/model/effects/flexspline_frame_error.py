@@ -21,7 +21,7 @@ class FlexsplineFrameError(Effect):
     source: ClassVar[str] = "jia2021"
     shape_names: ClassVar[tuple[str, ...]] = ("k", "sigma")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
-    ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
+    ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # sharp lobes have many
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Less than a sixth of an output turn cannot tell 2.04 from 2."""

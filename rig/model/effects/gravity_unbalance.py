@@ -3,31 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 
+NONE, THIRD = 0.0, 3.0  # of the second shape parameter: the overtone
+
 
 class GravityUnbalance(Effect):
-    """The load is resisted by m·g·e·cos(θ_l + φ); by a second wave where a cable or a joint pulls twice a turn"""
+    """The load is resisted by m·g·e·cos(θ_l + φ); by a second wave where a cable or a joint pulls twice a turn
+
+    A mass that has play on its arm, or that a strap holds, flattens the wave: then it has its third overtone as well.
+    """
 
     name: ClassVar[str] = "gravity_unbalance"
     in_short: ClassVar[str] = "torque once per output turn"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("order",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("order", "overtone")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    MOST: Final = 0.5  # of the wave, its overtone: a square wave has a third
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Less than a sixth of an output turn looks like a trend."""
-        return ((1.0,), (2.0,)) if reach.load_turns > 1 / 6 else ()
+        """Less than a sixth of an output turn looks like a trend, less than a half has no overtones."""
+        flattened = ((1.0, THIRD),) if reach.load_turns > 1 / 2 else ()
+        return ((1.0, NONE), (2.0, NONE), *flattened) if reach.load_turns > 1 / 6 else ()
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """Cosine and sine of the load angle."""
-        x = shape[0] * signals.theta_l
-        return {Port.LOAD_TORQUE: np.stack([np.cos(x), np.sin(x)], 1)}
+        """Cosine and sine of the load angle, and of the overtone's."""
+        waves = [shape[0] * signals.theta_l, *([shape[1] * signals.theta_l] if shape[1] else [])]
+        return {Port.LOAD_TORQUE: np.stack([f(x) for x in waves for f in (np.cos, np.sin)], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """m·g·e and phase; of a second wave amplitude and phase."""
-        return harmonic(fit, "unbalance" if fit.shape[0] == 1.0 else "twice_a_turn", "N·m")
+        """m·g·e and phase; of a second wave or an overtone amplitude and phase."""
+        wave = harmonic(fit, "unbalance" if fit.shape[0] == 1.0 else "twice_a_turn", "N·m")
+        return (*wave, *harmonic(fit, "three_times_a_turn", "N·m", first=2)) if fit.shape[1] else wave
+
+    def plausible(self, fit: Fit) -> bool:
+        """An overtone is smaller than what it is one of."""
+        if not fit.shape[1]:
+            return True
+        wave, overtone = np.hypot(*fit.coefficients[:2]), np.hypot(*fit.coefficients[2:])
+        return bool(overtone < self.MOST * wave)

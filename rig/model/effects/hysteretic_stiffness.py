@@ -12,13 +12,16 @@ from rig.model.memory import play, presliding
 
 
 class HystereticStiffness(Effect):
-    """A loop in either of two laws, told by `law`.
+    """A loop in one of three laws, told by `law`.
 
     0: φ gains Σ c_i·P_{r_i}[T], play operators of the torque: a Prandtl-Ishlinskii loop      [kuhnen2003]
     1: φ loses (T_f/K)·z, dz/dφ = (1 − z·sgn φ̇)/x_0: friction T_f in parallel to the spring, which takes its share first
     after every reversal and whose minor loops stay open      [dahl1968]
 
-    Both are rate-independent. T_h scales the half widths r_i, and is K·x_0.
+    2: the same friction in proportion to the load, φ loses (μ/K)·|T|·z: teeth are pressed together by what they carry,
+    and the loop is a wedge that closes at no torque      [wolf2018]
+
+    All are rate-independent. T_h scales the half widths r_i, and is K·x_0.
     """
 
     name: ClassVar[str] = "hysteretic_stiffness"
@@ -32,13 +35,15 @@ class HystereticStiffness(Effect):
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
     UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
     SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
-    PLAYS, FRICTION = 0.0, 1.0
+    PLAYS, FRICTION, WEDGE = 0.0, 1.0, 2.0
+    AT: Final = 20.0  # N·m, where the loss of a wedge is told
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Loops the campaign's torque can go round."""
         widths = [w for w in self.WIDTHS if w < 0.7 * reach.torque]
         plays = [(w, self.PLAYS) for w in widths]
-        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT))
+        wedges = [(w, self.WEDGE) for w in widths]
+        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges)
 
     def has_state(self) -> bool:
         """A loop."""
@@ -50,7 +55,8 @@ class HystereticStiffness(Effect):
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
         if law == self.PLAYS:
             return {Port.WIND_UP: np.stack([play(torque, width * share) for share in self.SPREAD], 1)}
-        return {Port.WIND_UP: presliding(self._wound(signals), width / signals.gear.K)[:, None]}
+        state = presliding(self._wound(signals), width / signals.gear.K)
+        return {Port.WIND_UP: (state * np.abs(torque) if law == self.WEDGE else state)[:, None]}
 
     def _wound(self, signals: Signals) -> Array:
         """φ as the encoders show it, without its noise; from the torque where one of them is missing."""
@@ -60,7 +66,8 @@ class HystereticStiffness(Effect):
         return np.asarray(play(np.ascontiguousarray(phi), self.UNMOVED))
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Wind-up between the branches at zero torque after a large swing, and the scale of the half widths."""
+        """Wind-up between the branches after a large swing, at zero torque or, of a wedge, at AT; and the scale of the
+        half widths."""
         gap, width = np.zeros((2, fit.covariance.shape[0]))
         weights = self._gap(fit.shape)
         gap[: weights.size] = weights
@@ -79,9 +86,11 @@ class HystereticStiffness(Effect):
     def _gap(self, shape: Shape) -> Array:
         """What each coefficient adds to the wind-up between the branches, (k,)."""
         width, law = shape
-        return 2.0 * width * np.array(self.SPREAD) if law == self.PLAYS else np.array([-2.0])
+        if law == self.PLAYS:
+            return 2.0 * width * np.array(self.SPREAD)
+        return np.array([-2.0 * (self.AT if law == self.WEDGE else 1.0)])
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of T_h; the law is chosen, not fitted."""
         widths = [w for w, _ in self.shapes(reach)]
-        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.FRICTION)) if widths else ()
+        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.WEDGE)) if widths else ()

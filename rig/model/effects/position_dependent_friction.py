@@ -21,7 +21,16 @@ class PositionDependentFriction(Effect):
     source: ClassVar[str] = "tuttle1992"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
-    ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the wave generator's own geometry: two lobes and their halves
+    ORDERS: Final = (
+        1.0,
+        2.0,
+        3.0,
+        4.0,
+        5.0,
+        6.0,
+        7.0,
+        8.0,
+    )  # two lobes, their halves and what a tight spot between them has
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the motor."""

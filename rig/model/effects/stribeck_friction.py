@@ -20,6 +20,7 @@ class StribeckFriction(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
     loose: ClassVar[tuple[bool, ...]] = (True, True)
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
+    CREEP: Final = 0.2  # of the fastest speed
     EXPONENTS: Final = (1.0, 2.0)  # what is reported: 0.5 to 2; between these two the curves differ by a tenth
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -44,6 +45,11 @@ class StribeckFriction(Effect):
     def plausible(self, fit: Fit) -> bool:
         """Friction at rest is the larger one."""
         return bool(fit.coefficients[0] > 0)
+
+    def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
+        """Also where the fall lies in a gap between the speeds of the runs, and no run tells how steep it is: that
+        creeping takes more friction than all faster running is the effect."""
+        return super().is_scaled(scale, reach) or scale.ci95[1] < self.CREEP * reach.fastest
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """Where friction falls over all the speeds of a gear: no Stribeck effect but another curve of the speed."""

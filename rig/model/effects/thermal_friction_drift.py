@@ -9,14 +9,19 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-CLOCK, HEAT = 0.0, 1.0  # of the law: warm by the time of day, or by what friction has turned into heat
+CLOCK, HEAT, SOAK = (
+    0.0,
+    1.0,
+    2.0,
+)  # of the law: warm by the time of day, by what friction turned into heat, from outside
 
 
 class ThermalFrictionDrift(Effect):
-    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in either of two laws:
+    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in one of three laws:
 
     0: c = exp(−t/t_w), t since the campaign began      [wolf2018]
     1: c = exp(−β·H(t)), H the heat of its own friction, which leaks with t_w: fast runs warm it, pauses cool it
+    2: c = exp(−√(t/t_w)), heat that soaks into a thick body: fast at first, for long after
 
     What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on.
     """
@@ -34,17 +39,26 @@ class ThermalFrictionDrift(Effect):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Time constants the campaign is long enough for."""
         clocks = [(t, CLOCK, self.BETA) for t in self.TIMES if t < 2 * reach.duration]
-        return (*clocks, *((t, HEAT, self.BETA) for t in self.LEAKS if t < 2 * reach.duration))
+        soaks = [(t, SOAK, self.BETA) for t in self.LEAKS if t < 2 * reach.duration]
+        return (*clocks, *soaks, *((t, HEAT, self.BETA) for t in self.LEAKS if t < 2 * reach.duration))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """The law is chosen; β from a big cold gear box to a small one that gets hot."""
-        return (self.TIMES[0] / 3, self.TIMES[-1] * 3), (CLOCK, HEAT), (self.BETA / 50, self.BETA * 20)
+        return (self.TIMES[0] / 3, self.TIMES[-1] * 3), (CLOCK, SOAK), (self.BETA / 50, self.BETA * 20)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Constant and viscous part."""
         t_w, law, beta = shape
-        cold = np.exp(-beta * signals.heat(t_w)) if law == HEAT else np.exp(-signals.t / t_w)
+        if law == HEAT:
+            cold = np.exp(-beta * signals.heat(t_w))
+        else:
+            cold = np.exp(-((np.maximum(signals.t, 0.0) / t_w) ** (0.5 if law == SOAK else 1.0)))
         return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
+
+    def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
+        """Also where it goes on for longer than was measured: then it is a straight line, or a root, of the time, and
+        how long it would have gone on nobody can say."""
+        return super().is_scaled(scale, reach) or scale.value > reach.duration
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, and its time constant."""
@@ -54,6 +68,6 @@ class ThermalFrictionDrift(Effect):
             parameter("B_cold", fit.coefficients[1], fit.half_width(viscous), "N·m·s/rad"),
             parameter("t_w", fit.shape[0], fit.half_width(time), "s"),
         )
-        if fit.shape[1] == CLOCK:
+        if fit.shape[1] != HEAT:
             return cold
         return (*cold, parameter("beta", fit.shape[2], fit.half_width(per_joule), "1/J"))

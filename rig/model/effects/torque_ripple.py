@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -12,7 +12,10 @@ from rig.model.motor_orders import MOTOR_ORDERS
 
 
 class TorqueRipple(Effect):
-    """The motor gives τ_m·(1 − r·cos(k·θ_m + φ)): what is missing resists it
+    """The motor gives τ_m·(1 − r·cos(k·θ_m + φ)): what is missing resists it      [krause2013]
+
+    A large current turns the motor's field, and φ with it, or saturates its iron: r·cos(k·θ_m + φ) gains a part in
+    proportion to τ_m then.
 
     Cogging is there without current; where the torque hardly changes over the runs the two cannot be told apart.
     """
@@ -20,18 +23,23 @@ class TorqueRipple(Effect):
     name: ClassVar[str] = "torque_ripple"
     in_short: ClassVar[str] = "motor torque ripple in proportion to current"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("order",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    REACTS: Final = (*range(1, 13), 18, 24, 30, 36)  # orders large enough for the current to change them
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Those of a servo motor."""
-        return tuple((float(k),) for k in MOTOR_ORDERS)
+        reacts = [(float(k), 1.0) for k in self.REACTS]
+        return (*((float(k), 0.0) for k in MOTOR_ORDERS), *reacts)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """τ_m times cosine and sine."""
+        """τ_m times cosine and sine, and τ_m² times them."""
         x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m) * signals.tau_m
-        return {Port.MOTOR_TORQUE: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
+        waves = np.stack([kept * np.cos(x), kept * np.sin(x)], 1)
+        return {Port.MOTOR_TORQUE: np.hstack([waves, waves * signals.tau_m[:, None]]) if shape[1] else waves}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Relative amplitude and phase."""
-        return harmonic(fit, f"order_{fit.shape[0]:g}", "1")
+        """Relative amplitude and phase; of what grows with the torque too."""
+        name = f"order_{fit.shape[0]:g}"
+        more = harmonic(fit, f"{name}_by_torque", "1/(N·m)", first=2) if fit.shape[1] else ()
+        return (*harmonic(fit, name, "1"), *more)

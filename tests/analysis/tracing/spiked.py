@@ -24,17 +24,20 @@ def spiked(
 ) -> Trace:
     """A campaign, or some runs of it, traced with columns changed by `law`, which gets a run's columns and when it
     began [s]."""
-    started: dict[str, float] = {}
     for run in sorted(p for p in campaign.iterdir() if p.is_dir() and (only is None or p.name in only)):
-        manifest = json.loads((run / "manifest.json").read_text())
-        began = np.datetime64(manifest["started_utc"][:19]).astype(float)
+        began = started(run)
         table = pq.read_table(run / "samples.parquet")
         columns = {name: table[name].to_numpy() for name in table.column_names}
-        started[run.name] = began
         shutil.copytree(run, to / run.name)
         changed = columns | law(columns, began)
         pq.write_table(pa.table(changed), to / run.name / "samples.parquet")
     return trace(to)
+
+
+def started(run: Path) -> float:
+    """When a run began, s."""
+    manifest = json.loads((run / "manifest.json").read_text())
+    return float(np.datetime64(manifest["started_utc"][:19]).astype(float))
 
 
 def under(c: Columns, torque: np.ndarray) -> Columns:

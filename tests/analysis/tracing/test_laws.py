@@ -9,19 +9,28 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rig.analysis.tracing.runs.smoothing import thin
-from rig.model.effect import Array, Fit, Moved, Port, Signals
+from rig.model.effect import Array, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
+from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
+from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
+from rig.model.effects.gravity_unbalance import GravityUnbalance
+from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.quadratic_drag import QuadraticDrag
+from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
+from rig.model.effects.thermal_friction_drift import SOAK, ThermalFrictionDrift
+from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
+STRAIGHT = dataclasses.replace(KNOWN, kinematic_error=FourierSeries((), ()))
 
 
 @pytest.mark.parametrize("hz", [10.0, 60.0, 80.0, 125.0, 170.0, 250.0, 430.0, 510.0, 853.0, 990.0])
@@ -139,7 +148,7 @@ def test_a_knee_at_no_torque_is_a_gap_and_no_spring() -> None:
 
 def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
     s, effect = motion(), LoadDependentKinematicError()
-    whole, apart = (effect.columns(s, (of, 3.0, 3e-3)) for of in (TORQUE, TORQUE + EACH))
+    whole, apart = (effect.columns(s, (of, 3.0, 3e-3, 1.0)) for of in (TORQUE, TORQUE + EACH))
     series = s.gear.kinematic_error
     a, b = ((*part, *4 * (0.0,)) for part in (series.a, series.b))
     alike = np.array([*(a[n - 1] for n in ORDERS), *(b[n - 1] for n in ORDERS), 1.0])
@@ -151,7 +160,7 @@ def test_the_share_of_an_order_that_stays_is_told_with_its_interval_whatever_the
     series = FourierSeries((0.0, 3e-5, 0.0, 1e-5), (0.0, 4e-5, 0.0, 0.0))
     known = dataclasses.replace(KNOWN, kinematic_error=series)
     gone = np.array([0.0, 12e-5, 0.0, 0.0, 16e-5, 0.0, 0.0])  # of orders 1, 2, 4: four times what stays of the second
-    fit = Fit(gone, (TORQUE + EACH, 2.0, 3e-3), np.diag([1e-12] * 7 + [0.0] * 3), known, N)
+    fit = Fit(gone, (TORQUE + EACH, 2.0, 3e-3, 1.0), np.diag([1e-12] * 7 + [0.0] * 4), known, N)
     found = {p.name: p for p in LoadDependentKinematicError().parameters(fit)}
     assert found["A_inf"].value == pytest.approx(0.2)
     assert found["A_inf"].ci95[1] - found["A_inf"].value == pytest.approx(1.96 * 0.2 * 1e-6 / 25e-5)
@@ -195,7 +204,103 @@ def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be:
 @pytest.mark.parametrize("late", [0.0, 4e-3])
 def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None:
     s = motion()
-    column = ChannelTimeSkew().columns(s, (TORQUE_LATE, late))[Port.READS_TAU_L][:, 0]
+    column = ChannelTimeSkew().columns(s, (TORQUE_LATE, late, 0.0))[Port.READS_TAU_L][:, 0]
     delta = late or 1e-4
     now = 25.0 * np.sin(2 * np.pi * 0.7 * (s.t + delta) + 0.2)
     np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)
+
+
+def test_a_steeper_fall_goes_faster_beyond_its_torque_and_slower_below() -> None:
+    s, effect = motion(), LoadDependentKinematicError()
+    even, steep = (effect.columns(s, (TORQUE, 5.0, 1e-4, d))[Port.KINEMATIC_ERROR][:, 0] for d in (1.0, 2.0))
+    value = s.series_value
+    light, heavy = np.abs(s.torque) < 2.0, np.abs(s.torque) > 15.0
+    assert (even[light] / value[light]).mean() < (steep[light] / value[light]).mean()
+    assert (even[heavy] / value[heavy]).mean() > (steep[heavy] / value[heavy]).mean()
+
+
+def test_a_flattened_weight_has_a_third_wave_smaller_than_half_of_the_first() -> None:
+    effect, turn = GravityUnbalance(), np.linspace(0.0, 2 * np.pi, 500)
+    s = dataclasses.replace(motion(n=500), theta_l=turn)
+    z = effect.columns(s, (1.0, 3.0))[Port.LOAD_TORQUE]
+    c = np.linalg.lstsq(z, np.tanh(1.8 * np.sin(turn)), rcond=None)[0]
+    fit = Fit(c, (1.0, 3.0), np.eye(6), KNOWN, N)
+    assert effect.plausible(fit)
+    assert {p.name for p in effect.parameters(fit)} >= {"unbalance_amplitude", "three_times_a_turn_amplitude"}
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=c[[2, 3, 0, 1]]))
+
+
+def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() -> None:
+    effect = StribeckFriction()
+    assert effect.is_scaled(Parameter("omega_s", 0.3, (-2.0, 4.0), "rad/s"), REACH)
+    assert not effect.is_scaled(Parameter("omega_s", 9.0, (-20.0, 38.0), "rad/s"), REACH)
+    assert not NonlinearStiffness().is_scaled(Parameter("T_0", 0.3, (-2.0, 4.0), "N·m"), REACH)
+
+
+def test_a_fan_of_curved_blades_drags_otherwise_backwards() -> None:
+    effect = QuadraticDrag()
+    ways = [effect.columns(motion(sign), (1.0, 2.0))[Port.MOTOR_TORQUE] for sign in (1.0, -1.0)]
+    whole = [effect.columns(motion(sign), (0.0, 2.0))[Port.MOTOR_TORQUE][:, 0] for sign in (1.0, -1.0)]
+    for i, (columns, drag) in enumerate(zip(ways, whole, strict=True)):
+        np.testing.assert_array_equal(columns[:, i], drag)
+        assert not columns[:, 1 - i].any()
+
+
+def test_heat_that_soaks_in_falls_with_the_root_of_the_time() -> None:
+    at = dataclasses.replace(motion(n=3), t=np.array([0.0, 1.0, 4.0]), way=np.ones(3))
+    column = ThermalFrictionDrift().columns(at, (1e4, SOAK, 1e-3))[Port.MOTOR_TORQUE][:, 0]
+    np.testing.assert_allclose((column[0] - column[1:]) / (column[0] - column[1]), [1.0, 2.0], rtol=0.01)
+
+
+def test_a_warm_up_that_outlasts_the_campaign_is_known_without_its_end() -> None:
+    effect = ThermalFrictionDrift()
+    assert effect.is_scaled(Parameter("t_w", 1.5 * REACH.duration, (-9e3, 2e4), "s"), REACH)
+    assert not effect.is_scaled(Parameter("t_w", 0.1 * REACH.duration, (-9e3, 2e4), "s"), REACH)
+
+
+def test_clocks_that_run_apart_make_the_skew_grow_with_the_time() -> None:
+    effect, s = ChannelTimeSkew(), motion()
+    late = dataclasses.replace(s, t=s.t + 500.0)
+    for side in (LOAD_LATE, MOTOR_LATE, TORQUE_LATE):
+        (steady,) = effect.columns(late, (side, 0.0, 0.0)).values()
+        (drifting,) = effect.columns(late, (side, 0.0, 1.0)).values()
+        np.testing.assert_allclose(drifting[:, 0], steady[:, 0])
+        np.testing.assert_allclose(drifting[:, 1], steady[:, 0] * late.t / 1000.0)
+    assert effect.about((LOAD_LATE, 0.0, 1.0), np.array([1e-3, 1e-3])) == (LOAD_LATE, 0.0, 1.0)
+
+
+def test_no_torque_sensor_is_late_where_there_is_none() -> None:
+    there = {shape[0] for shape in ChannelTimeSkew().shapes(REACH)}
+    assert there == {LOAD_LATE, MOTOR_LATE, TORQUE_LATE}
+    without = dataclasses.replace(REACH, has=REACH.has - {"tau_l"})
+    assert {shape[0] for shape in ChannelTimeSkew().shapes(without)} == {LOAD_LATE, MOTOR_LATE}
+
+
+def test_a_field_that_the_current_turns_is_a_ripple_that_grows_with_the_torque() -> None:
+    """τ·cos(kθ + c·τ) by its two pairs, where the turn is small."""
+    s, c = motion(), 0.1
+    z = TorqueRipple().columns(s, (12.0, 1.0))[Port.MOTOR_TORQUE]
+    turned = s.tau_m * np.cos(12.0 * s.theta_m + c * s.tau_m)
+    coefficients = np.linalg.lstsq(z, turned, rcond=None)[0]
+    np.testing.assert_allclose(coefficients, [1.0, 0.0, 0.0, -c], atol=0.01)
+
+
+def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
+    """Gone round slowly forth and back, the branches lie as far apart as the torque is large."""
+    effect, n = HystereticStiffness(), 8000
+    torque = 40.0 * np.sin(np.linspace(0.0, 6 * np.pi, n))
+    phi = torque / KNOWN.K
+    s = dataclasses.replace(motion(n=n), torque=torque, theta_m=np.zeros(n), theta_l=-phi, gear=STRAIGHT)
+    column = effect.columns(s, (1.5, effect.WEDGE))[Port.WIND_UP][:, 0]
+    rising = np.gradient(torque) > 0
+    late = np.arange(n) > n // 3
+
+    def gap(at: float) -> float:
+        near = late & (np.abs(torque - at) < 0.3)
+        return float(column[near & rising].mean() - column[near & ~rising].mean())
+
+    assert gap(20.0) == pytest.approx(2 * gap(10.0), rel=0.05)
+    assert abs(gap(0.0)) < 0.05 * gap(20.0)
+    fit = Fit(np.array([-1e-6]), (1.5, effect.WEDGE), np.eye(3), KNOWN, N)
+    assert effect.plausible(fit)
+    assert effect.parameters(fit)[0].value == pytest.approx(1e-6 * gap(effect.AT), rel=0.05)

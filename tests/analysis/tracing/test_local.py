@@ -1,5 +1,6 @@
 """Jumps are found where they are, and drift, waves and noise are no jumps."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,8 +8,10 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
-from rig.analysis.tracing.floor.steps import Steps, _jumps, explained, lost_counts
-from rig.analysis.tracing.floor.vibration import _heights
+from rig.analysis.tracing.floor.steps import Steps, _jumps, _rested, explained, lost_counts
+from rig.analysis.tracing.floor.vibration import _as_one, _heights
+from rig.model.effects.missed_counts import LOAD
+from tests.analysis.tracing.spiked import Columns, spiked, started
 
 RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)
@@ -48,7 +51,7 @@ def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
     runs = [SimpleNamespace(ratio=50.0)] * len(angles)
     rows = {(i, "A"): SimpleNamespace(theta_m=theta) for i in range(len(angles))}
     at = {i: (int(np.searchsorted(theta, angle)),) for i, angle in enumerate(angles)}
-    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)))
+    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)), dict.fromkeys(at, (LOAD,)))
 
 
 def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts() -> None:
@@ -70,3 +73,59 @@ def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_tor
     e = {(0, "A"): 5e-5 * (step - step.mean()), (0, "M"): 5e-3 * RNG.standard_normal(1000)}
     columns = {(0, "A"): step[:, None], (0, "M"): np.eye(1000)[:, 400:401]}
     assert explained(eq, e, columns) > 0.9
+
+
+def test_a_motor_that_goes_on_across_rows_that_are_held_out_has_not_rested() -> None:
+    t = np.arange(600) * 0.008
+    theta = 5.0 * t
+    held_out = np.delete(np.arange(600), np.arange(200, 300))
+    assert not _rested(theta[held_out], t[held_out]).any()
+    paused = np.where(t < 2.0, theta, np.maximum(theta - 3.0, 10.0))
+    assert np.flatnonzero(_rested(paused[held_out], t[held_out])).tolist() == [199]
+
+
+STEPS = {  # rad that a reading is off by from a moment on, by run
+    "load_10nm_1": ("theta_m", -33 * 2 * np.pi / 65536),
+    "speed_200rpm_1": ("theta_l", 12 * 2 * np.pi / 1296000),
+}
+
+
+@pytest.mark.slow
+def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated(tmp_path: Path, shared: Path) -> None:
+    names = ("slow_ke_1", "load_2.5nm_1", "load_10nm_1", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1")
+
+    def stepped(c: Columns, began: float) -> Columns:
+        name = next(name for name, at in starts.items() if at == began)
+        if name not in STEPS:
+            return {}
+        channel, size = STEPS[name]
+        return {channel: c[channel] + np.where(np.arange(c["t"].size) > 0.45 * c["t"].size, size, 0.0)}
+
+    campaign = shared / "cases" / "open-1"
+    starts = {name: started(campaign / name) for name in names}
+    found = spiked(tmp_path, campaign, stepped, names)
+    assert found.verdict.effects == ("missed_counts",)
+    values = {p.name: p.value for p in found.effects[0].parameters}
+    assert values["step_theta_m"] == pytest.approx(33 * 2 * np.pi / 65536 / 50, rel=0.1)
+    assert values["step_theta_l"] == pytest.approx(12 * 2 * np.pi / 1296000, rel=0.1)
+
+
+@pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])
+def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_torque_as_one(
+    of_the_load: bool, share: float
+) -> None:
+    """In the proportion 1/K to 1/N; what one sensor picks up shows in one of them."""
+    t = np.arange(4000) * 0.008
+    wave = np.stack([np.cos(70.0 * t), np.sin(70.0 * t)], 1)
+    columns = {(0, "A"): wave / 7200.0, (0, "M"): wave / 50.0}
+    torque = wave @ np.array([0.2, 0.1])
+    e = {
+        (0, "A"): torque / 7200.0 + 5e-6 * RNG.standard_normal(t.size),
+        (0, "M"): (torque / 50.0 if of_the_load else 0.0) + 2e-3 * RNG.standard_normal(t.size),
+    }
+    noise = Noise({"A": 5e-6, "M": 2e-3}, {"A": 1.0, "M": 1.0}, {"A": np.inf, "M": np.inf})
+    run: Any = SimpleNamespace(locked=False)
+    as_one, sizes = _as_one(Equations((run,), {}, noise), e, columns)
+    assert as_one > share if of_the_load else as_one < share
+    if of_the_load:
+        assert sizes == [pytest.approx(np.hypot(0.2, 0.1), rel=0.01)]

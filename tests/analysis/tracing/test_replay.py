@@ -53,7 +53,7 @@ def test_a_gap_of_lost_motion_shifts_the_load_and_keeps_its_shape_under_steady_l
 
 def test_an_angle_read_late_is_late_in_the_simulation():
     s = turning(300.0)
-    late = ((Term(CATALOGUE["channel_time_skew"], (0.0, 0.0)), np.array([5e-4])),)
+    late = ((Term(CATALOGUE["channel_time_skew"], (0.0, 0.0, 0.0)), np.array([5e-4])),)
     found, plain = (_kinematic_error(s, Model(KNOWN, 1.0, 0.4, 0.0, t)) for t in (late, ()))
     assert found is not None
     assert plain is not None

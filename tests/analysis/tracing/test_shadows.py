@@ -8,15 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop
+from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop, EvenSpring
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Port
 from rig.model.effects import LIBRARY
+from rig.model.effects.angle_dependent_stiffness import MOTOR, AngleDependentStiffness
 from rig.model.references import REFERENCES
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
-from tests.contract.test_effects import REACH, motion
+from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 
 def test_a_shadow_bears_no_name_of_the_library_and_casts_on_one_that_does() -> None:
@@ -56,6 +57,15 @@ def test_droop_gives_as_it_takes_where_friction_would_take_both_ways() -> None:
     forth, back = (Droop().columns(motion(sign), ())[Port.READS_TAU_M][:, 0] for sign in (1.0, -1.0))
     np.testing.assert_allclose(forth, -back, atol=1e-12)
     assert (np.sign(forth) == np.sign(motion().tau_m)).all()
+
+
+def test_a_spring_harder_one_way_is_what_a_stiffness_of_an_angle_seems_in_a_lock_test() -> None:
+    """The output held, θ_m = N·T/K: T·sin θ_m is N·T²/K as long as that angle is small."""
+    torque = np.linspace(-5.0, 5.0, 4000)
+    held = replace(motion(n=4000), torque=torque, theta_m=N * torque / KNOWN.K)
+    of_angle = AngleDependentStiffness().columns(held, (1.0, 0.0, MOTOR))[Port.WIND_UP][:, 1]
+    even = EvenSpring().columns(held, ())[Port.WIND_UP][:, 0]
+    np.testing.assert_allclose(of_angle, -N / KNOWN.K * even, atol=1e-3 * np.abs(of_angle).max())
 
 
 def test_an_encoder_with_play_stays_behind_by_the_same_under_any_torque_and_rests_when_it_is_held() -> None:

@@ -1,12 +1,8 @@
-"""What the search brought, before the court: which effects stay, and a second hearing where the first explained little.
-
-The search takes the best suspect first. A look-alike that comes before the true effect is refused on unseen runs, and
-the true one was never asked.
-"""
+"""What the search brought, before the court: which effects stay, and whether what is found at the floor may be said."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -16,30 +12,23 @@ from rig.analysis.tracing.court.judge import (
     convicted,
     court,
     holds_zero,
-    scales,
     unresolved,
     unseen,
 )
 from rig.analysis.tracing.court.shadows import cast, unmasked
-from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
-from rig.analysis.tracing.fit.refine import refine
-from rig.analysis.tracing.fit.search import Found, polished, reduced, settled
-from rig.analysis.tracing.fit.some import search_some
+from rig.analysis.tracing.fit.search import Found, polished, reduced
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.report import own_work
-from rig.analysis.tracing.thresholds import MISSING, MOSTLY, NAMED, PLAIN_TO_SEE, QUIET
+from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
 from rig.model.effect import Array, Parameter, Reach
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-
-KNOWN = 1 / 3  # of itself: half a 95 % interval
-ALONE_TRIED = 2  # suspects: each costs a hearing
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""
@@ -94,55 +83,6 @@ def _without_doubtful(case: Heard, runs: Sequence[int], covered: Reach) -> Heard
     if other.loud or len(worths) < len(case.worths) - 1:
         return case
     return _without_doubtful(other, runs, covered)
-
-
-def heard_again(case: Heard, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Heard:
-    """Where much is left, those that nobody asked for want of room: all but the refused ones. What they say counts when
-    it explains everything; else the first hearing stands."""
-    stay = {term.name for term in case.solution.design.terms}
-    refused = frozenset(name for name in found.names if name not in stay)
-    if not refused or case.p.own.line is not None or not case.loud:
-        return case
-    d = case.solution.design
-    others = search_some(d, bank, runs, covered, case.p.floors, ranking=found.ranking, refused=refused)
-    if not set(others.names) - stay:
-        return case
-    other = heard(case.p, others, runs, covered)
-    return other if _settles(other, stay) or _stands_alone(other, stay) else case
-
-
-def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) -> Heard:
-    """Where much is left: the loudest suspects, each alone beside what stands. Many small ones that the search put
-    beside the true effect can drive it out. What one of them says counts when it explains everything."""
-    if case.p.own.line is not None or not case.loud:
-        return case
-    stay = {term.name for term in case.solution.design.terms}
-    for scored in [r for r in found.ranking[:ALONE_TRIED] if r.term.name not in stay]:
-        s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
-        other = heard(case.p, replace(found, solution=s), runs, covered)
-        more = stay < {term.name for term in other.solution.design.terms}
-        if more and (_settles(other, stay) or _stands_alone(other, stay)):
-            return other
-    return case
-
-
-def _settles(other: Heard, stay: Collection[str]) -> bool:
-    """Whether a second choice explains everything, and the numbers that scale its laws (a frequency, a torque) are
-    known to a third of themselves: more is asked of it than that they are not zero."""
-    return not other.loud and _known(other, stay)
-
-
-def _known(other: Heard, stay: Collection[str]) -> bool:
-    new = {term.name for term in other.solution.design.terms if term.name not in stay}
-    known = [p for name in new for p in scales(other.solution, name, other.words)]
-    return all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
-
-
-def _stands_alone(other: Heard, stay: Collection[str]) -> bool:
-    """Whether a second choice, where nothing had a name, explains nearly all of what it acts on with one size in all
-    runs: it is named though something is left beside it."""
-    plain = all(w.share > MOSTLY and w.fairly and w.left < MISSING for w in other.worths)
-    return not stay and bool(other.worths) and plain and not cast(other.solution) and _known(other, stay)
 
 
 def beyond_doubt(case: Heard) -> bool:

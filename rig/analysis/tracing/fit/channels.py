@@ -189,6 +189,9 @@ def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
     elif "theta_l" not in has and "tau_l" not in has:
         columns = _with_angle(columns, s, f, has, -s.gear.J_l / s.ratio)
     columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
+    if "tau_l" not in has and "theta_l" in has:  # what the load's bearings take is missing in T
+        lever = 1 / s.ratio - s.series_slope
+        columns |= {"B_l": f(s.omega_l * lever), "tau_cl": f(s.way * lever)}
     return y, columns
 
 

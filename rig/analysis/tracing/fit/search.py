@@ -151,7 +151,7 @@ def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     for _ in range(ROUNDS):
         d, before = s.design, s.design.eq.runs[runs[0]].pieces[0].gear
         now = known_of(s.values, before)
-        if _change(before, now) < SETTLED:
+        if change(before, now) < SETTLED:
             break
         terms = d.terms
         d = reduced(d, range(len(terms)))
@@ -189,7 +189,7 @@ def _chosen(term: Term) -> tuple[float, ...]:
     return tuple(v for v, loose in zip(term.shape, term.effect.loose, strict=True) if not loose)
 
 
-def _change(before: Known, now: Known) -> float:
+def change(before: Known, now: Known) -> float:
     """Relative, of what effects lean on."""
     a, b = before.kinematic_error, now.kinematic_error
     old = np.array([*a.a, *a.b])

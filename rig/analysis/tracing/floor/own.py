@@ -12,7 +12,7 @@ from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.floor.steps import explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import find_vibration
-from rig.analysis.tracing.runs.holdout import Split
+from rig.analysis.tracing.runs.holdout import HELD_PART, Split
 from rig.analysis.tracing.thresholds import OWN
 from rig.model.effect import Array, Parameter
 
@@ -40,6 +40,9 @@ def find(s: Solution, parts: Split) -> Own:
     """In the residuals of `s`, a fit to the fitted runs without columns of their own."""
     eq, e = s.design.eq, {key: s.residual(key) for key in s.keys}
     compliance = s.value("compliance")
+    held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
+    # counts are lost in one run or another: what a held-out run shows of it no fit to others foretells
+    everywhere = e | {key: held.residual(key, s.x) for key in held.y}
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
     shaken = find_vibration(s, e, parts.fitted)
@@ -48,13 +51,12 @@ def find(s: Solution, parts: Split) -> Own:
         made["external_vibration"] = shaken.columns
         words["external_vibration"] = shaken.parameters()
     else:
-        held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
-        line = find_interference(eq, e, {key: held.residual(key, s.x) for key in held.y})
-    if lost_counts(eq, find_steps(eq, e, compliance), repeats(eq.runs, parts.fitted)):
-        held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
-        everywhere = find_steps(eq, e | {key: held.residual(key, s.x) for key in held.y}, compliance)
-        columns = step_columns(eq, everywhere)
-        if explained(eq, e, columns) > OWN:
+        line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
+    steps = find_steps(eq, everywhere, compliance)
+    whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
+    if lost_counts(eq, steps, repeats(eq.runs, whole)):
+        columns = step_columns(eq, steps)
+        if explained(eq, everywhere, columns) > OWN:
             made["missed_counts"] = columns
-            words["missed_counts"] = everywhere.parameters()
+            words["missed_counts"] = steps.parameters()
     return Own(made, words, line)

@@ -20,25 +20,30 @@ APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
 IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
+AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-out part more
 EDGE = 3  # rows over which the low-pass spreads a step
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Rows of A where a run jumps, by how much [rad], and the encoder that lost the counts (`missed_counts.LOAD` …)."""
+    """Rows of A where a run jumps, by how much [rad], and the encoder that lost the counts at each
+    (`missed_counts.LOAD` …)."""
 
     rows: dict[int, tuple[int, ...]]
     sizes: dict[int, tuple[float, ...]]
-    side: float = LOAD
+    sides: dict[int, tuple[float, ...]]
 
     def parameters(self) -> tuple[Parameter, ...]:
-        """Number of steps and their usual size at the output."""
-        sizes = np.abs(np.concatenate([np.array(s) for s in self.sizes.values()]))
-        half = 1.96 * float(np.std(sizes)) / np.sqrt(sizes.size)
-        return (
-            parameter("steps", float(sizes.size), 0.0, "1"),
-            parameter(f"step_theta_{'m' if self.side == MOTOR else 'l'}", float(np.median(sizes)), half, "rad"),
-        )
+        """Number of steps and, of each encoder that made some, their usual size at the output."""
+        sizes, sides = (np.concatenate(list(x.values())) for x in (self.sizes, self.sides))
+        mine = {name: np.abs(sizes[sides == side]) for side, name in ((LOAD, "l"), (MOTOR, "m"))}
+        made = {name: x for name, x in mine.items() if x.size}
+        return (parameter("steps", float(sizes.size), 0.0, "1"), *(_usual(name, x) for name, x in made.items()))
+
+
+def _usual(name: str, sizes: Array) -> Parameter:
+    half = 1.96 * float(np.std(sizes)) / np.sqrt(sizes.size)
+    return parameter(f"step_theta_{name}", float(np.median(sizes)), half, "rad")
 
 
 def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -> Steps:
@@ -57,7 +62,9 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
         if found:
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
-    return Steps(rows, sizes, side_of(eq, e, rows))
+    placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
+    rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
+    return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()})
 
 
 def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, size: float, compliance: float) -> bool:
@@ -72,37 +79,53 @@ def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, si
     return abs(float(after.mean() - before.mean())) * compliance > IN_THE_TORQUE * abs(size)
 
 
-def side_of(eq: Equations, e: Mapping[Key, Array], rows: Mapping[int, Sequence[int]]) -> float:
-    """The encoder whose torque channel jerks at the jumps: a reading that jumps seems to accelerate its inertia."""
-    gone = dict.fromkeys((LOAD, MOTOR), 0.0)
-    for side, channel in ((LOAD, "L"), (MOTOR, "M")):
-        for run, at in rows.items():
-            made = _columns(eq, run, at, side).get(channel)
-            if made is not None and (run, channel) in e and np.any(made):
-                basis = orthonormal(eq.without_offset((run, channel), made))
-                gone[side] += float(np.sum((basis.T @ e[run, channel]) ** 2)) * eq.noise.weight(channel)
-    return max(gone, key=lambda side: gone[side])
+def _placed(eq: Equations, e: Mapping[Key, Array], run: int, about: int) -> tuple[int, float]:
+    """The row of a jump, and the encoder: those whose step explains most of all channels together. A reading that jumps
+    seems to accelerate its own inertia, and tells by that when it did; in A the two encoders are the same."""
+    last = eq.rows[run, "A"].y.size - 1
+    rows = range(max(1, about - EDGE), min(last, about + EDGE) + 1)
+    return max(((row, side) for row in rows for side in (LOAD, MOTOR)), key=lambda at: _gained(eq, e, run, *at))
 
 
-def _columns(eq: Equations, run: int, rows: Sequence[int], side: float) -> dict[str, Array]:
-    """One column a jump in each channel of a run, (n, jumps)."""
+def _gained(eq: Equations, e: Mapping[Key, Array], run: int, row: int, side: float) -> float:
+    """Sum of squares over the noise's that a step of one size takes from all channels of a run."""
+    along = work = 0.0
+    for c, made in _columns(eq, run, row, side).items():
+        if (run, c) in e and np.any(made):
+            column = eq.without_offset((run, c), made)[:, 0]
+            along += float(column @ e[run, c]) * eq.noise.weight(c)
+            work += float(column @ column) * eq.noise.weight(c)
+    return along**2 / max(work, 1e-300)
+
+
+def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]:
+    """What a jump makes in each channel of a run, (n, 1)."""
     t = clock(eq, (run, "A"))
-    made = [eq.term(run, Term(LOST, (side, 0.5 * (t[at] + t[max(at - 1, 0)])))) for at in rows]
-    return {c: np.hstack([m[c] for m in made]) for c in made[0]} if made else {}
+    return dict(eq.term(run, Term(LOST, (side, 0.5 * (t[row] + t[max(row - 1, 0)])))))
 
 
 def _onward(eq: Equations, key: Key) -> Array:
-    """True for rows with a window on both sides in which the motor neither turned back nor was left out, (n,).
+    """True for rows with a window on both sides in which the motor neither turned back nor rested, (n,).
 
     At a reversal everything with memory or play goes over to its other branch: that looks like a step and is none.
     """
-    way = np.sign(np.diff(eq.rows[key].theta_m, prepend=eq.rows[key].theta_m[0]))
-    t = clock(eq, key)
-    gap = np.diff(t, prepend=t[0]) > APART * float(np.median(np.diff(t)))
-    turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(gap[1:])])
+    theta, t = eq.rows[key].theta_m, clock(eq, key)
+    way = np.sign(np.diff(theta, prepend=theta[0]))
+    turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(_rested(theta, t))])
     reach = WINDOW + EDGE
     first, last = np.maximum(np.arange(t.size) - reach, 0), np.minimum(np.arange(t.size) + reach, t.size - 1)
     return np.asarray(turned[first] == turned[last])
+
+
+def _rested(theta: Array, t: Array) -> Array:
+    """Whether the motor may have done something else between two rows (n − 1,): rows are left out there, and it did not
+    go on as fast as around them. Where it did, the rows between are only held out."""
+    gap, gone = np.diff(t), np.diff(theta)
+    usual = float(np.median(gap))
+    open_ = gap > APART * usual
+    rate = gone / gap
+    around = np.median(np.abs(rate[~open_])) if (~open_).any() else 0.0
+    return np.asarray(open_ & (np.abs(np.abs(rate) - around) > AS_FAST * around))
 
 
 def _filled(way: Array) -> Array:
@@ -161,8 +184,12 @@ def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:
 
 def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
     """One column a jump in every channel it shows in, (n, jumps)."""
-    made = {run: _columns(eq, run, rows, steps.side) for run, rows in steps.rows.items()}
-    return {(run, c): m for run, columns in made.items() for c, m in columns.items() if np.any(m)}
+    out: dict[Key, Array] = {}
+    for run, rows in steps.rows.items():
+        made = [_columns(eq, run, row, side) for row, side in zip(rows, steps.sides[run], strict=True)]
+        for c in {c for m in made for c, x in m.items() if np.any(x)}:
+            out[run, c] = np.hstack([m[c] for m in made if c in m and np.any(m[c])])
+    return out
 
 
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:

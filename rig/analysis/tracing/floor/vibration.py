@@ -18,21 +18,29 @@ from rig.model.effects.external_vibration import ExternalVibration
 VIBRATION = EACH_RUN["external_vibration"]
 ZOOM = 4  # finer than a run's own resolution
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
+AS_ONE = 0.7  # an interference in one sensor alone has 0
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
 
 @dataclass(frozen=True)
 class Line:
-    """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque."""
+    """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque, and the
+    torque itself. `as_one`:
+    how much of it one torque on the load makes, in angle and motor torque alike."""
 
     frequency_hz: float
     amplitude: dict[str, float]
     half_hz: float
     half_torque: float
+    torque: float  # N·m
+    as_one: float = 0.0
 
     def of_the_load(self, stiffness: float) -> bool:
-        """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too."""
-        torque = self.amplitude.get("L", 0.0)
+        """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too. Without
+        one the torque shows in A and M, in the proportion that the gear's stiffness and ratio make."""
+        if "L" not in self.amplitude:
+            return self.as_one > AS_ONE
+        torque = self.amplitude["L"]
         return torque > 0 and self.amplitude.get("A", 0.0) < 0.5 * torque / stiffness
 
 
@@ -49,8 +57,7 @@ class Vibration:
         for i, line in enumerate(self.lines):
             place = f"_{i + 1}" if i else ""
             out.append(parameter(f"frequency{place}", line.frequency_hz, line.half_hz, "Hz"))
-            torque = line.amplitude.get("L", 0.0)
-            out.append(parameter(f"torque_amplitude{place}", torque, line.half_torque, "N·m"))
+            out.append(parameter(f"torque_amplitude{place}", line.torque, line.half_torque, "N·m"))
         return tuple(out)
 
 
@@ -149,7 +156,31 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
         wave = _size(e[key], np.stack([np.cos(x), np.sin(x)], 1))
         noise = max(float(np.var(e[key])) - wave**2 / 2, 1e-300) * eq.noise.kappa[key[1]]
         information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
-    return Line(frequency, amplitude, 1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300))), 1.96 * spread)
+    half_hz = 1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300)))
+    if keys:
+        return Line(frequency, amplitude, half_hz, 1.96 * spread, float(np.median(sizes)))
+    as_one, sizes = _as_one(eq, e, columns)
+    spread = float(np.std(sizes)) / np.sqrt(max(len(sizes), 1))
+    return Line(frequency, amplitude, half_hz, 1.96 * spread, float(np.median(sizes)) if sizes else 0.0, as_one)
+
+
+def _as_one(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> tuple[float, list[float]]:
+    """How much one torque in every run makes of what A and M show, each by itself: 1 where the torques they ask for are
+    the same, 0 where one of them asks for none. And the size of the torque both together ask for in every run, N·m."""
+    apart = asked = 0.0
+    sizes: list[float] = []
+    for run in sorted({i for i, c in columns if (i, c) in e}):
+        keys = [(run, c) for c in "AM" if (run, c) in e and (run, c) in columns]
+        if len(keys) < 2:
+            continue
+        made = [(eq.without_offset(key, columns[key]), eq.noise.weight(key[1])) for key in keys]
+        grams = [w * z.T @ z for z, w in made]
+        rights = [w * z.T @ e[key] for key, (z, w) in zip(keys, made, strict=True)]
+        a, m = (np.linalg.pinv(g) @ r for g, r in zip(grams, rights, strict=True))
+        apart += float((a - m) @ (a - m))
+        asked += max(float(a @ a), float(m @ m))
+        sizes.append(float(np.hypot(*(np.linalg.pinv(sum(grams)) @ sum(rights)))))
+    return (1.0 - apart / asked if asked > 0 else 0.0), sizes
 
 
 def _size(e: Array, columns: Array) -> float:

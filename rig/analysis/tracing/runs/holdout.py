@@ -81,14 +81,18 @@ def _level(run: Recording) -> tuple[float, float]:
 
 def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> set[int]:
     held: set[int] = set()
+    by_time = sorted((i for g in groups for i in g), key=lambda i: runs[i].start)
+    ends = {by_time[0], by_time[-1]}  # what drifts would be foretold for a time that no fitted run reaches
     for procedure in sorted({runs[g[0]].procedure for g in groups}):
         mine = sorted((g for g in groups if runs[g[0]].procedure == procedure), key=lambda g: _level(runs[g[0]]))
-        whole = mine[len(mine) // 2 - 1] if len(mine) >= LEVELS else None
+        middle = len(mine) // 2 - 1
+        spare = [k for k in range(1, len(mine) - 1) if not ends & set(mine[k])] if len(mine) >= LEVELS else []
+        whole = mine[min(spare, key=lambda k: abs(k - middle))] if spare else None
         others = [g for g in mine if g is not whole]
         held |= set(whole or ())
         repeated = [g for g in others if len(g) > 1]
         # every second condition keeps its repeats in the fit: the floor is measured there
-        held |= {g[1] for g in repeated[:: 2 if len(repeated) > 1 else 1]}
+        held |= {g[0] if g[1] in ends else g[1] for g in repeated[:: 2 if len(repeated) > 1 else 1]}
     return held
 
 

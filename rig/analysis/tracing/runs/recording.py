@@ -289,10 +289,24 @@ def _knowing(piece: Signals, known: Known) -> Signals:
 
 
 def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: np.random.Generator) -> Signals:
-    c = {n: getattr(piece, n) + s * rng.standard_normal(piece.t.size) for n, s in noise.items() if hasattr(piece, n)}
-    c = {n: c.get(n, getattr(piece, n)) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
+    added = {n: s * rng.standard_normal(piece.t.size) for n, s in noise.items() if hasattr(piece, n)}
+    added |= _in_stand_ins(added, piece, smooth.dt)
+    c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, smooth)
     return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})
+
+
+def _in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float) -> dict[str, Array]:
+    """What the noise of readings does to those `_substituted` made of them: the torque of a load's inertia has its
+    encoder's noise twice differentiated."""
+    out: dict[str, Array] = {}
+    if "theta_m" not in added and "theta_l" in added:
+        out["theta_m"] = added["theta_l"] * piece.ratio
+    if "theta_l" not in added and "theta_m" in added and np.any(piece.theta_l):
+        out["theta_l"] = added["theta_m"] / piece.ratio
+    if "tau_l" not in added and "theta_l" in {*added, *out}:
+        out["tau_l"] = piece.gear.J_l * flat_rate({**added, **out}["theta_l"], dt, 2)
+    return out
 
 
 def _noise(name: str, x: Array, encoders: Mapping[str, float]) -> float:

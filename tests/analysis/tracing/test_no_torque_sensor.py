@@ -1,0 +1,46 @@
+"""Where no torque is measured, what stands in for it has its sensor's noise, and lacks what the bearings take."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.court.judge import unseen
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.runs.recording import _in_stand_ins
+from rig.analysis.tracing.trace import prepare
+from tests.analysis.tracing.test_few_channels import reduced
+from tests.contract.test_effects import motion
+
+RNG = np.random.default_rng(4)
+RUNS = ("slow_ke_1", "slow_ke_2", *(f"speed_{s}rpm_{i}" for s in ("60", "200", "400", "minus400") for i in (1, 2)))
+
+
+def test_the_noise_of_the_load_angle_is_in_the_torque_of_the_inertia_twice_differentiated() -> None:
+    s = motion()
+    t = s.dt * np.arange(s.t.size)
+    wave = 1e-6 * np.sin(2 * np.pi * 10.0 * t)
+    torque = _in_stand_ins({"theta_m": wave, "theta_l": wave, "tau_m": wave}, s, s.dt)["tau_l"]
+    middle = slice(500, -500)
+    assert torque[middle] == pytest.approx(-s.gear.J_l * (2 * np.pi * 10.0) ** 2 * wave[middle], abs=1e-6)
+
+
+def test_what_is_measured_has_its_own_noise_alone() -> None:
+    noise = RNG.standard_normal(motion().t.size)
+    read = dict.fromkeys(("theta_m", "theta_l", "tau_m", "tau_l"), noise)
+    assert _in_stand_ins(read, motion(), motion().dt) == {}
+
+
+@pytest.mark.slow
+def test_stiffness_and_inertia_are_right_and_the_fast_runs_at_the_floor(tmp_path: Path, shared: Path) -> None:
+    truth = json.loads((shared / "cases" / "TRUTH.json").read_text())["open-1"]["baseline"]
+    p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-1", RUNS, ("tau_l",))), ())
+    assert 1 / p.baseline.value("compliance") == pytest.approx(truth["K"], rel=6e-3)
+    assert p.baseline.value("J_m") == pytest.approx(truth["Jm"], rel=5e-3)
+    left = p.court.residuals(p.baseline, unseen(p.baseline, p.court))
+    fast = {key: p.court.ratio(left, [key]) for key in left if "400" in p.eq.runs[key[0]].name}
+    assert fast
+    assert max(fast.values()) < 1.1, fast

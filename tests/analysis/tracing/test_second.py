@@ -1,0 +1,63 @@
+"""Second hearings: who is heard again, and whose word counts."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rig.analysis.tracing.court import second
+from rig.analysis.tracing.court.judge import Worth
+
+
+def case(name: str, unsteady: float, left: float) -> Any:
+    """One effect stands; `left` is what unseen runs have over their floor."""
+    terms = (SimpleNamespace(name=name),)
+    worth = Worth(name, 0.9, 1.5, 1.0, 1.0, (), unsteady=unsteady, apart=unsteady)
+    p = SimpleNamespace(baseline=SimpleNamespace(design=None))
+    return SimpleNamespace(
+        p=p, solution=SimpleNamespace(design=SimpleNamespace(terms=terms)), worths=[worth], left=left
+    )
+
+
+def instead(monkeypatch: pytest.MonkeyPatch, stands: Any, other: Any, evidence: float) -> tuple[str, int]:
+    """Who stands in the end where `stands` had evidence 100 and `other` the given one, and how many were heard."""
+    heard: list[str] = []
+
+    def listen(*_: object) -> Any:
+        heard.append(other.worths[0].name)
+        return other
+
+    monkeypatch.setattr(second, "heard", listen)
+    monkeypatch.setattr(second, "refine", lambda *_: (None, None))
+    monkeypatch.setattr(second, "settled", lambda *_: None)
+    monkeypatch.setattr(second, "replace", lambda found, **_: found)
+    monkeypatch.setattr(second, "_in_all", lambda one: one.left)
+    ranking = tuple(
+        SimpleNamespace(term=SimpleNamespace(name=one.worths[0].name), evidence=e)
+        for one, e in ((stands, 100.0), (other, evidence))
+    )
+    found: Any = SimpleNamespace(ranking=ranking)
+    return second.heard_instead(stands, found, (), None).worths[0].name, len(heard)  # type: ignore[arg-type]
+
+
+def test_a_steadier_look_alike_that_leaves_less_takes_the_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    support, mode = case("support_compliance", 0.4, 0.95), case("torsional_mode", 0.3, 0.9)
+    assert instead(monkeypatch, support, mode, 90.0) == ("torsional_mode", 1)
+
+
+@pytest.mark.parametrize(("unsteady", "left"), [(0.5, 0.9), (0.3, 1.0)])
+def test_one_that_is_less_steady_or_leaves_more_does_not(
+    monkeypatch: pytest.MonkeyPatch, unsteady: float, left: float
+) -> None:
+    support, mode = case("support_compliance", 0.4, 0.95), case("torsional_mode", unsteady, left)
+    assert instead(monkeypatch, support, mode, 90.0) == ("support_compliance", 1)
+
+
+def test_nobody_else_is_heard_where_one_size_suits_all_runs_or_nothing_else_explained_as_much(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mode = case("torsional_mode", 0.1, 0.5)
+    assert instead(monkeypatch, case("support_compliance", 0.1, 0.95), mode, 99.0) == ("support_compliance", 0)
+    assert instead(monkeypatch, case("support_compliance", 0.4, 0.95), mode, 70.0) == ("support_compliance", 0)
