@@ -21,9 +21,9 @@ def twisted(s: Signals, psi: Array) -> tuple[Array, Array]:
     """Slopes of θ̃ and of its lever by the twist ψ rad (n,), secants from θ_m − ψ to θ_m: (1/N − Δθ̃_p/ψ, Δθ̃_p′/ψ)."""
     series, back = s.gear.kinematic_error, s.theta_m - psi
     small = np.abs(psi) < SMALL
-    by = np.where(small, 1.0, psi)
-    slope = np.where(small, s.series_slope, (s.series_value - series.value(back)) / by)
-    bend = np.where(small, s.series_bend, (s.series_slope - series.slope(back)) / by)
+    by, (value_back, slope_back) = np.where(small, 1.0, psi), series.value_and_slope(back)
+    slope = np.where(small, s.series_slope, (s.series_value - value_back) / by)
+    bend = np.where(small, s.series_bend, (s.series_slope - slope_back) / by)
     return 1.0 / s.ratio - slope, bend
 
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, final
 
+import numpy as np
+
 from tests.bench.built import Unavailable
 from tests.bench.campaign import made, size
 from tests.bench.child import HDRIG, Cost, cost
@@ -18,8 +20,7 @@ from tests.bench.turns import Rounds
 from tests.bench.worker import Worker
 
 PEERS = ("boosting", "gaussian", "pysindy")
-LENGTHS = (0.25, 1.0, 4.0)  # of 45 minutes
-TRACES = 2  # of each length: they agree to a few per cent, and the row has five minutes
+TRACES = {0.25: 1, 1.0: 2, 4.0: 1}  # of a campaign of so many times 45 minutes: the row has five minutes
 WALL, MEMORY, LINEAR = AtMost(10.0), AtMost(1536.0), AtMost(1.15)
 
 
@@ -54,9 +55,9 @@ class Trace(Row):
 
     def measure(self, rounds: Rounds) -> list[Figure]:
         with tempfile.TemporaryDirectory() as name:
-            root, lengths = Path(name), LENGTHS[:1] if rounds.quick else LENGTHS
+            root, lengths = Path(name), list(TRACES)[: rounds.size(len(TRACES), 1)]
             folders = [made(root, length) for length in lengths]
-            traced = [self._traced(folder, 1 if rounds.quick else TRACES) for folder in folders]
+            traced = [self._traced(f, TRACES[length]) for f, length in zip(folders, lengths, strict=True)]
             asked = min(1, len(folders) - 1)
             beside = self._beside(folders[asked], traced[asked], root)
         return [*beside, *self._alone(traced[asked]), *self._growth(traced)]
@@ -93,7 +94,11 @@ class Trace(Row):
             times = many.rows / few.rows
             words = f"{times:.1f} times the rows ({many.label})"
             cpu, wall, memory = (
-                [getattr(b, what) / getattr(a, what) / times for a, b in zip(few.costs, many.costs, strict=True)]
+                [
+                    np.median([getattr(c, what) for c in many.costs])
+                    / np.median([getattr(c, what) for c in few.costs])
+                    / times
+                ]
                 for what in ("cpu", "wall", "all_mib")
             )
             out += [
