@@ -34,6 +34,7 @@ class ThermalFrictionDrift(Effect):
     loose: ClassVar[tuple[bool, ...]] = (True, False, True)
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
     LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
+    AT: Final = 10.0  # rad/s
     BETA: Final = 1e-3  # 1/J: 0.03/K of a lubricant in a gear box of 30 J/K
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -54,6 +55,10 @@ class ThermalFrictionDrift(Effect):
         else:
             cold = np.exp(-((np.maximum(signals.t, 0.0) / t_w) ** (0.5 if law == SOAK else 1.0)))
         return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
+
+    def plausible(self, fit: Fit) -> bool:
+        """A cold drive has more friction, at an ordinary speed at least."""
+        return bool(fit.coefficients[0] + self.AT * fit.coefficients[1] > 0)
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Also where it goes on for longer than was measured: then it is a straight line, or a root, of the time, and

@@ -23,7 +23,7 @@ from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffnes
 from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
-from rig.model.effects.thermal_friction_drift import SOAK, ThermalFrictionDrift
+from rig.model.effects.thermal_friction_drift import CLOCK, HEAT, SOAK, ThermalFrictionDrift
 from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
@@ -256,6 +256,13 @@ def test_a_warm_up_that_outlasts_the_campaign_is_known_without_its_end() -> None
     effect = ThermalFrictionDrift()
     assert effect.is_scaled(Parameter("t_w", 1.5 * REACH.duration, (-9e3, 2e4), "s"), REACH)
     assert not effect.is_scaled(Parameter("t_w", 0.1 * REACH.duration, (-9e3, 2e4), "s"), REACH)
+
+
+def test_friction_that_grows_with_the_time_is_no_warming_up() -> None:
+    effect, unsure = ThermalFrictionDrift(), np.eye(5)
+    for law in (CLOCK, HEAT, SOAK):
+        assert effect.plausible(Fit(np.array([0.02, -1e-3]), (700.0, law, 1e-3), unsure, KNOWN, N))
+        assert not effect.plausible(Fit(np.array([-0.02, 1e-3]), (700.0, law, 1e-3), unsure, KNOWN, N))
 
 
 def test_clocks_that_run_apart_make_the_skew_grow_with_the_time() -> None:
