@@ -25,6 +25,7 @@ class TorqueRipple(Effect):
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
+    MOST: Final = 2.0  # rad/(N·m), of the motor's torque
     REACTS: Final = (*range(1, 13), 18, 24, 30, 36)  # orders large enough for the current to change them
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -43,3 +44,9 @@ class TorqueRipple(Effect):
         name = f"order_{fit.shape[0]:g}"
         more = harmonic(fit, f"{name}_by_torque", "1/(N·m)", first=2) if fit.shape[1] else ()
         return (*harmonic(fit, name, "1"), *more)
+
+    def plausible(self, fit: Fit) -> bool:
+        """No field is turned by more than MOST: what has hardly a ripple without torque is something else."""
+        if not fit.shape[1]:
+            return True
+        return bool(np.hypot(*fit.coefficients[2:]) < self.MOST * np.hypot(*fit.coefficients[:2]))

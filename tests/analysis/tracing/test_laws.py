@@ -290,6 +290,9 @@ def test_a_field_that_the_current_turns_is_a_ripple_that_grows_with_the_torque()
     turned = s.tau_m * np.cos(12.0 * s.theta_m + c * s.tau_m)
     coefficients = np.linalg.lstsq(z, turned, rcond=None)[0]
     np.testing.assert_allclose(coefficients, [1.0, 0.0, 0.0, -c], atol=0.01)
+    fit = Fit(coefficients, (12.0, 1.0), np.eye(6), KNOWN, N)
+    assert TorqueRipple().plausible(fit)
+    assert not TorqueRipple().plausible(dataclasses.replace(fit, coefficients=coefficients[[3, 2, 1, 0]]))
 
 
 def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:

@@ -23,12 +23,11 @@ def prepared(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Prepared
     return prepare(read_campaign(folder), ())
 
 
-def test_a_speed_between_others_would_be_held_out_whole_and_one_beside_them_would_not(prepared: Prepared) -> None:
+def test_what_is_measured_last_is_never_held_out_whole_and_a_repeat_of_it_tests_the_fit(prepared: Prepared) -> None:
     by_speed = {
         q.conditions["speed_rpm"]: _fitted(prepared, q)
         for q in proposals(prepared.eq.runs[0].pieces[0].dt)
         if q.procedure == "constant_torque"
     }
-    assert by_speed[200.0] == 0.0, "the second of four speeds"
+    assert all(share > 0.0 for share in by_speed.values()), "a speed between others too"
     assert by_speed[60.0] == 0.5, "the slowest: its repeat tests the fit"
-    assert all(share > 0.0 for rpm, share in by_speed.items() if rpm != 200.0)

@@ -99,9 +99,8 @@ def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextR
 
 
 def _fitted(p: Prepared, proposal: Proposal) -> float:
-    """Share of the run and its repeat that the next trace would fit: a speed or load between others is held out whole,
-    and of most pairs one of the two.
-    """
+    """Share of the run and its repeat that the next trace would fit: of most pairs one of the two is held out. A speed
+    or load between others would be both, but what was made last is not."""
     runs = p.campaign.runs
     like = next(p.eq.runs[i] for i in p.split.fitted)
     made = imagined(proposal, like, p.baseline, max(float(run.pieces[-1].t[-1]) for run in runs))
