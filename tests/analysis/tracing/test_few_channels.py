@@ -54,7 +54,7 @@ def checked(found: Trace) -> Trace:
         (("theta_l",), "No load angle"),
         (("theta_m", "tau_m"), "No motor angle"),
         (("t",), "No run has a time column"),
-        (("theta_l", "tau_l"), "No load angle"),
+        pytest.param(("theta_l", "tau_l"), "No load angle", marks=pytest.mark.long),
         (("tau_m", "tau_l"), "No motor torque"),
     ],
 )

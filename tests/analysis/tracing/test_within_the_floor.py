@@ -59,7 +59,7 @@ def loaded(c: Columns, began: float) -> Columns:
     ("law", "period"),
     [
         pytest.param(breathing, PERIOD, marks=pytest.mark.long),
-        (rubbing, EVERY),
+        pytest.param(rubbing, EVERY, marks=pytest.mark.long),
         pytest.param(swelling, PUMP, marks=pytest.mark.long),
     ],
 )
