@@ -61,9 +61,9 @@ class ThermalFrictionDrift(Effect):
         return bool(fit.coefficients[0] + self.AT * fit.coefficients[1] > 0)
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
-        """Also where it goes on for longer than was measured: then it is a straight line, or a root, of the time, and
-        how long it would have gone on nobody can say."""
-        return super().is_scaled(scale, reach) or scale.value > reach.duration
+        """Also where it goes on for most of what was measured, or longer: then it is nearly a straight line, or a root,
+        of the time, and how long it would have gone on nobody can say."""
+        return super().is_scaled(scale, reach) or scale.value > reach.duration / 2
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, and its time constant."""
