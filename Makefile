@@ -23,7 +23,7 @@ blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plan
 	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table tests/blind/TABLE.md
 	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
 
-bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built and installed in build/bench): ten minutes
+bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built and installed in build/bench): twenty minutes
 	$(BIN)/python -m tests.bench --table tests/bench/TABLE.md
 
 long: .venv/ready-dev  ## real time over the wire, whole loops: half an hour and more, on a machine that does nothing else

@@ -218,6 +218,11 @@ class Parameter:
     ci95: tuple[float, float]
     unit: str
 
+    @property
+    def holds_zero(self) -> bool:
+        """Whether its interval does."""
+        return self.ci95[0] <= 0 <= self.ci95[1]
+
 
 def parameter(name: str, value: float, half: float, unit: str) -> Parameter:
     """A parameter with a symmetric interval."""
@@ -286,7 +291,7 @@ class Effect(ABC):
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Whether the number that scales the law (a speed, a torque, a time), with its interval, says anything of it;
         else what it explains is a difference between some runs and others, which many laws make."""
-        return not scale.ci95[0] <= 0 <= scale.ci95[1]
+        return not scale.holds_zero
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""

@@ -30,7 +30,7 @@ class HystereticStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("T_h", "law")
     loose: ClassVar[tuple[bool, ...]] = (True, False)
     remembers: ClassVar[bool] = True
-    adds: ClassVar[frozenset[str]] = frozenset({"hysteresis_loss"})
+    adds: ClassVar[frozenset[str]] = frozenset({"hysteresis_loss", "loss_at_20_Nm"})
     WIDTHS: Final = (1.5, 4.0, 10.0, 25.0)  # N·m
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
     UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
@@ -74,7 +74,9 @@ class HystereticStiffness(Effect):
         width[weights.size] = 1.0
         value = float(weights @ fit.coefficients[: weights.size])
         return (
-            parameter("hysteresis_loss", value, fit.half_width(gap), "rad"),
+            parameter(
+                "loss_at_20_Nm" if fit.shape[1] == self.WEDGE else "hysteresis_loss", value, fit.half_width(gap), "rad"
+            ),
             parameter("T_h", fit.shape[0], fit.half_width(width), "N·m"),
         )
 

@@ -9,11 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-CLOCK, HEAT, SOAK = (
-    0.0,
-    1.0,
-    2.0,
-)  # of the law: warm by the time of day, by what friction turned into heat, from outside
+CLOCK, HEAT, SOAK = 0.0, 1.0, 2.0  # of the law: by the time of day, by heat of its own, by heat that soaks in
 
 
 class ThermalFrictionDrift(Effect):

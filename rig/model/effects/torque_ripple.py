@@ -12,10 +12,10 @@ from rig.model.motor_orders import MOTOR_ORDERS
 
 
 class TorqueRipple(Effect):
-    """The motor gives τ_m·(1 − r·cos(k·θ_m + φ)): what is missing resists it      [krause2013]
+    """The motor gives τ_m·(1 − r·cos(k·θ_m + φ)): what is missing resists it
 
     A large current turns the motor's field, and φ with it, or saturates its iron: r·cos(k·θ_m + φ) gains a part in
-    proportion to τ_m then.
+    proportion to τ_m then      [krause2013]
 
     Cogging is there without current; where the torque hardly changes over the runs the two cannot be told apart.
     """

@@ -313,4 +313,6 @@ def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
     assert abs(gap(0.0)) < 0.05 * gap(20.0)
     fit = Fit(np.array([-1e-6]), (1.5, effect.WEDGE), np.eye(3), KNOWN, N)
     assert effect.plausible(fit)
-    assert effect.parameters(fit)[0].value == pytest.approx(1e-6 * gap(effect.AT), rel=0.05)
+    loss = effect.parameters(fit)[0]
+    assert loss.name == "loss_at_20_Nm", "at no torque it has none"
+    assert loss.value == pytest.approx(1e-6 * gap(effect.AT), rel=0.05)

@@ -61,3 +61,36 @@ def test_nobody_else_is_heard_where_one_size_suits_all_runs_or_nothing_else_expl
     mode = case("torsional_mode", 0.1, 0.5)
     assert instead(monkeypatch, case("support_compliance", 0.1, 0.95), mode, 99.0) == ("support_compliance", 0)
     assert instead(monkeypatch, case("support_compliance", 0.4, 0.95), mode, 70.0) == ("support_compliance", 0)
+
+
+@pytest.mark.parametrize(
+    ("stands", "left", "expected"),
+    [
+        ((), {1: 1.5, 2: 1.2, 3: 1.4}, {"a", "b"}),  # the least, though a third is kept as well
+        (("c",), {1: 1.5, 2: 1.2, 3: 1.4}, {"a", "b", "c"}),  # no name is lost
+        (("a",), {1: 9.0, 2: 9.0, 3: 9.0}, {"a"}),  # nothing better
+    ],
+)
+def test_what_came_first_counts_where_it_leaves_less_and_loses_no_name(
+    monkeypatch: pytest.MonkeyPatch, stands: tuple[str, ...], left: dict[int, float], expected: set[str]
+) -> None:
+    """The search found a (twice), b, c and d; heard in turn, all that is heard stays."""
+
+    def model(names: tuple[str, ...]) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in names)
+        return SimpleNamespace(design=SimpleNamespace(terms=terms))
+
+    def listen(p: Any, found: Any, *_: object) -> Any:
+        names = {term.name for term in found.solution.design.terms}
+        return SimpleNamespace(p=p, solution=found.solution, loud=True, left=left[len(names)])
+
+    monkeypatch.setattr(second, "heard", listen)
+    monkeypatch.setattr(second, "fit", lambda design: SimpleNamespace(design=design))
+    monkeypatch.setattr(second, "reduced", lambda d, gone: SimpleNamespace(terms=d.terms[: min(gone)]))
+    monkeypatch.setattr(second, "replace", lambda found, solution: SimpleNamespace(solution=solution))
+    monkeypatch.setattr(second, "_left", lambda one: one.left)
+    p = SimpleNamespace(own=SimpleNamespace(line=None))
+    case: Any = SimpleNamespace(p=p, solution=model(stands), loud=True, left=2.0)
+    found: Any = SimpleNamespace(solution=model(("a", "a", "b", "c", "d")), names=("a", "b", "c", "d"))
+    heard = second.heard_in_turn(case, found, (), None)  # type: ignore[arg-type]
+    assert {term.name for term in heard.solution.design.terms} == expected

@@ -11,7 +11,6 @@ from rig.analysis.tracing.court.judge import (
     Worth,
     convicted,
     court,
-    holds_zero,
     unresolved,
     unseen,
 )
@@ -72,7 +71,7 @@ def heard(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Hea
 
 def _without_doubtful(case: Heard, runs: Sequence[int], covered: Reach) -> Heard:
     """Without names whose size may as well be zero, unless something is left to explain without them."""
-    doubtful = [w for w in case.worths if (words := case.words.get(w.name)) and holds_zero(words[0])]
+    doubtful = [w for w in case.worths if (words := case.words.get(w.name)) and words[0].holds_zero]
     if not doubtful:
         return case
     least = min(doubtful, key=lambda w: w.work).name

@@ -269,11 +269,6 @@ def _is_scaled(s: Solution, name: str, found: Sequence[Parameter], covered: Reac
     return any(effect.is_scaled(p, covered) for p in found)
 
 
-def holds_zero(p: Parameter) -> bool:
-    """Whether its interval does."""
-    return p.ci95[0] <= 0 <= p.ci95[1]
-
-
 def _out_of_reach(s: Solution, name: str, covered: Reach) -> bool:
     terms = [term for term in s.design.terms if term.name == name]
     return all(term.effect.beyond(term.shape, covered) for term in terms)

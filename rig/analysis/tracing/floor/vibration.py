@@ -25,8 +25,7 @@ SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than th
 @dataclass(frozen=True)
 class Line:
     """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque, and the
-    torque itself. `as_one`:
-    how much of it one torque on the load makes, in angle and motor torque alike."""
+    torque itself. `as_one`: how much of it one torque on the load makes, in angle and motor torque alike."""
 
     frequency_hz: float
     amplitude: dict[str, float]
