@@ -7,31 +7,40 @@ from typing import ClassVar
 
 import numpy as np
 
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, orders, side_by_side
 
 
 class OutputOncePerRev(Effect):
-    """θ̃_p gains C·cos(k·θ_l + φ), k = 1 or 2; dθ̃_p/dθ_m is 1/N of the slope in θ_l."""
+    """θ̃_p gains C·cos(k·θ_l + φ), k = 1 or 2; dθ̃_p/dθ_m is 1/N of the slope in θ_l.
+
+    An output that touches on one side, or a disc that is not round, has the next orders as well.
+    """
 
     name: ClassVar[str] = "output_once_per_rev"
     in_short: ClassVar[str] = "once per output turn in angle"
     source: ClassVar[str] = "ghorbel2001"
-    shape_names: ClassVar[tuple[str, ...]] = ("order",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("first", "last")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Less than a sixth of an output turn looks like a slope."""
-        return ((1.0,), (2.0,)) if reach.load_turns > 1 / 6 else ()
+        """Less than a sixth of an output turn looks like a slope, less than a half has no overtones."""
+        return once_or_twice(reach)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """Cosine and sine of k·θ_l."""
-        x = shape[0] * signals.theta_l
-        lever = shape[0] / signals.ratio
+        """Cosine and sine of every k·θ_l."""
+        k = orders(shape)
+        x = np.multiply.outer(signals.theta_l, k)
+        lever = k / signals.ratio
         return {
-            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
-            Port.LEVER: np.stack([-lever * np.sin(x), lever * np.cos(x)], 1),
+            Port.KINEMATIC_ERROR: side_by_side(np.cos(x), np.sin(x)),
+            Port.LEVER: side_by_side(-lever * np.sin(x), lever * np.cos(x)),
         }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Amplitude and phase."""
-        return harmonic(fit, f"order_{fit.shape[0]:g}", "rad")
+        """Amplitude and phase of every order."""
+        return amplitudes(fit, "rad")
+
+    def plausible(self, fit: Fit) -> bool:
+        """Overtones are smaller than what they are overtones of."""
+        return below_the_first(fit)

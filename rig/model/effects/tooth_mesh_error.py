@@ -11,7 +11,10 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 
 class ToothMeshError(Effect):
-    """θ̃_p gains C·cos(z·θ_m + φ), z = 2N teeth of the flexspline, 2N + 2 of the circular spline, or twice as many"""
+    """θ̃_p gains C·cos(z·θ_m + φ), z = 2N teeth of the flexspline, 2N + 2 of the circular spline, or twice as many
+
+    A wave generator that is not true presses harder once or twice a turn: orders beside those by one and two.
+    """
 
     name: ClassVar[str] = "tooth_mesh_error"
     in_short: ClassVar[str] = "orders of the tooth count"
@@ -19,10 +22,11 @@ class ToothMeshError(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
     MULTIPLES: Final = (1, 2)
+    BESIDE: Final = 2
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Orders the slowest run samples at least three times a period."""
-        teeth = (2 * reach.ratio, 2 * reach.ratio + 1, 2 * reach.ratio + 2)
+        teeth = [2 * reach.ratio + beside for beside in range(-self.BESIDE, 3 + self.BESIDE)]
         highest = reach.rate / 3.0 / (reach.slowest / (2.0 * np.pi))
         return tuple((m * z,) for m in self.MULTIPLES for z in teeth if m * z < highest)
 

@@ -29,6 +29,7 @@ from rig.model.effect import Array, Parameter, Reach
 
 FAIR = 0.04  # of an effect's work: a fifth of its size
 ALL, FAIRLY = 0.95, 0.2  # share of the excess, and how near 1 what it takes of its own sum of squares must be
+PLAINLY, ABOUT = 0.8, 0.3  # the same of what is plain to see: the right law a little off leaves a sixth, mimics a third
 ASTRAY = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 LOOSE = 2.0  # times the unsteadiness: of what explains everything
 FAINT = 0.05  # of the floor, RMS: what a block has less of is as much the columns' own sensor noise, and wants no size
@@ -108,6 +109,14 @@ class Worth:
     def fairly(self) -> bool:
         """Whether it takes away what it should, and wants one size in all runs, to a fifth."""
         return abs(self.true - 1.0) < FAIRLY and max(self.unsteady, self.apart) < FAIRLY
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is plainly what acts there, whatever its law leaves: most of the excess goes with it, with one
+        size in all runs. How large the rest is in floors says nothing against it: that of a law a little off grows with
+        the effect."""
+        one = max(self.unsteady, self.apart) < ABOUT
+        return self.share > PLAINLY and abs(self.true - 1.0) < ABOUT and one
 
     @property
     def _explains_all(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -58,12 +58,13 @@ def decide(
     all runs have `worths`."""
     total, _ = p.court.worst(after)
     first, _ = p.court.worst(before)
-    line, shadows = p.own.line, cast(s)
+    line = p.own.line
     names = tuple(name for name in weighed if name not in SHADOWS)
-    if shadows:
-        return _cast(shadows[0], _clean(names, worths))
     one = MISSING if names else ALONE
     loud = p.court.loud(after, one, bool(names)) or line is not None
+    plain = {w.name for w in worths if w.plain}
+    if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
+        return _cast(shadows[0], _clean(names, worths))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         hidden = None if names else _in_the_floor(p, s, after, floors)
@@ -74,17 +75,17 @@ def decide(
         where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
-    if line is None and names and known and mostly:
+    sure = known or (plain and plain >= {w.name for w in worths})
+    if line is None and names and sure and mostly:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     best = where[0]
-    # a line in a sensor is in the columns made from it too: beside one nothing is named; where much is left of what an
-    # effect should explain, or much in a channel and no repeats tell what much is, its name would be a guess; and steps
-    # and phases that runs have to themselves take on whatever there is
+    # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
+    # from it too
     shared = [name for name in names if name not in p.own.made]
-    names = _beside(best.coordinate, _clean(shared, worths)) if line is None and (known or total <= EXPLAINED) else ()
+    names = _standing(best.coordinate, shared, worths, plain, line is None and (known or total <= EXPLAINED))
     sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
     verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
@@ -141,6 +142,15 @@ def _cast(shadow: Shadow, names: Sequence[str]) -> Ruling:
     stand = _beside(shadow.coordinate, names)
     verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
     return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
+
+
+def _standing(
+    coordinate: str, names: Sequence[str], worths: Sequence[Worth], plain: Collection[str], known: bool
+) -> tuple[str, ...]:
+    """Names that stand beside a rest: those plain to see; and where what much is is `known`, from repeats or because
+    all channels are quiet, those beside which nothing is left where they act."""
+    clean = _beside(coordinate, _clean(names, worths)) if known else ()
+    return tuple(name for name in names if name in plain or name in clean)
 
 
 def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:

@@ -1,0 +1,40 @@
+"""Waves of the output's angle: once a turn, twice, or once with its overtones."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from rig.model.effect import Array, Fit, Parameter, Reach, Shape, harmonic
+
+LAST: Final = 5.0  # overtone: a lobe a fifth of a turn wide
+LEAST: Final = 0.7  # of the first order, an overtone at most: a narrow lobe has them nearly as large, a gear's has not
+
+
+def once_or_twice(reach: Reach) -> tuple[Shape, ...]:
+    """First and last order: 1 alone, 2 alone, 1 to 5. () on less than a sixth of an output turn."""
+    with_overtones = ((1.0, LAST),) if reach.load_turns > 1 / 2 else ()
+    return ((1.0, 1.0), (2.0, 2.0), *with_overtones) if reach.load_turns > 1 / 6 else ()
+
+
+def orders(shape: Shape) -> Array:
+    """From the first to the last, (k,)."""
+    return np.arange(shape[0], shape[1] + 1.0)
+
+
+def side_by_side(along: Array, across: Array) -> Array:
+    """Two columns (n, 2k) of each order from two arrays (n, k)."""
+    return np.stack([along, across], 2).reshape(along.shape[0], -1)
+
+
+def amplitudes(fit: Fit, unit: str) -> tuple[Parameter, ...]:
+    """Amplitude and phase of every order."""
+    found = [harmonic(fit, f"order_{k:g}", unit, first=2 * i) for i, k in enumerate(orders(fit.shape))]
+    return tuple(p for pair in found for p in pair)
+
+
+def below_the_first(fit: Fit) -> bool:
+    """Whether every overtone is smaller than the wave it is one of."""
+    sizes = np.hypot(fit.coefficients[::2], fit.coefficients[1::2])
+    return bool(sizes[1:].max(initial=0.0) < LEAST * sizes[0])
