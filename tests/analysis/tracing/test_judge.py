@@ -58,6 +58,15 @@ def test_a_worth_is_fair_within_a_fifth() -> None:
     assert not replace(plain, apart=0.25).fairly
 
 
+def test_a_worth_is_plain_however_many_floors_its_law_leaves() -> None:
+    plain = Worth("presliding_friction", 0.89, 46.0, 8.6, 0.99, (), unsteady=0.06, apart=0.06)
+    assert plain.plain
+    assert not replace(plain, share=0.75).plain
+    assert not replace(plain, true=1.4).plain
+    assert not replace(plain, unsteady=0.35).plain
+    assert not replace(plain, apart=0.35).plain
+
+
 def found(frequency: float, *scales: tuple[float, float]) -> list[str]:
     """What stays unresolved of a mode at `frequency` Hz whose frequencies have those intervals."""
     terms = tuple(Term(TorsionalMode(), (0.0, frequency, 0.04, 0.0)) for _ in scales)

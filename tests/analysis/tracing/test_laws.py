@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rig.analysis.tracing.runs.smoothing import thin
-from rig.model.effect import Array, Fit, Moved, Parameter, Port, Signals
+from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
@@ -20,11 +20,14 @@ from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.output_once_per_rev import OutputOncePerRev
 from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
 from rig.model.effects.thermal_friction_drift import CLOCK, HEAT, SOAK, ThermalFrictionDrift
+from rig.model.effects.tooth_mesh_error import ToothMeshError
 from rig.model.effects.torque_ripple import TorqueRipple
+from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
 from tests.contract.test_effects import KNOWN, REACH, N, motion
@@ -228,6 +231,30 @@ def test_a_flattened_weight_has_a_third_wave_smaller_than_half_of_the_first() ->
     assert effect.plausible(fit)
     assert {p.name for p in effect.parameters(fit)} >= {"unbalance_amplitude", "three_times_a_turn_amplitude"}
     assert not effect.plausible(dataclasses.replace(fit, coefficients=c[[2, 3, 0, 1]]))
+
+
+@pytest.mark.parametrize(
+    ("effect", "port"),
+    [(OutputOncePerRev(), Port.KINEMATIC_ERROR), (TorqueSensorCrosstalk(), Port.READS_TAU_L)],
+)
+def test_a_lobe_once_a_turn_of_the_output_has_overtones_smaller_than_itself(effect: Effect, port: Port) -> None:
+    s = motion(n=20000)
+    lobe = 1e-4 * np.exp(1.5 * np.cos(s.theta_l - 1.0))
+    columns = effect.columns(s, (1.0, 5.0))[port]
+    assert columns.shape == (20000, 10)
+    with_mean = np.column_stack([columns, np.ones(s.t.size)])
+    c = np.linalg.lstsq(with_mean, lobe, rcond=None)[0]
+    assert float(np.std(lobe - with_mean @ c)) < 0.01 * float(np.std(lobe))
+    fit = Fit(c[:-1], (1.0, 5.0), np.zeros((12, 12)), KNOWN, N)
+    assert effect.plausible(fit)
+    told = {p.name: p.value for p in effect.parameters(fit)}
+    assert told["order_1_amplitude"] > told["order_2_amplitude"] > told["order_3_amplitude"] > 0
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=np.roll(c[:-1], 2)))
+
+
+def test_teeth_under_an_untrue_wave_generator_have_orders_beside_their_own() -> None:
+    orders = {shape[0] for shape in ToothMeshError().shapes(REACH)}
+    assert orders >= {2 * N - 2, 2 * N, 2 * N + 2, 2 * N + 4}
 
 
 def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() -> None:

@@ -1,0 +1,31 @@
+"""Which names stand beside a rest that no effect explains."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rig.analysis.tracing.court.judge import Worth
+from rig.analysis.tracing.court.verdict import _standing as standing
+
+CLEAN = Worth("cogging_torque", 0.7, 3.0, 1.1, 1.0, (), anywhere=1.1)
+PLAIN = Worth("hysteretic_stiffness", 0.9, 30.0, 6.0, 1.0, (), anywhere=6.0)
+NEITHER = Worth("lost_motion", 0.7, 3.0, 2.0, 1.0, (), anywhere=2.0)
+ALL = [CLEAN, PLAIN, NEITHER]
+
+
+def named(coordinate: str, known: bool, *worths: Worth) -> tuple[str, ...]:
+    return standing(coordinate, [w.name for w in worths], worths, {w.name for w in worths if w.plain}, known)
+
+
+def test_what_is_plain_to_see_stands_and_what_leaves_nothing_where_it_acts() -> None:
+    assert named("load", True, *ALL) == ("cogging_torque", "hysteretic_stiffness")
+
+
+def test_where_no_floor_is_known_only_what_is_plain_stands() -> None:
+    assert named("load", False, *ALL) == ("hysteretic_stiffness",)
+
+
+def test_beside_a_memory_a_loop_stands_only_where_it_is_plain() -> None:
+    small = replace(PLAIN, share=0.7, anywhere=1.1)
+    assert named("memory", True, CLEAN, small) == ("cogging_torque",)
+    assert named("memory", True, CLEAN, PLAIN) == ("cogging_torque", "hysteretic_stiffness")
