@@ -32,7 +32,7 @@ ALL, FAIRLY = 0.95, 0.2  # share of the excess, and how near 1 what it takes of 
 PLAINLY, ABOUT = (
     0.8,
     0.25,
-)  # the same of what is plain to see: the right law a little off leaves a sixth, mimics a third
+)  # the same of what is plain to see: a law a little off leaves a sixth, mimics a third
 ASTRAY = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 LOOSE = 2.0  # times the unsteadiness: of what explains everything
 FAINT = 0.05  # of the floor, RMS: what a block has less of is as much the columns' own sensor noise, and wants no size
