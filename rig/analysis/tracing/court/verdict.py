@@ -69,26 +69,34 @@ def decide(
     if not loud:
         hidden = None if names else _in_the_floor(p, s, after, floors)
         return hidden or _settled(p, names, found, *_falls(p, before, after))
-    elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
-    where = [WHERE_IT_TURNS_BACK]
-    if line is not None or p.court.loud(elsewhere, one):
-        where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+    where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
     sure = known or (plain and plain >= {w.name for w in worths})
     if line is None and names and sure and mostly:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
-    if line is not None:
-        where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
-    best = where[0]
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     shared = [name for name in names if name not in p.own.made]
-    names = _standing(best.coordinate, shared, worths, plain, line is None and (known or total <= EXPLAINED))
-    sentence = line.sentence() if line is not None else _of_the_rest(best, total, names)
-    verdict = Verdict(Status.UNKNOWN, names, (), best.coordinate, best.order, best.frequency_hz, sentence)
+    known = line is None and (known or total <= EXPLAINED)
+    best, stand = where[0], _standing(where[0].coordinate, shared, worths, plain, known)
+    sentence = line.sentence() if line is not None else _of_the_rest(best, total, stand)
+    verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
+
+
+def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float], one: float) -> list[Home]:
+    """Where what is left lives, the best first: a line in a sensor, then by coordinate; at reversals alone where no
+    channel has more left elsewhere than may be in `one` run."""
+    line = p.own.line
+    elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
+    where = [WHERE_IT_TURNS_BACK]
+    if line is not None or p.court.loud(elsewhere, one):
+        where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+    if line is not None:
+        where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
+    return where
 
 
 def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
