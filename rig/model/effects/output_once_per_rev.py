@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 
 class OutputOncePerRev(Effect):
@@ -27,10 +26,8 @@ class OutputOncePerRev(Effect):
         """Cosine and sine of k·θ_l."""
         x = shape[0] * signals.theta_l
         lever = shape[0] / signals.ratio
-        return {
-            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
-            Port.LEVER: np.stack([-lever * np.sin(x), lever * np.cos(x)], 1),
-        }
+        waves = wave(x)
+        return {Port.KINEMATIC_ERROR: waves, Port.LEVER: waves[:, ::-1] * (-lever, lever)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 
 class TorqueSensorCrosstalk(Effect):
@@ -28,7 +29,7 @@ class TorqueSensorCrosstalk(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the load angle."""
         x = shape[0] * signals.theta_l
-        return {Port.READS_TAU_L: np.stack([np.cos(x), np.sin(x)], 1)}
+        return {Port.READS_TAU_L: wave(x)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""
