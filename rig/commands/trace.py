@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.outcome.result import NextRun, Trace
 
 
+PAGE = "rig.report.trace.page"
+
+
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig trace`."""
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of run folders of one rig")
@@ -30,12 +33,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
-    load("rig.analysis.tracing.trace", "rig.report.trace.page")
+    load("rig.analysis.tracing.trace")
     from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.trace import trace
-    from rig.report.trace.campaign import provenance
-    from rig.report.trace.page import write
     from rig.runfile.manifest import utc_now
     from rig.software import software
 
@@ -47,6 +48,10 @@ def run(args: argparse.Namespace) -> int:
         refuse_unwritable_file(args.json, "--json")
     found = trace(args.campaign, args.hold_out)
     tell(found)
+    load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
+    from rig.report.trace.campaign import provenance
+    from rig.report.trace.page import write
+
     with writing(target):
         target.mkdir(parents=True, exist_ok=True)
         written = [write_trace(target / "trace.json", found)]

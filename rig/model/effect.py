@@ -116,19 +116,26 @@ class Signals(Once):
         return out
 
     @cached_property
+    def _series(self) -> tuple[Array, ...]:
+        """θ̃_p along the run, as far as it is known, and its first two derivatives by θ_m, (n,) each."""
+        from rig.model.waves import sums  # compiled: not for those who only read a gear file
+
+        return sums(self.gear.kinematic_error, self.theta_m, 0, 1, 2)
+
+    @property
     def series_slope(self) -> Array:
         """dθ̃_p/dθ_m along the run, as far as it is known, (n,)."""
-        return self.gear.kinematic_error.slope(self.theta_m)
+        return self._series[1]
 
-    @cached_property
+    @property
     def series_bend(self) -> Array:
         """d²θ̃_p/dθ_m² along the run, as far as it is known, (n,)."""
-        return self.gear.kinematic_error.bend(self.theta_m)
+        return self._series[2]
 
-    @cached_property
+    @property
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
-        return self.gear.kinematic_error.value(self.theta_m)
+        return self._series[0]
 
     def part(self, rows: slice | Rows) -> Signals:
         """Some rows of it: a slice, or their numbers (m,) in rising order, stretches side by side."""

@@ -81,15 +81,17 @@ def resonance(x: Array, dt: float, omega: float, zeta: float) -> tuple[Array, Ar
     sigma = zeta * omega
     wd = omega * math.sqrt(1.0 - zeta * zeta)
     decay, c, s = math.exp(-sigma * dt), math.cos(wd * dt), math.sin(wd * dt)
-    # with a ramp of slope r as input, y − (x − 2ζr/ω) decays freely
-    y, rate = x[0], 0.0
-    out[0] = y
+    by_e, by_v = decay * (c + sigma / wd * s), decay * s / wd
+    rate_by_e, rate_by_v = -decay * omega * omega / wd * s, decay * (c - sigma / wd * s)
+    # with a ramp of slope r as input, e = y − (x − 2ζr/ω) decays freely: from row to row e and its rate v alone go
+    # into the next ones, and the processor waits for nothing else
+    e = v = slope = 0.0
+    late = 2.0 * zeta / omega
+    out[0] = x[0]
     for i in range(1, x.size):
-        slope = (x[i] - x[i - 1]) / dt
-        settled = 2.0 * zeta / omega * slope
-        e, v = y - (x[i - 1] - settled), rate - slope
-        e_next = decay * (e * c + (v + sigma * e) / wd * s)
-        v_next = decay * (v * c - (sigma * v + omega * omega * e) / wd * s)
-        y, rate = x[i] - settled + e_next, slope + v_next
-        out[i], second[i] = y, omega * omega * (x[i] - y) - 2.0 * sigma * rate
+        before, slope = slope, (x[i] - x[i - 1]) / dt
+        e, v = e + late * (slope - before), v - (slope - before)
+        e, v = by_e * e + by_v * v, rate_by_e * e + rate_by_v * v
+        out[i] = x[i] - late * slope + e
+        second[i] = omega * omega * (x[i] - out[i]) - 2.0 * sigma * (slope + v)
     return out, second

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from rig.model.effect import Array, Fit, Parameter, Reach, Shape, harmonic
+from rig.model.waves import wave
 
 LAST: Final = 5.0  # overtone: a lobe a fifth of a turn wide
 LEAST: Final = 0.7  # of the first order, an overtone at most: a narrow lobe has them nearly as large, a gear's has not
@@ -23,9 +24,16 @@ def orders(shape: Shape) -> Array:
     return np.arange(shape[0], shape[1] + 1.0)
 
 
-def side_by_side(along: Array, across: Array) -> Array:
-    """Two columns (n, 2k) of each order from two arrays (n, k)."""
-    return np.stack([along, across], 2).reshape(along.shape[0], -1)
+def waves(angle: Array, shape: Shape) -> Array:
+    """Cosine and sine of every order's multiple of `angle` (n,): (n, 2k)."""
+    return np.hstack([wave(k * angle) for k in orders(shape)])
+
+
+def slopes(waves: Array, shape: Shape) -> Array:
+    """Of those columns, by the angle, (n, 2k)."""
+    out = np.empty_like(waves)
+    out[:, ::2], out[:, 1::2] = -orders(shape) * waves[:, 1::2], orders(shape) * waves[:, ::2]
+    return out
 
 
 def amplitudes(fit: Fit, unit: str) -> tuple[Parameter, ...]:

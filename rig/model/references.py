@@ -8,6 +8,7 @@ REFERENCES: dict[str, str] = {
     "armstrong1994": "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and "
     "compensation methods for the control of machines with friction, Automatica 30 (1994) 1083-1138",
     "fuller1987": "W. A. Fuller, Measurement Error Models, Wiley (1987)",
+    "cody1980": "W. J. Cody, W. Waite, Software Manual for the Elementary Functions, Prentice-Hall (1980)",
     "liang1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, "
     "Biometrika 73 (1986) 13-22",
     "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "

@@ -65,6 +65,5 @@ def test_the_sum_by_horner_is_the_sum_of_equation_8_over_more_angles_than_a_bloc
         [[a * np.cos(n * theta), b * np.sin(n * theta)] for n, (a, b) in enumerate(zip(s.a, s.b, strict=True), 1)]
     )
     assert np.allclose(s.value(theta), each.sum((0, 1)), atol=1e-15)
-    assert np.array_equal(s.value_and_slope(theta), [s.value(theta), s.slope(theta)])
     assert s.value(theta.reshape(-1, 1)).shape == (theta.size, 1)
     assert not np.any(FourierSeries((), ()).slope(theta))

@@ -26,7 +26,7 @@ from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
-from rig.analysis.tracing.workers import give_back
+from rig.analysis.tracing.workers import give_back, one_heap
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
@@ -55,14 +55,18 @@ class Prepared:
 
 def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     """Trace the campaign in `folder`. Raises UsageError when it cannot be read or has too little to fit and test."""
-    p = prepare(read_campaign(folder), hold_out)
+    one_heap()
+    campaign = read_campaign(folder)
+    give_back()
+    p = prepare(campaign, hold_out)
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     covered = with_lines(covered, start, runs)
     suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
-    bank = fill(some(p.eq, runs), suspects, runs, covered)
+    # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
+    bank = fill(some(p.eq.afresh(), runs), suspects, runs, covered)
     found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
     give_back()
     again, found = _looked_again(p, found, bank, covered)

@@ -19,12 +19,15 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any, Final, TypeVar
 
+import pyarrow as pa
+
 T = TypeVar("T")
 R = TypeVar("R")
 
 WORKERS: Final = 2  # threads, where the work is long calls that leave the interpreter's lock; processes otherwise
 MOST: Final = 16_384  # pieces of work: as many numbers as a pipe holds
 ALIGNED: Final = 64  # bytes: a line of the cache
+M_ARENA_MAX: Final = -8  # of malloc.h: how many heaps
 HEAD: Final = 16  # bytes: where the table of results begins, and its size
 
 
@@ -63,8 +66,15 @@ def meanwhile(of: Callable[[], R]) -> Iterator[Callable[[], R]]:
         yield result
 
 
+def one_heap() -> None:
+    """All threads to come share the first one's: of heaps of their own each keeps what the others could use."""
+    with contextlib.suppress(OSError, AttributeError):  # of glibc alone
+        ctypes.CDLL(None).mallopt(M_ARENA_MAX, 1)
+
+
 def give_back() -> None:
-    """Memory that was freed, to the machine: the C library keeps it for what may come, and a copy would have it too."""
+    """Memory that was freed, to the machine: the libraries keep it for what may come, and a copy would have it too."""
+    pa.default_memory_pool().release_unused()  # what runs were read into
     with contextlib.suppress(OSError, AttributeError):  # of glibc alone
         ctypes.CDLL(None).malloc_trim(0)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
 REACTION: Final = {MOTOR: Port.MOTOR_TORQUE, OUTPUT: Port.LOAD_TORQUE}
@@ -40,10 +39,10 @@ class AngleDependentStiffness(Effect):
         """T times cosine and sine, and what they do to the shaft whose angle it is."""
         k, reaction, side = shape
         x, torque = k * (signals.theta_m if side == MOTOR else signals.theta_l), signals.torque[:, None]
-        back = reaction * k / 2 * torque**2
+        waves, back = wave(x), reaction * k / 2 * torque**2
         return {
-            Port.WIND_UP: np.stack([np.cos(x), np.sin(x)], 1) * torque,
-            REACTION[side]: np.stack([np.sin(x), -np.cos(x)], 1) * back,
+            Port.WIND_UP: waves * torque,
+            REACTION[side]: waves[:, ::-1] * (1.0, -1.0) * back,
         }
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

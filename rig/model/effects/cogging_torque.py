@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.motor_orders import MOTOR_ORDERS
+from rig.model.waves import wave
 
 
 class CoggingTorque(Effect):
@@ -27,7 +26,7 @@ class CoggingTorque(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine."""
         x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m)
-        return {Port.MOTOR_TORQUE: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
+        return {Port.MOTOR_TORQUE: wave(x) * kept[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

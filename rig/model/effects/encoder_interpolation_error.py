@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter
 
@@ -49,7 +50,7 @@ class EncoderInterpolationError(Effect):
             x, kept, port = lines * signals.theta_l, signals.kept(lines, signals.omega_l), Port.READS_THETA_L
         else:
             x, kept, port = lines * signals.theta_m, signals.kept(lines, signals.omega_m), Port.READS_THETA_M
-        return {port: np.stack([kept * np.cos(x), kept * np.sin(x)], 1)}
+        return {port: wave(x) * kept[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase, named by side and line count."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 
 class FlexsplineFrameError(Effect):
@@ -34,10 +33,8 @@ class FlexsplineFrameError(Effect):
         k, sigma = shape
         x = k * (signals.theta_m + sigma * signals.theta_l)
         slope = k * (1.0 + sigma / signals.ratio)
-        return {
-            Port.KINEMATIC_ERROR: np.stack([np.cos(x), np.sin(x)], 1),
-            Port.LEVER: np.stack([-slope * np.sin(x), slope * np.cos(x)], 1),
-        }
+        waves = wave(x)
+        return {Port.KINEMATIC_ERROR: waves, Port.LEVER: waves[:, ::-1] * (-slope, slope)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of the order."""

@@ -10,6 +10,7 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.fourier import FourierSeries
 from rig.model.memory import follower
+from rig.model.waves import powers
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
 EACH = 2.0  # added to it where the large orders shrink each by its own share
@@ -92,9 +93,9 @@ class LoadDependentKinematicError(Effect):
 def _by_orders(signals: Signals, values: Array, slopes: Array) -> tuple[Array, Array]:
     """Cosine and sine of ORDERS, rad each, and what is left of the whole without them, (n, 7), and slopes by θ_m."""
     series = signals.gear.kinematic_error
-    n = np.array(ORDERS, dtype=float)
-    angle = np.multiply.outer(signals.theta_m, n)
-    cos, sin = np.cos(angle), np.sin(angle)
+    n = np.array(ORDERS)
+    waves = powers(signals.theta_m, max(ORDERS))
+    cos, sin = waves[:, 0::2][:, n - 1], waves[:, 1::2][:, n - 1]
     a, b = np.array([_wave(series, order) for order in ORDERS]).T
     return (
         np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None]]),

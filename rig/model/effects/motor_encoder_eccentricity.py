@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import powers
 
 
 class MotorEncoderEccentricity(Effect):
@@ -29,8 +30,7 @@ class MotorEncoderEccentricity(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the motor angle and its multiples."""
-        angles = np.multiply.outer(signals.theta_m, np.arange(1, self.ORDERS + 1))
-        return {Port.READS_THETA_M: np.stack([np.cos(angles), np.sin(angles)], 2).reshape(angles.shape[0], -1)}
+        return {Port.READS_THETA_M: powers(signals.theta_m, self.ORDERS)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of the first order."""

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
-from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, orders, side_by_side
+from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, slopes, waves
 
 
 class OutputOncePerRev(Effect):
@@ -29,13 +27,8 @@ class OutputOncePerRev(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every k·θ_l."""
-        k = orders(shape)
-        x = np.multiply.outer(signals.theta_l, k)
-        lever = k / signals.ratio
-        return {
-            Port.KINEMATIC_ERROR: side_by_side(np.cos(x), np.sin(x)),
-            Port.LEVER: side_by_side(-lever * np.sin(x), lever * np.cos(x)),
-        }
+        found = waves(signals.theta_l, shape)
+        return {Port.KINEMATIC_ERROR: found, Port.LEVER: slopes(found, shape) / signals.ratio}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of every order."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
-import numpy as np
-
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 
 class PositionDependentFriction(Effect):
@@ -39,7 +38,7 @@ class PositionDependentFriction(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine, with the sign of the motion."""
         x = shape[0] * signals.theta_m
-        return {Port.MOTOR_TORQUE: np.stack([np.cos(x), np.sin(x)], 1) * signals.way[:, None]}
+        return {Port.MOTOR_TORQUE: wave(x) * signals.way[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

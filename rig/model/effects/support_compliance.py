@@ -51,7 +51,7 @@ class SupportCompliance(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, in both readings or in the wind-up."""
         held, frequency, zeta = shape
-        torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
+        torque = signals.once(self.name, lambda: np.ascontiguousarray(np.nan_to_num(signals.torque)))
         moved = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]
         if held == ON_GROUND:
             return {Port.WIND_UP: moved}

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.waves import wave
 
 
 class ToothMeshError(Effect):
@@ -34,10 +35,8 @@ class ToothMeshError(Effect):
         """Cosine and sine, with their lever."""
         k = shape[0]
         x, kept = k * signals.theta_m, signals.kept(k, signals.omega_m)
-        return {
-            Port.KINEMATIC_ERROR: np.stack([kept * np.cos(x), kept * np.sin(x)], 1),
-            Port.LEVER: np.stack([-k * kept * np.sin(x), k * kept * np.cos(x)], 1),
-        }
+        waves = wave(x) * kept[:, None]
+        return {Port.KINEMATIC_ERROR: waves, Port.LEVER: waves[:, ::-1] * (-k, k)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

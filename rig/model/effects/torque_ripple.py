@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.motor_orders import MOTOR_ORDERS
+from rig.model.waves import wave
 
 
 class TorqueRipple(Effect):
@@ -36,7 +37,7 @@ class TorqueRipple(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """τ_m times cosine and sine, and τ_m² times them."""
         x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m) * signals.tau_m
-        waves = np.stack([kept * np.cos(x), kept * np.sin(x)], 1)
+        waves = wave(x) * kept[:, None]
         return {Port.MOTOR_TORQUE: np.hstack([waves, waves * signals.tau_m[:, None]]) if shape[1] else waves}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
-from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, orders, side_by_side
+from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, waves
 
 
 class TorqueSensorCrosstalk(Effect):
@@ -31,8 +31,7 @@ class TorqueSensorCrosstalk(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every k·θ_l."""
-        x = np.multiply.outer(signals.theta_l, orders(shape))
-        return {Port.READS_TAU_L: side_by_side(np.cos(x), np.sin(x))}
+        return {Port.READS_TAU_L: waves(signals.theta_l, shape)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of every order."""

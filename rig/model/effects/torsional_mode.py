@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import resonance, resonated
+from rig.model.waves import sums
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
@@ -21,7 +22,7 @@ def twisted(s: Signals, psi: Array) -> tuple[Array, Array]:
     """Slopes of θ̃ and of its lever by the twist ψ rad (n,), secants from θ_m − ψ to θ_m: (1/N − Δθ̃_p/ψ, Δθ̃_p′/ψ)."""
     series, back = s.gear.kinematic_error, s.theta_m - psi
     small = np.abs(psi) < SMALL
-    by, (value_back, slope_back) = np.where(small, 1.0, psi), series.value_and_slope(back)
+    by, (value_back, slope_back) = np.where(small, 1.0, psi), sums(series, back, 0, 1)
     slope = np.where(small, s.series_slope, (s.series_value - value_back) / by)
     bend = np.where(small, s.series_bend, (s.series_slope - slope_back) / by)
     return 1.0 / s.ratio - slope, bend
@@ -129,7 +130,8 @@ class TorsionalMode(Effect):
         straight = s.torque * (1.0 / s.ratio - s.series_slope)
         if not about:
             return straight
-        return s.torque * (1.0 / s.ratio - s.gear.kinematic_error.slope(s.theta_m - about * straight))
+        (slope,) = sums(s.gear.kinematic_error, s.theta_m - about * straight, 1)
+        return s.torque * (1.0 / s.ratio - slope)
 
     def _hub(self, s: Signals) -> Mapping[Port, Array]:
         turned = np.stack([s.alpha_l, np.gradient(s.torque_rate, s.dt)], 1)

@@ -34,6 +34,7 @@ from rig.analysis.tracing.runs.recording import COARSE, UNKNOWN, Recording, sett
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Array, Known, Port, Signals
 from rig.model.fourier import FourierSeries
+from rig.model.waves import powers
 
 ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
 CHANNELS: Final = ("A", "M", "R", "L")
@@ -215,22 +216,12 @@ def _with_angle(columns: dict[str, Array], s: Signals, f: Smoother, has: Has, in
 
 def series(theta: Array) -> Array:
     """cos nθ, sin nθ in turn, n = 1..15, shape (n, 30)."""
-    out = np.empty((theta.size, 2 * ORDERS))
-    c, s = np.cos(theta), np.sin(theta)
-    out[:, 0], out[:, 1] = c, s
-    for n in range(1, ORDERS):
-        out[:, 2 * n] = out[:, 2 * n - 2] * c - out[:, 2 * n - 1] * s
-        out[:, 2 * n + 1] = out[:, 2 * n - 1] * c + out[:, 2 * n - 2] * s
-    return out
+    return powers(theta, ORDERS)
 
 
 def slopes(theta: Array) -> Array:
     """d/dθ of `series`, shape (n, 30)."""
-    values = series(theta)
-    n = np.repeat(np.arange(1, ORDERS + 1), 2)
-    out = values[:, np.arange(2 * ORDERS) ^ 1] * n
-    out[:, ::2] *= -1
-    return np.asarray(out)
+    return powers(theta, ORDERS, slopes=True)
 
 
 Mark = tuple[str, Array, int]

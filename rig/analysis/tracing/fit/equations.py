@@ -164,6 +164,11 @@ class Equations:
         noisy = {i: run.knowing(known) for i, run in self.noisy.items()}
         return replace(self, runs=tuple(run.knowing(known) for run in self.runs), noisy=noisy)
 
+    def afresh(self) -> Equations:
+        """With signals of which nothing is made yet."""
+        noisy = {i: run.afresh() for i, run in self.noisy.items()}
+        return replace(self, runs=tuple(run.afresh() for run in self.runs), noisy=noisy)
+
     def leaning_on_it(self) -> Equations:
         """With the baseline's columns made again in runs that miss a sensor, whose part is made with what is known."""
         missing = [i for i, run in enumerate(self.runs) if not run.knows >= MEASURED]

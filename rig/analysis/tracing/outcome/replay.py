@@ -25,6 +25,7 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import flat
 from rig.model.effect import Array, Known, Port, Signals
 from rig.model.memory import marched
+from rig.model.waves import sums
 
 FINE: Final = 8  # steps between two rows of 4 ms: order 15 at 500 rpm then has 16 a period
 SPAN: Final = 8.0  # s of a run: a turn of the slowest motor and more, and quick
@@ -123,10 +124,9 @@ def _led(s: Signals, model: Model, read_m: Array) -> _Led:
     fine = np.arange((s.t.size - 1) * FINE + 1) / FINE
     theta, omega, alpha = spline(fine), spline(fine, 1) / s.dt, spline(fine, 2) / s.dt**2
     p = model.gear.kinematic_error
-    slope = p.slope(theta)
-    bend = p.bend(theta)
+    value, slope, bend = sums(p, theta, 0, 1, 2)
     lever = 1.0 / s.ratio - slope
-    return _Led(theta / s.ratio - p.value(theta), omega * lever, alpha * lever - omega**2 * bend)
+    return _Led(theta / s.ratio - value, omega * lever, alpha * lever - omega**2 * bend)
 
 
 def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> Signals:

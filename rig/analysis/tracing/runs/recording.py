@@ -79,6 +79,10 @@ class Recording(Once):
         rng = np.random.default_rng(seed)
         return replace(self, pieces=_each(self.pieces, lambda piece: _noisier(piece, self.noise, self.smoother, rng)))
 
+    def afresh(self) -> Recording:
+        """The same with nothing made of its signals yet: what effects keep there goes when this copy does."""
+        return replace(self, pieces=_each(self.pieces, replace))
+
     def knowing(self, known: Known) -> Recording:
         """The same with what is known of the gear."""
         return replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known)))

@@ -68,17 +68,19 @@ def _thinned_narrow(x: Array, taps: Array, m: int, step: int) -> Array:
     """As `_thinned`, of a few columns: rows of one phase side by side, so that the machine adds several at once."""
     out = np.empty((m, x.shape[1]))
     reach = (taps.size - 1) // step
-    phases = np.zeros((step, m + reach))
+    phases, sums = np.empty((step, BLOCK + reach)), np.empty(BLOCK)
     for k in range(x.shape[1]):
-        for p in range(step):
-            for i in range(min(m + reach, (x.shape[0] - p + step - 1) // step)):
-                phases[p, i] = x[i * step + p, k]
         for start in range(0, m, BLOCK):
-            total = np.zeros(min(BLOCK, m - start))
+            total = sums[: min(BLOCK, m - start)]
+            for p in range(step):
+                first, rows = start * step + p, phases[p]
+                for i in range(min(total.size + reach, (x.shape[0] - first + step - 1) // step)):
+                    rows[i] = x[first + i * step, k]
+            total[:] = 0.0
             for j in range(taps.size):
-                tap, rows, first = taps[j], phases[j % step], start + j // step
+                tap, rows = taps[j], phases[j % step, j // step : j // step + total.size]
                 for i in range(total.size):
-                    total[i] += tap * rows[first + i]
+                    total[i] += tap * rows[i]
             out[start : start + total.size, k] = total
     return out
 
