@@ -64,7 +64,7 @@ def decide(
     loud = p.court.loud(after, one, bool(names)) or line is not None
     plain = {w.name for w in worths if w.plain}
     if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
-        return _cast(shadows[0], _clean(names, worths))
+        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain, True))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         hidden = None if names else _in_the_floor(p, s, after, floors)
@@ -145,10 +145,9 @@ def _clean(names: Sequence[str], worths: Sequence[Worth]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in amiss)
 
 
-def _cast(shadow: Shadow, names: Sequence[str]) -> Ruling:
+def _cast(shadow: Shadow, names: tuple[str, ...]) -> Ruling:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
-    stand = _beside(shadow.coordinate, names)
-    verdict = Verdict(Status.UNKNOWN, stand, (), shadow.coordinate, None, None, shadow.sentence)
+    verdict = Verdict(Status.UNKNOWN, names, (), shadow.coordinate, None, None, shadow.sentence)
     return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
 
 
