@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS, known_of
+from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE, known_of
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
@@ -188,9 +188,10 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
 
 
 def harm(at: Court, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
-    """Over the channels that are not quiet: largest RMS with the effect over that without it."""
+    """Over the channels that are not quiet: largest RMS with the effect over that without it. What reversals have left
+    says nothing: they are few rows, and what stands there beside a true effect is friction."""
     found = [1.0]
-    for channel in CHANNELS:
+    for channel in WHOLE:
         keys = [key for key in whole if key[1] == channel]
         if keys and (now := at.ratio(whole, keys)) > EXPLAINED:
             found.append(now / max(at.ratio(bare, keys), 1e-9))
