@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+
 from matplotlib import artist
 
 from rig.report.without_help import without_help
@@ -17,6 +19,13 @@ def test_help_is_left_out_only_meanwhile() -> None:
     assert artist.kwdoc is usual
     assert artist.kwdoc(Dot)
     assert "alpha" not in (Dot.set.__doc__ or "")
+    assert "alpha" not in inspect.signature(Dot.set).parameters
+
+    class Line(artist.Artist):
+        """One that is made later has all of it."""
+
+    assert "alpha" in (Line.set.__doc__ or "")
+    assert "alpha" in inspect.signature(Line.set).parameters
     dot = Dot()
     dot.set(alpha=0.5)
     assert dot.get_alpha() == 0.5

@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, MultipleLocator, NullLocator
 
+from rig.report.figures.ticks import Panel
 from rig.report.numbers import SUPERSCRIPT
 from rig.report.palette import LIGHT
 
@@ -112,7 +113,8 @@ def panel_at(figure: Figure, frame: Frame, box: tuple[float, float, float, float
     """A panel of the sheet's look at (left, top, width, height) in px, the word of the frame across it."""
     left, top, width, height = box
     total = figure.get_figheight() / PX
-    panel = figure.add_axes((left / frame.width, 1 - (top + height) / total, width / frame.width, height / total))
+    place = (left / frame.width, 1 - (top + height) / total, width / frame.width, height / total)
+    panel = figure.add_axes(place, axes_class=Panel)
     _quiet(panel)
     if frame.mark:
         _watermark(panel, frame.mark, width, height)
