@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, TypeVar, cast
+from typing import Any, Self, TypeVar, cast
 
 Made = TypeVar("Made")
 
 
 class Once:
-    """Base of values that never change: a changed copy makes all of it anew."""
+    """Base of values that never change: a changed copy makes all of it anew, but for one that is `made_as` another."""
 
     @cached_property
     def _made(self) -> dict[str, Any]:
         return {}
+
+    def made_as(self, before: Self) -> Self:
+        """This copy with what was made of `before` and will be: for copies that differ in nothing of it."""
+        self.__dict__["_made"] = before._made
+        return self
 
     def once(self, name: str, make: Callable[[], Made]) -> Made:
         """What `make` gave when `name` was first asked for."""

@@ -39,12 +39,18 @@ def scatter(s: Solution) -> Array:
     meat, clusters = np.zeros_like(s.gram), 0
     for key in s.keys:
         (z, at), e = d.whole(key), s.residual(key)
-        for part in np.array_split(np.arange(e.size), PIECES):
+        for part in (_part(e.size, i, PIECES) for i in range(PIECES)):
             u = d.eq.noise.weight(key[1]) * (z[part].T @ e[part])
             meat[np.ix_(at, at)] += np.outer(u, u)
             clusters += 1
     bread = inverse(s.gram)
     return np.asarray(bread @ meat @ bread * clusters / max(1, clusters - d.size))
+
+
+def _part(n: int, i: int, of: int) -> slice:
+    """The i-th of so many parts of n rows, the first ones longer by one where they do not come out even."""
+    each, more = divmod(n, of)
+    return slice(i * each + min(i, more), (i + 1) * each + min(i + 1, more))
 
 
 def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:
@@ -57,7 +63,7 @@ def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:
         for i in range(pieces):
             gram, score = np.zeros_like(s.gram), np.zeros(s.x.size)
             for key, (z, at, e) in blocks.items():
-                some = np.array_split(np.arange(e.size), pieces)[i]
+                some = _part(e.size, i, pieces)
                 weight = s.design.eq.noise.weight(key[1])
                 gram[np.ix_(at, at)] += weight * (z[some].T @ z[some])
                 score[at] += weight * (z[some].T @ e[some])

@@ -170,15 +170,14 @@ def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, 
     """Of each part of a block with `mine`, and of that one with y."""
     w, z = d.eq.noise.weight(key[1]), mine.z.whole()
     along = w * (z.T @ d.y[key])
-    if mine.spoilt is None:
-        return [(part, mine, w * part.z.onto(z), along) for part in d.parts[key]]
-    v, noise = w * d.eq.stands_for[key], mine.spoilt.whole()
-    along -= v * (noise.T @ d.noise[key])
+    v, noise = w * d.eq.stands_for.get(key, 0.0), None if mine.spoilt is None else mine.spoilt.whole()
+    if noise is not None:
+        along -= v * (noise.T @ d.noise[key])
     out = []
-    for part in d.parts[key]:
-        across = w * part.z.onto(z)
-        if part.spoilt is not None:
-            across -= v * part.spoilt.onto(noise)
+    for part in d.parts[key]:  # of a matrix with itself BLAS makes but half
+        across = w * (z.T @ z if part is mine else part.z.onto(z))
+        if noise is not None and part.spoilt is not None:
+            across -= v * (noise.T @ noise if part is mine else part.spoilt.onto(noise))
         out.append((part, mine, across, along))
     return out
 

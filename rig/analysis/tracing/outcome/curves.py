@@ -24,7 +24,7 @@ def curves(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
     """See `Trace`."""
     out: dict[str, Array] = {}
     one = dict.fromkeys(p.court.floors, 1.0 / ARCSEC)
-    pair = [(name, rest(p.eq, e, one, "A")) for name, e in (("before", before), ("after", after))]
+    pair = [(name, rest(p.eq, e, one, "A", beside=False)) for name, e in (("before", before), ("after", after))]
     orders = np.arange(0.02, 40.0, 0.02)
     for name, r in pair:
         if r is None:

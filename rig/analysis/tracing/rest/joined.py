@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.fit.channels import BASELINE
+from rig.analysis.tracing.fit.channels import BASELINE, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import prior
 from rig.model.effect import Array
@@ -66,8 +66,10 @@ class Rest:
         return replace(self, e=self.e[::by], run=self.run[::by], at=at, dt=self.dt * by, z=self.z[::by])
 
 
-def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Rest | None:
-    """Join the runs of one channel."""
+def rest(
+    eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str, beside: bool = True
+) -> Rest | None:
+    """Join the runs of one channel; without what stands `beside`, `z` and `known`, for those who ask where it lies."""
     keys = [k for k in e if k[1] == channel]
     if not keys:
         return None
@@ -77,13 +79,26 @@ def rest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], cha
         at["load"] = at["load"] - np.concatenate([e[k] for k in keys])
     run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
     smooth = eq.runs[keys[0][0]].smoother
+    left = np.concatenate([e[k] / floors[k] for k in keys])
+    z, known = _beside(eq, keys, floors, channel) if beside else (np.zeros((left.size, 0)), np.zeros((0, 0)))
+    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
+
+
+def loudest(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> tuple[str, float]:
+    """The channel with the most left, and its mean square over the floor's; 0 where no channel was measured."""
+    over = {c: [e[k] / floors[k] for k in e if k[1] == c] for c in WHOLE}
+    square = {c: float(np.mean(np.concatenate(parts) ** 2)) if parts else 0.0 for c, parts in over.items()}
+    return max(square.items(), key=lambda item: item[1])
+
+
+def _beside(eq: Equations, keys: Sequence[Key], floors: Mapping[Key, float], channel: str) -> tuple[Array, Array]:
+    """Columns of the baseline over the floor (n, p), and what is known of their coefficients for each row (p, p)."""
     acting = {int(i) for k, rows in eq.rows.items() if k[1] == channel for i in rows.at}
     free = sorted(acting & {int(i) for i in np.flatnonzero(prior(len(BASELINE)) == 0)})
     z = np.concatenate([_baseline(eq, k)[:, free] / floors[k] for k in keys])
-    left = np.concatenate([e[k] / floors[k] for k in keys])
-    known = _elsewhere(eq, [key for key in eq.of(range(len(eq.runs))) if key[1] != channel and (key[0], channel) in e])
-    known = (known[np.ix_(free, free)] * eq.noise.kappa[channel] + ALL_OF_IT * z.T @ z) / left.size
-    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
+    runs = {run for run, _ in keys}
+    known = _elsewhere(eq, [key for key in eq.of(range(len(eq.runs))) if key[1] != channel and key[0] in runs])
+    return z, (known[np.ix_(free, free)] * eq.noise.kappa[channel] + ALL_OF_IT * z.T @ z) / len(z)
 
 
 def _elsewhere(eq: Equations, keys: Sequence[Key]) -> Array:

@@ -7,9 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.joined import rest
+from rig.analysis.tracing.rest.joined import loudest, rest
 from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, shares
 from rig.model.effect import Array
 
@@ -24,11 +23,9 @@ def lives_in(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float])
 
     Of the channel with the most left. A fixed frequency is `time_periodic`.
     """
-    parts = [(c, r) for c in WHOLE if (r := rest(eq, e, floors, c)) is not None]
-    if not parts:
-        return ()
-    channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
-    if float(np.mean(most.e**2)) < LOUD:
+    channel, square = loudest(e, floors)
+    most = rest(eq, e, floors, channel) if square >= LOUD else None
+    if most is None:
         return ()
     found = shares(most, floors, channel)
     score = np.nan_to_num(found[f"share.{channel}"])

@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
-from rig.analysis.tracing.rest.joined import Rest, rest
+from rig.analysis.tracing.rest.joined import Rest, loudest, rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.sudden import since
@@ -93,8 +92,10 @@ def _wound(h: Halves, channel: str) -> Home | None:
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
     """Best coordinates of the channel with the most left."""
-    parts = [(c, r) for c in WHOLE if (r := rest(eq, e, floors, c)) is not None]
-    channel, most = max(parts, key=lambda p: float(np.mean(p[1].e ** 2)))
+    channel, _ = loudest(e, floors)
+    most = rest(eq, e, floors, channel)
+    if most is None:
+        return []
     found = homes(most, channel)
     if channel == "L":  # its zero may wander from run to run, or a gain does that only loads of several runs show
         found += homes(replace(most, own_zeros=False), channel)

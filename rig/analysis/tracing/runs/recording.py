@@ -20,7 +20,7 @@ from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
 from rig.core.errors import UsageError
 from rig.core.once import Once
-from rig.model.effect import Array, Known, Signals
+from rig.model.effect import MEASURED, Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
@@ -84,8 +84,10 @@ class Recording(Once):
         return replace(self, pieces=_each(self.pieces, replace))
 
     def knowing(self, known: Known) -> Recording:
-        """The same with what is known of the gear."""
-        return replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known)))
+        """The same with what is known of the gear. What is made of the run itself leans on that where a sensor is
+        missing."""
+        made = replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known)))
+        return made.made_as(self) if self.knows >= MEASURED else made
 
 
 def record(whole_run: Run, start: float) -> Recording:

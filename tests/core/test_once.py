@@ -1,0 +1,34 @@
+"""What is made once is made once; a changed copy makes it anew, unless it was said to differ in nothing of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from rig.core.once import Once
+
+
+@dataclass(frozen=True)
+class Number(Once):
+    """A number, its square made once."""
+
+    value: int
+    colour: str = ""
+
+    def square(self, made: list[int]) -> int:
+        """Notes in `made` what it is really made of."""
+        return self.once("square", lambda: made.append(self.value) or self.value**2)
+
+
+def test_it_is_made_once_and_anew_by_a_changed_copy() -> None:
+    made: list[int] = []
+    three = Number(3)
+    assert [three.square(made), three.square(made), replace(three, value=4).square(made)] == [9, 9, 16]
+    assert made == [3, 4]
+
+
+def test_a_copy_made_as_another_shares_what_either_makes() -> None:
+    made: list[int] = []
+    three = Number(3)
+    red = replace(three, colour="red").made_as(three)
+    assert [red.square(made), three.square(made)] == [9, 9]
+    assert made == [3]
