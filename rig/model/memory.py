@@ -50,10 +50,10 @@ def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) 
 
 
 @njit(cache=True, nogil=True)
-def presliding(theta: Array, x0: float) -> Array:
-    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step; starts at 0, shape (n,)."""
+def presliding(theta: Array, x0: float, start: float = 0.0) -> Array:
+    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,)."""
     out = np.empty_like(theta)
-    z, last = 0.0, theta[0] if theta.size else 0.0
+    z, last = start, theta[0] if theta.size else 0.0
     for i in range(theta.size):
         moved = theta[i] - last
         last = theta[i]

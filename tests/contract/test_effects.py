@@ -104,9 +104,9 @@ def test_friction_never_gives_energy(name: str, sign: float):
 def test_friction_is_the_same_both_ways(name: str):
     effect = CATALOGUE[name]
     forward, backward = motion(1.0), motion(-1.0)
-    backward = dataclasses.replace(backward, theta_m=-forward.theta_m)
+    backward = dataclasses.replace(backward, theta_m=-forward.theta_m, theta_l=-forward.theta_l)
     for shape in effect.shapes(REACH):
-        ahead, back = (effect.columns(s, shape)[Port.MOTOR_TORQUE] for s in (forward, backward))
+        (ahead,), (back,) = (effect.columns(s, shape).values() for s in (forward, backward))
         if "by_way" in effect.shape_names and shape[effect.shape_names.index("by_way")]:
             ahead, back = ahead.sum(1), back.sum(1)  # a coefficient for either way: alike where those are
         np.testing.assert_allclose(ahead, -back, atol=1e-12)
@@ -134,7 +134,8 @@ def test_an_elastic_law_is_odd_in_the_torque(name: str):
 
 
 def test_no_two_effects_have_the_same_footprint():
-    runs = (motion(1.0), motion(-1.0))
+    forth, back = motion(1.0), motion(-1.0)
+    runs = [dataclasses.replace(s, omega_m=np.r_[0.0, s.omega_m[1:]]) for s in (forth, back)]  # both begin at rest
     seen: list[tuple[str, dict[Port, np.ndarray]]] = []
     for effect in LIBRARY.values():
         reach = WITHIN if effect.name in EACH_RUN else REACH

@@ -10,9 +10,12 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import presliding
 
+MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter: whose friction
+
 
 class PreslidingFriction(Effect):
-    """Instead of jumping, τ_c·sgn ω_m builds up with the way: τ_c·z, dz/dθ_m = (1 − z·sgn ω_m)/x_0      [dahl1968]
+    """Instead of jumping, τ_c·sgn ω_m builds up with the way: τ_c·z, dz/dθ_m = (1 − z·sgn ω_m)/x_0; or the load's
+    friction τ_cl does, with θ_l      [dahl1968]
 
     The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal.
     """
@@ -20,13 +23,15 @@ class PreslidingFriction(Effect):
     name: ClassVar[str] = "presliding_friction"
     in_short: ClassVar[str] = "friction with memory around reversals"
     source: ClassVar[str] = "dahl1968"
-    shape_names: ClassVar[tuple[str, ...]] = ("x_0",)
-    loose: ClassVar[tuple[bool, ...]] = (True,)
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0")
+    loose: ClassVar[tuple[bool, ...]] = (False, True)
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
+    TURNS: Final = 0.04  # rad/s of the motor: a run that turns faster when it begins has slid before
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Ways longer than the motor goes between two samples of the slowest run."""
-        return tuple((x,) for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate)
+        """Ways longer than the motor, and the load with it, goes between two samples of the slowest run."""
+        ways = [x for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate]
+        return (*((MOTOR, x) for x in ways), *((LOAD, x / reach.ratio) for x in ways))
 
     def moved_by_noise(self) -> bool:
         """The friction of a motor that rests builds up with the way its encoder seems to go."""
@@ -38,15 +43,20 @@ class PreslidingFriction(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
-        way = np.sign(signals.omega_m)
-        return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, shape[0]) - way)[:, None]}
+        side, x_0 = shape
+        first = signals.omega_m[0] if signals.t.size else 0.0
+        start = float(np.sign(first)) if abs(first) > self.TURNS else 0.0
+        if side == LOAD:
+            return {Port.LOAD_TORQUE: (presliding(signals.theta_l, x_0, start) - signals.way)[:, None]}
+        return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - np.sign(signals.omega_m))[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The friction that builds up, and over which way."""
-        torque, way = np.eye(2)[:, : fit.covariance.shape[0]]
+        torque, way = np.eye(3)[[0, 2], : fit.covariance.shape[0]]
+        whose = "_l" if fit.shape[0] == LOAD else ""
         return (
-            parameter("tau_presliding", fit.coefficients[0], fit.half_width(torque), "N·m"),
-            parameter("x_0", fit.shape[0], fit.half_width(way), "rad"),
+            parameter(f"tau_presliding{whose}", fit.coefficients[0], fit.half_width(torque), "N·m"),
+            parameter("x_0", fit.shape[1], fit.half_width(way), "rad"),
         )
 
     def plausible(self, fit: Fit) -> bool:

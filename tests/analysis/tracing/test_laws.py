@@ -21,6 +21,9 @@ from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
+from rig.model.effects.presliding_friction import LOAD as LOAD_BUILDS_UP
+from rig.model.effects.presliding_friction import MOTOR as BUILDS_UP
+from rig.model.effects.presliding_friction import PreslidingFriction
 from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
@@ -250,6 +253,18 @@ def test_a_lobe_once_a_turn_of_the_output_has_overtones_smaller_than_itself(effe
     told = {p.name: p.value for p in effect.parameters(fit)}
     assert told["order_1_amplitude"] > told["order_2_amplitude"] > told["order_3_amplitude"] > 0
     assert not effect.plausible(dataclasses.replace(fit, coefficients=np.roll(c[:-1], 2)))
+
+
+@pytest.mark.parametrize("side", [BUILDS_UP, LOAD_BUILDS_UP])
+def test_friction_that_builds_up_is_constant_friction_where_the_run_began_in_motion(side: float) -> None:
+    """A run that begins in motion has slid before; one that begins at rest has all its friction to build up."""
+    moving, effect = motion(n=200), PreslidingFriction()
+    (column,) = effect.columns(moving, (side, 0.2)).values()
+    np.testing.assert_array_equal(column, 0.0)
+    resting = dataclasses.replace(moving, omega_m=moving.omega_m * np.linspace(0.0, 1.0, 200))
+    (column,) = effect.columns(resting, (side, 0.2)).values()
+    assert column[1:].max() < 0
+    assert column[1, 0] < -0.5
 
 
 def test_teeth_under_an_untrue_wave_generator_have_orders_beside_their_own() -> None:
