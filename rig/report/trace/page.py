@@ -53,7 +53,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "sentence": words.plainly(trace.verdict.sentence),
         "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes) if s not in meant],
         "remainder": words.remainder(trace),
-        "ruling": words.RULINGS[trace.verdict.status],
+        "ruling": words.ruled(trace),
         "meaning": words.meant(trace),
         "sizes": words.sizes(trace.effects),
         "cards": cards(trace),

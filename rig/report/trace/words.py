@@ -23,6 +23,8 @@ RULINGS = {
     Status.UNKNOWN: Ruling("!", "Something is missing, and no effect of the library explains it", "bad"),
 }
 
+IN_PART = Ruling("!", "Named in part: something more is missing, which no effect of the library explains", "warn")
+
 MEANING = {
     Status.EXPLAINED: "An effect is named when it removes at least 60 % of the excess over the floor in runs the fit "
     "did not see, and no other effect of the library does as well.",
@@ -67,6 +69,12 @@ PLACES = {
     "temperature": "the temperature",
     "memory": "what the torque has been: memory",
 }
+
+
+def ruled(trace: Trace) -> Ruling:
+    """The verdict as a mark, a headline and a tone."""
+    v = trace.verdict
+    return IN_PART if v.status is Status.UNKNOWN and v.effects else RULINGS[v.status]
 
 
 def meant(trace: Trace) -> str:

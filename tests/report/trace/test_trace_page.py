@@ -138,6 +138,13 @@ def test_rivals_are_both_called_so_and_the_deciding_run_is_given(pages: dict[str
     assert "separates quadratic drag from thermal friction drift" in words
 
 
+def test_what_has_a_name_beside_a_rest_is_not_headed_as_unexplained() -> None:
+    trace = made_up.unknown()
+    in_part = replace(trace, verdict=replace(trace.verdict, effects=("cogging_torque",)))
+    assert "Named in part" in read(bare(in_part)).words
+    assert "Named in part" not in read(bare(trace)).words
+
+
 def test_an_unknown_effect_says_where_it_lives_and_is_given_no_name(pages: dict[str, Reader]) -> None:
     assert "in the load angle, order 37 per turn" in pages["unknown_effect"].words
 

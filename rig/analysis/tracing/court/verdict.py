@@ -10,6 +10,7 @@ from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import along, deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.court.suspects import IN_WORDS
+from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
@@ -81,7 +82,9 @@ def decide(
     shared = [name for name in names if name not in p.own.made]
     known = line is None and (known or total <= EXPLAINED)
     best, stand = where[0], _standing(where[0].coordinate, shared, worths, plain, known)
-    sentence = line.sentence() if line is not None else _of_the_rest(best, total, stand)
+    sentence = line.sentence() if line is not None else _of_the_rest(best, total)
+    if stand:
+        sentence = f"{_lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
     verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
 
@@ -168,14 +171,28 @@ def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if not (LIBRARY[name].remembers or LIBRARY[name].backbone))
 
 
-def _of_the_rest(best: Home, total: float, names: Sequence[str]) -> str:
+def _most(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
+    """RMS over floor without and with what was found, of the channel that gains most."""
+    keys = [[k for k in after if k[1] == c] for c in CHANNELS]
+    pairs = [(p.court.ratio(before, mine), p.court.ratio(after, mine)) for mine in keys if mine]
+    return max(pairs, key=lambda pair: pair[0] - pair[1])
+
+
+def _of_the_rest(best: Home, total: float) -> str:
     return (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
         f"{best.coordinate.replace('_', ' ')} ({min(best.share, 1.0):.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
         + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
-        + (f"; beside it stand {', '.join(names)}" if names else "")
         + "."
+    )
+
+
+def _lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
+    words = _listed([f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names])
+    return (
+        f"The model lacks {words}: with it the {of} held-out error of a channel falls from {before:.1f} "
+        f"to {after:.2f} times the floor."
     )
 
 
@@ -192,12 +209,8 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
     if not names:
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
-    words = _listed([f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names])
     rivals, next_run = deciding(p, names, found)
-    sentence = (
-        f"The model lacks {words}: with it the worst held-out error of a channel falls from {before:.1f} "
-        f"to {after:.2f} times the floor."
-    )
+    sentence = _lacks(names, before, after)
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
