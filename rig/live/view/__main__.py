@@ -22,6 +22,8 @@ def main() -> int:
         os.environ["XDG_CONFIG_HOME"] = str(quiet_home())
         server.start()
         url = _page(server) if sys.argv[1] == "web" else ""
+        # pyarrow looks for pandas with the first array, and nothing here has a data frame: as much again
+        sys.modules["pandas"] = None  # type: ignore[assignment]
         from rig.live.view.bridge import Bridge, Commands  # the SDK itself: 0.3 s
 
         _stand_back(os.getpid(), server.pid)

@@ -46,6 +46,7 @@ class RerunCanvas(Canvas):
         self._stream = rr.RecordingStream(name, recording_id=about.uid, batcher_config=config)
         self._turns, self._turned = turns, dict[str, list[tuple[Array, Array]]]()
         self._about = about
+        self._times: tuple[Array, rr.TimeColumn] | None = None  # the last ones, of several paths in turn
 
     @classmethod
     def to_file(cls, about: About, path: Path) -> RerunCanvas:
@@ -101,8 +102,16 @@ class RerunCanvas(Canvas):
     def curves(self, path: str, t: Array, values: Array) -> None:
         """A column send: t (n,) s, values (n, k)."""
         n, k = values.shape
-        column = rr.Scalars.columns(scalars=np.ascontiguousarray(values).ravel()).partition(np.full(n, k))
-        self._stream.send_columns(path, indexes=[_times(t)], columns=column)
+        scalars = rr.components.ScalarBatch(np.ascontiguousarray(values).ravel())
+        self._send(path, t, rr.Scalars.descriptor_scalars(), scalars, np.arange(n + 1, dtype=np.int32) * np.int32(k))
+
+    def _send(self, path: str, t: Array, what: Any, batch: Any, ends: Array) -> None:
+        """A batch in parts that end where `ends` (n + 1,) says, at `t` (n,) s. Not by an archetype, which parts it
+        twice; and times that several paths have are made once: a block of 50 rows costs what is done for each path."""
+        if self._times is None or self._times[0] is not t:
+            self._times = t, rr.TimeColumn(TIMELINE, duration=np.asarray(t, dtype=np.float64))
+        column = rr.ComponentColumn(what, batch, offsets=ends)
+        self._stream.send_columns(path, indexes=[self._times[1]], columns=[column])
 
     def lines(self, path: str, t: float | None, lines: Sequence[Array], pen: Pen) -> None:
         """2D strips, each (n, 2); rerun keeps the last ones for every time."""
@@ -169,7 +178,8 @@ class RerunCanvas(Canvas):
         kept.clear()
         quaternions = np.stack((np.sin(half), 0 * half, 0 * half, np.cos(half)), axis=1)
         # positive as seen from the motor: about +x, y towards z
-        self._stream.send_columns(path, indexes=[_times(t)], columns=rr.Transform3D.columns(quaternion=quaternions))
+        turned = rr.components.RotationQuatBatch(quaternions)
+        self._send(path, t, rr.Transform3D.descriptor_quaternion(), turned, np.arange(t.size + 1, dtype=np.int32))
 
     def event(self, path: str, t: float, level: str, text: str) -> None:
         """A line of the log at run time `t` s."""
@@ -185,10 +195,6 @@ class RerunCanvas(Canvas):
             return
         self._stream.set_time(TIMELINE, duration=t)
         self._stream.log(path, what)
-
-
-def _times(t: Array) -> rr.TimeColumn:
-    return rr.TimeColumn(TIMELINE, duration=np.asarray(t, dtype=np.float64))
 
 
 def _rgba(colours: Sequence[int]) -> Array:
