@@ -12,9 +12,9 @@ from rig.model.waves import powers
 
 
 class MotorEncoderEccentricity(Effect):
-    """The motor angle reads Σ e_k·cos(k·θ_m + φ_k) too much, k = 1 to 3, the first the largest
+    """The motor angle reads Σ e_k·cos(k·θ_m + φ_k) too much, k = 1 to 5, the first the largest
 
-    A disc off its axis reads an arc tangent of the angle, whose second and third order are smaller. In angle the
+    A disc off its axis reads an arc tangent of the angle, whose next orders are smaller. In angle the
     kinematic error's same orders take it up in every run; only J_m·ω̇_m of fast runs tells it from a real one.
     """
 
@@ -22,7 +22,7 @@ class MotorEncoderEccentricity(Effect):
     in_short: ClassVar[str] = "once per motor turn, never amplified by the dynamics"
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    ORDERS: Final = 3
+    ORDERS: Final = 5
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """None: once per turn."""

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
+GAINED: Final = 0.01  # of a floor: what is said with two digits after the point
+
 WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
 """What stands only where the motor turns back remembers the way since then."""
 
@@ -190,6 +192,8 @@ def _of_the_rest(best: Home, total: float) -> str:
 
 def _lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
     words = _listed([f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names])
+    if before - after < GAINED:
+        return f"The model lacks {words}: fitted runs show it, held-out ones have none of it."
     return (
         f"The model lacks {words}: with it the {of} held-out error of a channel falls from {before:.1f} "
         f"to {after:.2f} times the floor."

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
@@ -21,6 +22,7 @@ SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a tur
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
 IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
 AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-out part more
+AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
 EDGE = 3  # rows over which the low-pass spreads a step
 
 
@@ -59,12 +61,35 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     for key in keys if sure else []:
         found = _jumps(e[key], onward[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
         found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
-        if found:
+        if found and _lasts(eq, e, key, found):
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
     placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
     rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
     return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()})
+
+
+def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:
+    """Whether the other parts of the run, before and after each jump, are apart by as much [rad]: counts are lost for
+    good, and what goes up on a bump comes down again. A run that is no part tells by itself."""
+    whole = _whole(eq, key)
+    times = clock(eq, key)[[at for at, _ in found]]
+    sizes = np.array([size for _, size in found])
+    for other in [k for k in e if k[1] == "A" and k != key and _whole(eq, k) == whole]:
+        t = clock(eq, other)
+        for jump in times:
+            before, after = np.flatnonzero(t < jump)[-2 * WINDOW :], np.flatnonzero(t > jump)[: 2 * WINDOW]
+            if min(before.size, after.size) < WINDOW:
+                continue
+            gone = float(sizes[(times > t[before[-1]]) & (times < t[after[0]])].sum())
+            if abs(float(e[other][after].mean() - e[other][before].mean()) - gone) > 0.5 * abs(gone):
+                return False
+    return True
+
+
+def _whole(eq: Equations, key: Key) -> str:
+    """The name of the run that this one is a part of."""
+    return eq.runs[key[0]].name.removesuffix(f" ({HELD_PART})")
 
 
 def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, size: float, compliance: float) -> bool:
@@ -197,5 +222,7 @@ def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array
     What a step does to the torques is no measure: it has another unit, and is hardly seen there."""
     own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items() if key[1] == "A"}
     keys = [key for key in own if key in e]
-    excess = sum(float(e[k] @ e[k]) - e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
+    whole = sum(float(e[k] @ e[k]) for k in keys)
+    over = whole - sum(e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
+    excess = max(over, AT_LEAST * whole)  # jumps raise a floor that turns of one run tell, even above themselves
     return sum(float(np.sum((own[k].T @ e[k]) ** 2)) for k in keys) / max(excess, 1e-300)
