@@ -72,16 +72,17 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
 def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:
     """Whether the other parts of the run, before and after each jump, are apart by as much [rad]: counts are lost for
     good, and what goes up on a bump comes down again. A run that is no part tells by itself."""
-    whole = _whole(eq, key)
-    times = clock(eq, key)[[at for at, _ in found]]
-    sizes = np.array([size for _, size in found])
+    whole, mine = _whole(eq, key), clock(eq, key)
+    rows, sizes = np.array([at for at, _ in found]), np.array([size for _, size in found])
+    # of a part, what lies between two rows may be long
+    since, until = mine[np.maximum(rows - 2 * EDGE, 0)], mine[np.minimum(rows + 2 * EDGE, mine.size - 1)]
     for other in [k for k in e if k[1] == "A" and k != key and _whole(eq, k) == whole]:
         t = clock(eq, other)
-        for jump in times:
-            before, after = np.flatnonzero(t < jump)[-2 * WINDOW :], np.flatnonzero(t > jump)[: 2 * WINDOW]
+        for first, last in zip(since, until, strict=True):
+            before, after = np.flatnonzero(t < first)[-2 * WINDOW :], np.flatnonzero(t > last)[: 2 * WINDOW]
             if min(before.size, after.size) < WINDOW:
                 continue
-            gone = float(sizes[(times > t[before[-1]]) & (times < t[after[0]])].sum())
+            gone = float(sizes[(since > t[before[-1]]) & (until < t[after[0]])].sum())
             if abs(float(e[other][after].mean() - e[other][before].mean()) - gone) > 0.5 * abs(gone):
                 return False
     return True
