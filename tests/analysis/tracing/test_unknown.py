@@ -70,6 +70,10 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
     "a clamp that slips under torque": ("memory", slipping),
     "friction that is more from one moment on": ("time", lambda at: at["direction"] * (at["time"] > 100.0)),
+    "a second wave that is another one on the way back": (
+        "direction",
+        lambda at: at["direction"] * np.sin(2 * at["motor_angle"]),
+    ),
     "growth over the day": ("time", lambda at: at["time"] / 240 * np.cos(2 * at["motor_angle"])),
 }
 
@@ -85,6 +89,15 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
     assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.5
+
+
+def test_a_kinematic_error_that_follows_a_thermometer_lives_in_the_temperature_though_time_goes_on_as_well() -> None:
+    rng = np.random.default_rng(8)
+    at = coordinates(rng)
+    at["temperature"] = 25.0 + 6.0 * (1.0 - np.exp(-at["time"] / 90.0)) + rng.normal(0, 0.02, at["time"].size)
+    e = 0.8 * (at["temperature"] - 28.0) * np.cos(2 * at["motor_angle"]) + rng.normal(0, 1, at["time"].size)
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
+    assert found[0].coordinate == "temperature", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
 
 
 def test_order_and_frequency_are_said_with_it() -> None:

@@ -95,7 +95,10 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
         lambda r: both(_levels(r.at["load"]), INDICES["time"](r)),
         lambda r: both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
     ),
-    "temperature": (lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),),
+    "temperature": (
+        lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),
+        lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
+    ),
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
         lambda r: _steps(np.abs(r.at["speed"])),

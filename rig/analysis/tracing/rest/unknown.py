@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
@@ -21,10 +23,20 @@ from rig.model.effect import Array
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 WITH_TIME = ("time", "temperature")
+
+
+def _warmth(r: Rest) -> Array:
+    """Above the mean of what was measured, °C."""
+    t = r.at["temperature"]
+    known = t[np.isfinite(t)]
+    return t - known.mean() if known.size else t
+
+
 SMOOTH: Sequence[tuple[str, Callable[[Rest], Array]]] = (
     ("speed", lambda r: swelling(r.at["motor_angle"], np.abs(r.at["speed"]))),
     ("load", lambda r: swelling(r.at["motor_angle"], r.at["load"])),
     ("time", lambda r: drifting(r.at["time"])),
+    ("temperature", lambda r: swelling(r.at["motor_angle"], _warmth(r))),
 )
 """Smooth laws where bins would tell single runs apart."""
 
@@ -38,12 +50,35 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out = alone + [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
-    some = [best_order(h, name, channel, sense) for name in ("motor_angle", "load_angle") for sense in SENSES]
-    some = [_of_the_output(found, r) for found in some if found is not None]
-    out += [found for found in (*some, _wound(h, channel)) if found is not None]
+    for name, sense in itertools.product(("motor_angle", "load_angle"), SENSES):
+        if (found := best_order(h, name, channel, sense)) is not None:
+            out.append(_of_the_way(_of_the_output(found, r), sense))
+    out += [found for found in (_wound(h, channel),) if found is not None]
     out += _frequencies(h, seen, channel)
     out += _at_once(h, channel, alone)
+    if channel == "A":
+        out = _told_by_the_way(out, alone)
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
+
+
+def _told_by_the_way(found: Sequence[Home], alone: Sequence[Home]) -> list[Home]:
+    """What the motor's angle tells of a kinematic error beside the direction, and not by itself, is the direction's:
+    all of it that comes round alike both ways is in the baseline."""
+    by_itself = max((h.share for h in alone if h.coordinate == "motor_angle"), default=0.0)
+
+    def told(h: Home) -> Home:
+        beside = h.coordinate == "motor_angle" and h not in alone and h.order is None
+        return replace(h, coordinate="direction") if beside and by_itself < PLAIN_ENOUGH * h.share else h
+
+    return [told(h) for h in found]
+
+
+def _of_the_way(found: Home, sense: Callable[[Rest], Array]) -> Home:
+    """An order of the baseline's own kinematic error that is another one on the way back."""
+    order = found.order or 0.0
+    mine = found.channel == "A" and found.coordinate == "motor_angle" and sense is SENSES[1]
+    known = abs(order - round(order)) < WHOLE_ORDER and 1 <= round(order) <= ORDERS
+    return replace(found, coordinate="direction") if mine and known else found
 
 
 def frequency(r: Rest, channel: str) -> Home | None:
