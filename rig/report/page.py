@@ -18,7 +18,7 @@ from markupsafe import Markup, escape
 from rig.analysis.result import Array, Result
 from rig.report import rows, words
 from rig.report.cards import cards
-from rig.report.figures import CATALOGUE, Drawing, Frame, svg
+from rig.report.figures import CATALOGUE, Drawing, Frame, styled, svg
 from rig.report.numbers import duration, number_of
 from rig.report.palette import DARK, LIGHT, variables
 from rig.report.provenance import provenance
@@ -83,7 +83,7 @@ def render(
         "main": cards(result.estimates),
         "checks": [{"passed": c.passed, "sentence": c.sentence} for c in result.checks],
         "checks_said": _checks_said(result),
-        "plots": [p for d in CATALOGUE if (p := _plot(d, curves, origin.mark)) is not None],
+        "plots": _plots(curves, origin.mark),
         "tables": tables(result.tables),
         "timing": timing_rows,
         "timing_said": timing_said,
@@ -119,6 +119,11 @@ def with_numbers(result: Result) -> dict[str, Array]:
         if rows and all(key in row for row in rows):
             numbers[curve] = np.array([number(row, key) for row in rows])
     return numbers | result.curves
+
+
+def _plots(curves: dict[str, Array], mark: str) -> list[dict[str, Any]]:
+    with styled():
+        return [p for d in CATALOGUE if (p := _plot(d, curves, mark)) is not None]
 
 
 def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, Any] | None:

@@ -46,7 +46,9 @@ class Trace(Row):
 
     They predict what the baseline leaves and stop; hdrig tries 30 effects on every channel, names one or says that it
     cannot, gives intervals and writes the report: all of that is in its time. Found: a fifth of the fastest of them is
-    out of reach as long as that is compared; what a person waits for is the wall time.
+    out of reach as long as that is compared; what a person waits for is the wall time. Mended: a cosine of numpy's
+    costs 9 ns, of ours 1; resonances waited for divisions; what effects keep with signals, what Arrow had read the runs
+    into and heaps of threads stayed until the end, a sixth of a gigabyte.
     """
 
     number: ClassVar[int] = 9
