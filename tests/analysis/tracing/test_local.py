@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
+from rig.analysis.tracing.floor import steps
 from rig.analysis.tracing.floor.steps import Steps, _jumps, _rested, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
+from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.model.effects.missed_counts import LOAD
 from tests.analysis.tracing.spiked import Columns, spiked, started
 
@@ -75,6 +77,32 @@ def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_tor
     assert explained(eq, e, columns) > 0.9
 
 
+def test_below_a_floor_that_is_too_high_steps_must_still_take_a_part_of_all_there_is() -> None:
+    step = (np.arange(1000) > 400) * 1.0
+    noise = Noise({"A": 5e-5}, {"A": 1.0}, {"A": np.inf})
+    run: Any = SimpleNamespace(locked=False)
+    eq = Equations((run,), {}, noise)
+    wander = 2e-5 * np.sin(np.arange(1000) / 30)
+    columns = {(0, "A"): step[:, None]}
+    assert explained(eq, {(0, "A"): wander + 1e-5 * step}, columns) < 0.5
+    assert explained(eq, {(0, "A"): wander + 6e-5 * step}, columns) > 0.5
+
+
+@pytest.mark.parametrize(("after", "stays"), [(3e-5, True), (0.0, False)])
+def test_counts_are_lost_for_good_and_a_bump_is_not(monkeypatch: pytest.MonkeyPatch, after: float, stays: bool) -> None:
+    """The held-out middle of a run goes up by 3e-5 rad; its other parts say whether it stayed there."""
+    t = np.arange(1200) * 0.008
+    middle = (t > 4.0) & (t < 6.0)
+    times = {(0, "A"): t[~middle], (1, "A"): t[middle]}
+    monkeypatch.setattr(steps, "clock", lambda eq, key: times[key])
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(name="speed"), SimpleNamespace(name=f"speed ({HELD_PART})")])
+    e = {
+        (0, "A"): after * (times[0, "A"] > 5.0) + 2e-6 * RNG.standard_normal(times[0, "A"].size),
+        (1, "A"): 3e-5 * (times[1, "A"] > 5.0) + 2e-6 * RNG.standard_normal(times[1, "A"].size),
+    }
+    assert steps._lasts(eq, e, (1, "A"), [(int(np.searchsorted(t[middle], 5.0)), 3e-5)]) is stays
+
+
 def test_a_motor_that_goes_on_across_rows_that_are_held_out_has_not_rested() -> None:
     t = np.arange(600) * 0.008
     theta = 5.0 * t
@@ -108,6 +136,22 @@ def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated
     values = {p.name: p.value for p in found.effects[0].parameters}
     assert values["step_theta_m"] == pytest.approx(33 * 2 * np.pi / 65536 / 50, rel=0.1)
     assert values["step_theta_l"] == pytest.approx(12 * 2 * np.pi / 1296000, rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none(tmp_path: Path, shared: Path) -> None:
+    names = ("slow_ke_1", "slow_ke_2", "load_10nm_1", "load_10nm_2", "speed_200rpm_1", "speed_200rpm_2")
+    campaign = shared / "cases" / "open-1"
+    hit = started(campaign / "load_10nm_1")
+
+    def stepped(c: Columns, began: float) -> Columns:
+        lost = 9 * 2 * np.pi / 1296000 * (np.arange(c["t"].size) > 0.45 * c["t"].size)
+        return {"theta_l": c["theta_l"] - lost} if began == hit else {}
+
+    found = spiked(tmp_path, campaign, stepped, names)
+    assert "load_10nm_1" in found.fitted
+    assert found.verdict.effects == ("missed_counts",)
+    assert "held-out ones have none" in found.verdict.sentence
 
 
 @pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
-GAINED: Final = 0.01  # of a floor: what is said with two digits after the point
-
 WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
 """What stands only where the motor turns back remembers the way since then."""
 
@@ -191,13 +189,14 @@ def _of_the_rest(best: Home, total: float) -> str:
 
 
 def _lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
-    words = _listed([f"{n.replace('_', ' ')} ({_in_short(n)})" for n in names])
-    if before - after < GAINED:
-        return f"The model lacks {words}: fitted runs show it, held-out ones have none of it."
     return (
-        f"The model lacks {words}: with it the {of} held-out error of a channel falls from {before:.1f} "
+        f"The model lacks {_in_words(names)}: with it the {of} held-out error of a channel falls from {before:.1f} "
         f"to {after:.2f} times the floor."
     )
+
+
+def _in_words(names: Sequence[str]) -> str:
+    return _listed([f"{name.replace('_', ' ')} ({_in_short(name)})" for name in names])
 
 
 def _in_short(name: str) -> str:
@@ -215,6 +214,8 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
     sentence = _lacks(names, before, after)
+    if all(name in p.own.made and not p.own.made[name].keys() & p.court.floors.keys() for name in names):
+        sentence = f"The model lacks {_in_words(names)}: fitted runs show it, held-out ones have none of it."
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
