@@ -261,6 +261,7 @@ class Effect(ABC):
     backbone: ClassVar[bool] = False  # a loop in torque against wind-up has a mean curve that looks like it
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
+    modes_apart: ClassVar[float] = np.inf  # of its first loose shape parameter: so much higher, a term is another mode
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
 
     @abstractmethod

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
@@ -265,6 +267,15 @@ def test_friction_that_builds_up_is_constant_friction_where_the_run_began_in_mot
     (column,) = effect.columns(resting, (side, 0.2)).values()
     assert column[1:].max() < 0
     assert column[1, 0] < -0.5
+
+
+def test_a_housing_has_modes_of_its_own_frequencies_and_the_same_one_only_once() -> None:
+    at = [Term(SupportCompliance(), (ON_GROUND, hz, 0.05)) for hz in (20.0, 22.0, 29.0)]
+    assert _same(at[0], at[1])
+    assert not _same(at[0], at[2])
+    assert not _same(at[2], at[0])
+    coupled = [Term(TorsionalMode(), (BEFORE, hz, 0.05, 0.0)) for hz in (20.0, 80.0)]
+    assert _same(*coupled)
 
 
 def test_teeth_under_an_untrue_wave_generator_have_orders_beside_their_own() -> None:
