@@ -13,8 +13,8 @@ NEITHER = Worth("lost_motion", 0.7, 3.0, 2.0, 1.0, (), anywhere=2.0)
 ALL = [CLEAN, PLAIN, NEITHER]
 
 
-def named(coordinate: str, known: bool, *worths: Worth) -> tuple[str, ...]:
-    return standing(coordinate, [w.name for w in worths], worths, {w.name for w in worths if w.plain}, known)
+def named(coordinate: str, told: bool, *worths: Worth) -> tuple[str, ...]:
+    return standing(coordinate, [w.name for w in worths], worths, told)
 
 
 def test_what_is_plain_to_see_stands_and_what_leaves_nothing_where_it_acts() -> None:
@@ -29,3 +29,8 @@ def test_beside_a_memory_a_loop_stands_only_where_it_is_plain() -> None:
     small = replace(PLAIN, share=0.7, anywhere=1.1)
     assert named("memory", True, CLEAN, small) == ("cogging_torque",)
     assert named("memory", True, CLEAN, PLAIN) == ("cogging_torque", "hysteretic_stiffness")
+
+
+def test_what_leaves_much_in_the_runs_it_acts_in_stands_only_where_it_is_plain() -> None:
+    assert named("load", True, replace(CLEAN, left=2.2)) == ()
+    assert named("load", True, PLAIN) == ("hysteretic_stiffness",)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -65,7 +65,7 @@ def decide(
     loud = p.court.loud(after, one, bool(names)) or line is not None
     plain = {w.name for w in worths if w.plain}
     if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
-        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain, True))
+        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         hidden = None if names else _in_the_floor(p, s, after, floors)
@@ -80,8 +80,8 @@ def decide(
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     shared = [name for name in names if name not in p.own.made]
-    known = line is None and (known or total <= EXPLAINED)
-    best, stand = where[0], _standing(where[0].coordinate, shared, worths, plain, known)
+    told = line is None and (known or total <= EXPLAINED)
+    best, stand = where[0], _standing(where[0].coordinate, shared, worths, told)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total)
     if stand:
         sentence = f"{_lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
@@ -142,24 +142,18 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
     return p.court.worst(before)[0], p.court.worst(after)[0]
 
 
-def _clean(names: Sequence[str], worths: Sequence[Worth]) -> tuple[str, ...]:
-    """Those beside which nothing is left in any channel they act in."""
-    amiss = {w.name for w in worths if w.anywhere > MISSING}
-    return tuple(name for name in names if name not in amiss)
-
-
 def _cast(shadow: Shadow, names: tuple[str, ...]) -> Ruling:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
     verdict = Verdict(Status.UNKNOWN, names, (), shadow.coordinate, None, None, shadow.sentence)
     return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
 
 
-def _standing(
-    coordinate: str, names: Sequence[str], worths: Sequence[Worth], plain: Collection[str], known: bool
-) -> tuple[str, ...]:
-    """Names that stand beside a rest: those plain to see; and where what much is is `known`, from repeats or because
-    all channels are quiet, those beside which nothing is left where they act."""
-    clean = _beside(coordinate, _clean(names, worths)) if known else ()
+def _standing(coordinate: str, names: Sequence[str], worths: Sequence[Worth], told: bool = True) -> tuple[str, ...]:
+    """Names that stand beside a rest: those plain to see; and where it can be `told` what much is, those beside which
+    nothing is left in any channel they act in, nor in the runs they act in most."""
+    plain = {w.name for w in worths if w.plain}
+    amiss = {w.name for w in worths if max(w.anywhere, w.left) > MISSING}
+    clean = _beside(coordinate, [name for name in names if name not in amiss]) if told else ()
     return tuple(name for name in names if name in plain or name in clean)
 
 
