@@ -13,11 +13,19 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, fit, withou
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
 from rig.analysis.tracing.floor.noise import Measured, floor_of, leniency
 from rig.analysis.tracing.thresholds import (
+    ABOUT,
+    ALL,
     APART,
+    ASTRAY,
     EXPLAINED,
+    FAINT,
+    FAIR,
+    FAIRLY,
     HARMFUL,
+    LOOSELY,
     MISSING,
     NAMED,
+    PLAINLY,
     QUIET,
     REAL,
     SMALLEST,
@@ -26,16 +34,6 @@ from rig.analysis.tracing.thresholds import (
     UNSTEADY,
 )
 from rig.model.effect import Array, Parameter, Reach
-
-FAIR = 0.04  # of an effect's work: a fifth of its size
-ALL, FAIRLY = 0.95, 0.2  # share of the excess, and how near 1 what it takes of its own sum of squares must be
-PLAINLY, ABOUT = (
-    0.8,
-    0.25,
-)  # the same of what is plain to see: a law a little off leaves a sixth, mimics a third
-ASTRAY = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
-LOOSE = 2.0  # times the unsteadiness: of what explains everything
-FAINT = 0.05  # of the floor, RMS: what a block has less of is as much the columns' own sensor noise, and wants no size
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ class Worth:
     def named(self) -> bool:
         """Whether it may be named."""
         real = self.size > SMALLEST and REAL < self.true < UNREAL and self.harm < HARMFUL
-        loose = LOOSE if self._explains_all else 1.0
+        loose = LOOSELY if self._explains_all else 1.0
         real = real and self.unsteady < loose * UNSTEADY and self.apart < loose * APART
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 

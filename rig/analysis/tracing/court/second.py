@@ -19,13 +19,8 @@ from rig.analysis.tracing.fit.model import fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, reduced, settled
 from rig.analysis.tracing.fit.some import search_some
-from rig.analysis.tracing.thresholds import MISSING, MOSTLY
+from rig.analysis.tracing.thresholds import ALIKE, KNOWN, MISSING, MOSTLY, TRIED, TURNS
 from rig.model.effect import Reach
-
-KNOWN = 1 / 3  # of itself: half a 95 % interval
-ALONE_TRIED = 2  # suspects: each costs a hearing
-ALIKE = 0.8  # of its evidence: a look-alike that may be what it is
-TURNS = 4  # effects the search found first, one after the other
 
 
 def heard_further(case: Heard, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Heard:
@@ -74,7 +69,7 @@ def heard_alone(case: Heard, found: Found, runs: Sequence[int], covered: Reach) 
     if case.p.own.line is not None or not case.loud:
         return case
     stay = {term.name for term in case.solution.design.terms}
-    for scored in [r for r in found.ranking[:ALONE_TRIED] if r.term.name not in stay]:
+    for scored in [r for r in found.ranking[:TRIED] if r.term.name not in stay]:
         s = settled(refine(case.solution.design, scored.term, runs, covered)[1], runs, covered)
         other = heard(case.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
@@ -91,7 +86,7 @@ def heard_instead(case: Heard, found: Found, runs: Sequence[int], covered: Reach
         return case
     mine = next((r.evidence for r in found.ranking if r.term.name in names), np.inf)
     alike = [r for r in found.ranking if r.term.name not in names and r.evidence > ALIKE * mine]
-    for scored in alike[:ALONE_TRIED]:
+    for scored in alike[:TRIED]:
         s = settled(refine(case.p.baseline.design, scored.term, runs, covered)[1], runs, covered)
         other = heard(case.p, replace(found, solution=s), runs, covered)
         if len(other.worths) == 1 and _steadier(other, case) and _in_all(other) < _in_all(case):
