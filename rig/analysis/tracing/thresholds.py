@@ -45,6 +45,7 @@ LOOSELY: Final = 2.0  # because little is left of the run to tell a size by
 FAIRLY: Final = 0.2  # relative: what is fair takes so nearly what it should, in all runs
 PLAINLY: Final = 0.8  # of the excess, for what is plain to see: a law a little off leaves a sixth, mimics a third
 ABOUT: Final = 0.25  # relative, the same: what it takes of its own sum of squares, and how it differs between runs
+SEVERAL: Final = 3  # fitted runs, from which on one size in all of them says something
 ASTRAY: Final = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 ALIKE: Final = 0.8  # of the evidence of the effect that stands: a look-alike that may be what it is
 KNOWN: Final = 1 / 3  # of itself, half a 95 % interval: a second choice must know the number that scales it so well

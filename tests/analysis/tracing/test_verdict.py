@@ -14,7 +14,7 @@ ALL = [CLEAN, PLAIN, NEITHER]
 
 
 def named(coordinate: str, told: bool, *worths: Worth) -> tuple[str, ...]:
-    return standing(coordinate, [w.name for w in worths], worths, told)
+    return standing(coordinate, [w.name for w in worths], worths, {w.name for w in worths if w.plain}, told)
 
 
 def test_what_is_plain_to_see_stands_and_what_leaves_nothing_where_it_acts() -> None:

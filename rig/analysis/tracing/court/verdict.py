@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -22,7 +22,7 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, SEVERAL
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY
 
@@ -63,9 +63,10 @@ def decide(
     names = tuple(name for name in weighed if name not in SHADOWS)
     one = MISSING if names else ALONE
     loud = p.court.loud(after, one, bool(names)) or line is not None
-    plain = {w.name for w in worths if w.plain}
+    # in one or two runs a size is the same for want of others
+    plain = {w.name for w in worths if w.plain} if len(p.split.fitted) >= SEVERAL else set()
     if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
-        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths))
+        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         hidden = None if names else _in_the_floor(p, s, after, floors)
@@ -81,7 +82,7 @@ def decide(
     # from it too
     shared = [name for name in names if name not in p.own.made]
     told = line is None and (known or total <= EXPLAINED)
-    best, stand = where[0], _standing(where[0].coordinate, shared, worths, told)
+    best, stand = where[0], _standing(where[0].coordinate, shared, worths, plain, told)
     sentence = line.sentence() if line is not None else _of_the_rest(best, total)
     if stand:
         sentence = f"{_lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
@@ -148,10 +149,11 @@ def _cast(shadow: Shadow, names: tuple[str, ...]) -> Ruling:
     return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
 
 
-def _standing(coordinate: str, names: Sequence[str], worths: Sequence[Worth], told: bool = True) -> tuple[str, ...]:
-    """Names that stand beside a rest: those plain to see; and where it can be `told` what much is, those beside which
+def _standing(
+    coordinate: str, names: Sequence[str], worths: Sequence[Worth], plain: Collection[str], told: bool = True
+) -> tuple[str, ...]:
+    """Names that stand beside a rest: those `plain` to see; and where it can be `told` what much is, those beside which
     nothing is left in any channel they act in, nor in the runs they act in most."""
-    plain = {w.name for w in worths if w.plain}
     amiss = {w.name for w in worths if max(w.anywhere, w.left) > MISSING}
     clean = _beside(coordinate, [name for name in names if name not in amiss]) if told else ()
     return tuple(name for name in names if name in plain or name in clean)
