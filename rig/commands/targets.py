@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rig.core.errors import UsageError
+from rig.runfile.process import sole_writer
 
 BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
 
@@ -44,3 +45,19 @@ def writing(target: Path, option: str = "--out") -> Iterator[None]:
     except OSError as error:
         why = error.strerror or str(error)
         raise UsageError(f"cannot write {target}: {why}; name another place with {option}") from None
+
+
+@contextlib.contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Make `folder` and hold it for this process alone; it goes again where nothing came of it. Raises NotReady when
+    another process writes there, UsageError when it cannot be made."""
+    made = not folder.exists()
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with sole_writer(folder):
+            yield
+    finally:
+        if made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.commands.loading import load
-from rig.commands.targets import refuse_unwritable, refuse_unwritable_file, writing
+from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file, writing
 from rig.core.errors import Exit
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
     """Trace, write, tell."""
     load("rig.analysis.tracing.trace")
     from rig.analysis.tracing.outcome.record import write_trace
+    from rig.analysis.tracing.runs.campaign import folders_of_runs
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.trace import trace
     from rig.runfile.manifest import utc_now
@@ -42,24 +43,24 @@ def run(args: argparse.Namespace) -> int:
 
     target = args.out or args.campaign
     if args.campaign.is_dir():  # a minute of thought is not lost to a wrong name
-        refuse_unmatched([path.parent.name for path in args.campaign.glob("*/manifest.json")], args.hold_out)
         refuse_unwritable(target)
+    refuse_unmatched([run.name for run in folders_of_runs(args.campaign)], args.hold_out)
     if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
-    found = trace(args.campaign, args.hold_out)
-    tell(found)
-    load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
-    from rig.report.trace.campaign import provenance
-    from rig.report.trace.page import write
+    with alone_in(target):
+        found = trace(args.campaign, args.hold_out)
+        tell(found)
+        load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
+        from rig.report.trace.campaign import provenance
+        from rig.report.trace.page import write
 
-    with writing(target):
-        target.mkdir(parents=True, exist_ok=True)
-        written = [write_trace(target / "trace.json", found)]
-        written.append(write(target, found, provenance(args.campaign, software(), utc_now())))
-    if args.json:
-        with writing(args.json, "--json"):
-            write_trace(args.json, found)
-    print(f"written {written[0]}\nreport {written[1]}")
+        with writing(target):  # the page first: it takes seconds, and a word to stop meanwhile leaves all as it was
+            page = write(target, found, provenance(args.campaign, software(), utc_now()))
+            written = write_trace(target / "trace.json", found)
+        if args.json:
+            with writing(args.json, "--json"):
+                write_trace(args.json, found)
+    print(f"written {written}\nreport {page}")
     return int(exit_of(found))
 
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.runs.holdout import refuse_unmatched
+from rig.analysis.tracing.runs.holdout import refuse_unmatched, split
 from rig.cli import main
+from rig.commands.targets import alone_in
+from rig.commands.trace import run
 from rig.core.errors import Exit, UsageError
 from tests.hostile.test_campaigns import campaign
+from tests.report.trace import made_up
 
 
 @pytest.fixture
@@ -52,6 +58,48 @@ def test_the_json_may_lie_in_a_folder_that_is_made_for_the_report(
     main(["trace", str(folder), "--out", str(out), "--json", str(out / "t.json")])
     assert "cannot write" not in (said := capsys.readouterr().err)
     assert "traced" in said
+
+
+def test_a_folder_that_another_trace_writes_to_is_refused_and_left_as_it_was(
+    untraced: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (out := tmp_path / "out").mkdir()
+    (out / "trace.json").write_text("the other's")
+    with alone_in(out):
+        assert main(["trace", str(untraced), "--out", str(out)]) == Exit.NOT_READY
+    assert "being written by another process" in capsys.readouterr().err
+    assert (out / "trace.json").read_text() == "the other's"
+
+
+def test_a_trace_that_is_stopped_while_its_page_is_made_leaves_what_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A page of one campaign beside the figures of another would be believed."""
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rig.analysis.tracing.trace.trace", lambda *_: made_up.explained())
+    monkeypatch.setattr("rig.report.trace.page.render", stopped)
+    folder, new, old = campaign(tmp_path / "c", lambda c: c), tmp_path / "new", tmp_path / "old"
+    old.mkdir()
+    (old / "trace.json").write_text("of before")
+    for out in (new, old):
+        with pytest.raises(KeyboardInterrupt):
+            run(argparse.Namespace(campaign=folder, out=out, json=None, hold_out=[]))
+    assert not new.exists()
+    assert [(path.name, path.read_text()) for path in old.iterdir()] == [("trace.json", "of before")]
+
+
+def test_a_run_is_no_campaign_and_standstill_alone_is_nothing_to_fit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = campaign(tmp_path / "c", lambda c: c)
+    assert main(["trace", str(folder / "run-0")]) == Exit.USAGE
+    assert "run-0 is a run: expected a campaign, the folder of runs it lies in" in capsys.readouterr().err
+    still: Any = [SimpleNamespace(procedure="standstill", name="still")] * 2
+    with pytest.raises(UsageError, match="nothing but standstill: expected runs in which the motor turns"):
+        split(still, [])
 
 
 def test_case_counts_in_a_pattern() -> None:

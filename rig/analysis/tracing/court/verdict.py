@@ -185,8 +185,9 @@ def _of_the_rest(best: Home, total: float) -> str:
 
 
 def _lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
+    them = "them" if len(names) > 1 else "it"
     return (
-        f"The model lacks {_in_words(names)}: with it the {of} held-out error of a channel falls from {before:.1f} "
+        f"The model lacks {_in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
         f"to {after:.2f} times the floor."
     )
 

@@ -34,15 +34,23 @@ class Campaign:
     notes: tuple[str, ...]
 
 
-def read_campaign(folder: Path) -> Campaign:
-    """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
+def folders_of_runs(folder: Path) -> list[Path]:
+    """Those directly in `folder`. Raises UsageError when there are none."""
     if not folder.is_dir():
         raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
     places = sorted(path.parent for path in folder.glob("*/manifest.json"))
+    if not places and (folder / "manifest.json").is_file():
+        raise UsageError(f"{folder} is a run: expected a campaign, the folder of runs it lies in")
     if not places:
         deeper = sorted({path.parent.parent.name for path in folder.glob("*/*/manifest.json")})
         hint = f"; {deeper[-1]} in it does" if deeper else ""
         raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
+    return places
+
+
+def read_campaign(folder: Path) -> Campaign:
+    """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
+    places = folders_of_runs(folder)
     opened, out = _open(places)
     out += _nameless(folder)
     opened, unfit = one_rig(opened)

@@ -36,6 +36,8 @@ class Split:
 def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
     """By the names asked for, else whole repeats and levels, else parts of all runs. Raises UsageError."""
     moving = [i for i, run in enumerate(runs) if run.procedure != "standstill"]
+    if not moving:
+        raise UsageError("there is nothing but standstill: expected runs in which the motor turns")
     if asked:
         return _asked(runs, moving, asked)
     groups = grouped(runs, moving)
