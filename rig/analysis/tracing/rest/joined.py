@@ -84,11 +84,11 @@ def rest(
     return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
 
 
-def loudest(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> tuple[str, float]:
-    """The channel with the most left, and its mean square over the floor's; 0 where no channel was measured."""
+def loudness(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> dict[str, float]:
+    """Channels, that with the most left first, and their mean square over the floor's; 0 where one was not measured."""
     over = {c: [e[k] / floors[k] for k in e if k[1] == c] for c in WHOLE}
     square = {c: float(np.mean(np.concatenate(parts) ** 2)) if parts else 0.0 for c, parts in over.items()}
-    return max(square.items(), key=lambda item: item[1])
+    return dict(sorted(square.items(), key=lambda item: -item[1]))
 
 
 def _beside(eq: Equations, keys: Sequence[Key], floors: Mapping[Key, float], channel: str) -> tuple[Array, Array]:

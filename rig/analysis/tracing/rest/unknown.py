@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
-from rig.analysis.tracing.rest.joined import Rest, loudest, rest
+from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.sudden import since
@@ -127,7 +127,7 @@ def _wound(h: Halves, channel: str) -> Home | None:
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
     """Best coordinates of the channel with the most left."""
-    channel, _ = loudest(e, floors)
+    channel = next(iter(loudness(e, floors)))
     most = rest(eq, e, floors, channel)
     if most is None:
         return []
