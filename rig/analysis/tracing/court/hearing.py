@@ -14,6 +14,7 @@ from rig.analysis.tracing.court.judge import (
     unresolved,
     unseen,
 )
+from rig.analysis.tracing.court.own_work import own_work
 from rig.analysis.tracing.court.shadows import cast, unmasked
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
@@ -21,7 +22,6 @@ from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
-from rig.analysis.tracing.outcome.report import own_work
 from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
 from rig.model.effect import Array, Parameter, Reach
 

@@ -74,7 +74,7 @@ def decide(
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
-    sure = known or (plain and plain >= {w.name for w in worths})
+    sure = known or (bool(plain) and all(w.name in plain for w in worths))
     if line is None and names and sure and mostly:
         ruling = _settled(p, names, found, first, total)
         return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)

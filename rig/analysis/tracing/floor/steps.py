@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.local import clock
-from rig.analysis.tracing.runs.holdout import HELD_PART
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
@@ -72,11 +72,11 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
 def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:
     """Whether the other parts of the run, before and after each jump, are apart by as much [rad]: counts are lost for
     good, and what goes up on a bump comes down again. A run that is no part tells by itself."""
-    whole, mine = _whole(eq, key), clock(eq, key)
+    whole, mine = whole_run(eq.runs[key[0]].name), clock(eq, key)
     rows, sizes = np.array([at for at, _ in found]), np.array([size for _, size in found])
     # of a part, what lies between two rows may be long
     since, until = mine[np.maximum(rows - 2 * EDGE, 0)], mine[np.minimum(rows + 2 * EDGE, mine.size - 1)]
-    for other in [k for k in e if k[1] == "A" and k != key and _whole(eq, k) == whole]:
+    for other in [k for k in e if k[1] == "A" and k != key and whole_run(eq.runs[k[0]].name) == whole]:
         t = clock(eq, other)
         for first, last in zip(since, until, strict=True):
             before, after = np.flatnonzero(t < first)[-2 * WINDOW :], np.flatnonzero(t > last)[: 2 * WINDOW]
@@ -86,11 +86,6 @@ def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tupl
             if abs(float(e[other][after].mean() - e[other][before].mean()) - gone) > 0.5 * abs(gone):
                 return False
     return True
-
-
-def _whole(eq: Equations, key: Key) -> str:
-    """The name of the run that this one is a part of."""
-    return eq.runs[key[0]].name.removesuffix(f" ({HELD_PART})")
 
 
 def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, size: float, compliance: float) -> bool:

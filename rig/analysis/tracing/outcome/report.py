@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rig.analysis.tracing.court.judge import Worth, unseen
+from rig.analysis.tracing.court.own_work import own_work
 from rig.analysis.tracing.court.shadows import cast
 from rig.analysis.tracing.court.suspects import candidates
 from rig.analysis.tracing.court.verdict import decide
 from rig.analysis.tracing.fit import parameters
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
-from rig.analysis.tracing.floor.repeats import alike
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.dismissed import dismissed
@@ -122,30 +121,6 @@ def _shown(
 def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
     """What the baseline leaves in the fitted runs, with what each run has to itself."""
     return {key: baseline.residual(key) for key in baseline.keys}
-
-
-def own_work(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
-    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and how
-    much that is, in squares of the floor. Where no held-out run has any, of the fitted runs' excess, as far as they
-    have repeats that show none of it: it is read from single runs in any case, and nothing is foretold."""
-    held, out = unseen(s, p.court), {}
-    for name, mine in p.own.made.items():
-        d = held if any(key in mine for key in held.y) else s.design
-        others = replace(s.design.eq, noisy={} if d is held else s.design.eq.noisy, own=p.own.without([name]).columns())
-        runs = sorted({run for run, _ in d.y})
-        bare, left = (at.residual for at in (design(others, s.design.terms, runs), d))
-        keys = [key for key in d.y if key in mine and (d is held or _has_repeat_without(p, key, mine))]
-        floors = p.court.floors if d is held else p.court.seen
-        before, after = (sum(float(np.sum(e(k, s.x) ** 2)) / floors[k] ** 2 for k in keys) for e in (bare, left))
-        n = sum(d.y[key].size for key in keys)
-        out[name] = (float((before - after) / max(before - n, 0.02 * n)), before - after) if keys else (0.0, 0.0)
-    return out
-
-
-def _has_repeat_without(p: Prepared, key: Key, mine: Mapping[Key, Array]) -> bool:
-    """Whether a repeat of that run is there that has no columns of its own."""
-    run = p.eq.runs[key[0]]
-    return any(i != key[0] and alike(run, other) and (i, key[1]) not in mine for i, other in enumerate(p.eq.runs))
 
 
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:

@@ -53,7 +53,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     for name, sense in itertools.product(("motor_angle", "load_angle"), SENSES):
         if (found := best_order(h, name, channel, sense)) is not None:
             out.append(_of_the_way(_of_the_output(found, r), sense))
-    out += [found for found in (_wound(h, channel),) if found is not None]
+    if (gone := _wound(h, channel)) is not None:
+        out.append(gone)
     out += _frequencies(h, seen, channel)
     out += _at_once(h, channel, alone)
     if channel == "A":

@@ -48,6 +48,11 @@ def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
     return Split(tuple(runs), fitted, tuple(sorted(held)), "whole repeats, and whole loads and speeds between others")
 
 
+def whole_run(name: str) -> str:
+    """The name of the run that the one of this name is, or is a part of."""
+    return name.removesuffix(f" ({HELD_PART})")
+
+
 def refuse_unmatched(names: Sequence[str], asked: Sequence[str]) -> None:
     """Raises UsageError when one of the patterns `asked` for names no run; says nothing where there are no `names`."""
     for pattern in asked:

@@ -1,0 +1,55 @@
+"""What it is worth that every run has phases or steps of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rig.analysis.tracing.court.judge import unseen
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.runs.holdout import whole_run
+from rig.model.effect import Array
+
+if TYPE_CHECKING:
+    from rig.analysis.tracing.trace import Prepared
+
+
+def own_work(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
+    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and how
+    much that is, in squares of the floor. Where no held-out run has any, of the fitted runs' excess, as far as they
+    have repeats that show none of it: it is read from single runs in any case, and nothing is foretold."""
+    held, out = unseen(s, p.court), {}
+    for name, mine in p.own.made.items():
+        if keys := [key for key in held.y if key in mine]:
+            out[name] = _taken(p, s, held, name, keys, p.court.floors)
+        else:
+            keys = [key for key in s.design.y if key in mine and _has_repeat_without(p, key, mine)]
+            out[name] = _taken(p, s, s.design, name, keys, p.court.seen)
+    return out
+
+
+def _taken(
+    p: Prepared, s: Solution, d: Design, name: str, keys: list[Key], floors: Mapping[Key, float]
+) -> tuple[float, float]:
+    """From those blocks of a design that has the columns, beside one without them."""
+    others = replace(d.eq, own=p.own.without([name]).columns())
+    bare = design(others, s.design.terms, sorted({run for run, _ in d.y}))
+    before, after = (sum(_square(at, s, key) / floors[key] ** 2 for key in keys) for at in (bare, d))
+    n = sum(d.y[key].size for key in keys)
+    return (float((before - after) / max(before - n, 0.02 * n)), before - after) if keys else (0.0, 0.0)
+
+
+def _square(d: Design, s: Solution, key: Key) -> float:
+    return float(np.sum(d.residual(key, s.x) ** 2))
+
+
+def _has_repeat_without(p: Prepared, key: Key, mine: Mapping[Key, Array]) -> bool:
+    """Whether another run of the same condition, and no part of this one, has no columns of its own."""
+    run, others = p.eq.runs[key[0]], enumerate(p.eq.runs)
+    apart = [(i, other) for i, other in others if whole_run(other.name) != whole_run(run.name)]
+    return any(alike(run, other) and (i, key[1]) not in mine for i, other in apart)
