@@ -205,9 +205,10 @@ def _same(a: Term, b: Term) -> bool:
     """The same effect again in a shape that the refit would have found."""
     fixed = [i for i, loose in enumerate(a.effect.loose) if not loose]
     expand = a.effect.expands(a.shape) and a.effect.expands(b.shape)
-    free = next((i for i, loose in enumerate(a.effect.loose) if loose), None)
-    if free is not None and abs(np.log(a.shape[free] / b.shape[free])) > np.log(a.effect.modes_apart):
-        return False
+    if np.isfinite(a.effect.modes_apart):
+        first = a.effect.loose.index(True)
+        if abs(np.log(a.shape[first] / b.shape[first])) > np.log(a.effect.modes_apart):
+            return False
     return expand or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
 
 
