@@ -7,6 +7,7 @@ from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line sets it, before numpy is imported
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -24,3 +25,9 @@ def shared() -> Path:
     if not (folder / "cases").is_dir():
         pytest.skip(f"no reference campaigns at {folder} (set HDRIG_SHARED)")
     return folder
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """The same draws for every test, whatever ran before it in its process."""
+    return np.random.default_rng(8)

@@ -7,6 +7,7 @@ import threading
 import time
 import uuid
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -32,15 +33,13 @@ class Client:
     def _live(self, address: str) -> None:
         with connect(f"{address}/api/live") as page:
             page.send(json.dumps({"token": self.token, "page": ""}))
-            while self._here:
-                try:
+            with suppress(OSError, ConnectionClosed):  # the server is gone, while it was heard or answered
+                while self._here:
                     message = page.recv()
-                except (OSError, ConnectionClosed):  # the server is gone
-                    return
-                if isinstance(message, str):
-                    page.send(json.dumps({"seen": json.loads(message)["seq"]}))
-                else:
-                    self.frames += 1
+                    if isinstance(message, str):
+                        page.send(json.dumps({"seen": json.loads(message)["seq"]}))
+                    else:
+                        self.frames += 1
 
     def leave(self) -> None:
         """The page is closed; calls can still be made."""

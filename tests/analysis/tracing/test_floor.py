@@ -5,30 +5,28 @@ import pytest
 
 from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns, strokes
 
-RNG = np.random.default_rng(5)
+
+def _noise(rng: np.random.Generator, n: int, sigma: float) -> np.ndarray:
+    return sigma * rng.standard_normal(n)
 
 
-def _noise(n: int, sigma: float) -> np.ndarray:
-    return sigma * RNG.standard_normal(n)
-
-
-def test_what_repeats_at_equal_angle_is_no_noise() -> None:
+def test_what_repeats_at_equal_angle_is_no_noise(rng: np.random.Generator) -> None:
     a, b = np.linspace(0, 60, 6000), np.linspace(0.3, 61, 5900)  # the second one turns a little slower
-    d = compare(a, np.sin(a) + _noise(a.size, 0.1), b, np.sin(b) + _noise(b.size, 0.1))
+    d = compare(a, np.sin(a) + _noise(rng, a.size, 0.1), b, np.sin(b) + _noise(rng, b.size, 0.1))
     assert np.sqrt(np.mean(d**2)) == pytest.approx(0.1, rel=0.05)
 
 
-def test_strokes_are_compared_with_strokes_of_their_own_direction() -> None:
+def test_strokes_are_compared_with_strokes_of_their_own_direction(rng: np.random.Generator) -> None:
     there = np.linspace(0, 20, 2000)
     theta = np.concatenate([there, there[::-1], there])
     assert len(strokes(theta)) == 3
     backlash = np.where(np.gradient(theta) > 0, 5.0, -5.0)
-    d = compare(theta, backlash + _noise(theta.size, 0.1), theta, backlash + _noise(theta.size, 0.1))
+    d = compare(theta, backlash + _noise(rng, theta.size, 0.1), theta, backlash + _noise(rng, theta.size, 0.1))
     assert np.sqrt(np.mean(d**2)) < 0.5  # far below the 10 between directions
 
 
-def test_slow_noise_has_fewer_independent_rows() -> None:
-    white = RNG.standard_normal(20000)
+def test_slow_noise_has_fewer_independent_rows(rng: np.random.Generator) -> None:
+    white = rng.standard_normal(20000)
     slow = np.convolve(white, np.ones(8), mode="valid")
     assert effective(autocorrelation(white)) < 1.3
     assert effective(autocorrelation(slow)) == pytest.approx(8.0, rel=0.2)
@@ -41,7 +39,7 @@ def test_repeats_that_began_elsewhere_are_compared_after_whole_turns_of_the_outp
     assert output_turns(theta, theta + 2 * np.pi * 130, 50.25) == 0.0
 
 
-def test_a_gain_that_is_never_twice_the_same_has_few_degrees_of_freedom() -> None:
+def test_a_gain_that_is_never_twice_the_same_has_few_degrees_of_freedom(rng: np.random.Generator) -> None:
     square = np.sign(np.sin(np.linspace(0, 12 * np.pi, 6000)))
-    assert freedom(square + _noise(6000, 0.1)) < 4
-    assert freedom(_noise(6000, 1.0)) > 1000
+    assert freedom(square + _noise(rng, 6000, 0.1)) < 4
+    assert freedom(_noise(rng, 6000, 1.0)) > 1000

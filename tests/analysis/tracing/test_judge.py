@@ -15,14 +15,15 @@ from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
 from tests.contract.test_effects import REACH
 
-RNG = np.random.default_rng(2)
 KEYS = [(i, "M") for i in range(6)]
 
 
-def solved(true: dict[Any, Any], noise: float, shown: dict[Any, float] | None = None) -> float:
+def solved(
+    rng: np.random.Generator, true: dict[Any, Any], noise: float, shown: dict[Any, float] | None = None
+) -> float:
     """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true`; `shown`: its RMS there."""
-    f = {k: (shown or {}).get(k, 1.0) * RNG.standard_normal(4000) for k in KEYS}
-    e = {k: (true[k] - 1.0) * f[k] + noise * RNG.standard_normal(4000) for k in KEYS}
+    f = {k: (shown or {}).get(k, 1.0) * rng.standard_normal(4000) for k in KEYS}
+    e = {k: (true[k] - 1.0) * f[k] + noise * rng.standard_normal(4000) for k in KEYS}
     left = {"with": e, "without": {k: e[k] + f[k] for k in KEYS}}
     design: Any = SimpleNamespace(
         y=dict.fromkeys(KEYS),
@@ -34,20 +35,20 @@ def solved(true: dict[Any, Any], noise: float, shown: dict[Any, float] | None = 
     return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0))[0]
 
 
-def test_the_same_size_everywhere_is_steady_whatever_the_noise() -> None:
-    assert solved(dict.fromkeys(KEYS, 1.0), 0.1) < 0.01
-    assert solved(dict.fromkeys(KEYS, 1.0), 1.0) < 0.02
+def test_the_same_size_everywhere_is_steady_whatever_the_noise(rng: np.random.Generator) -> None:
+    assert solved(rng, dict.fromkeys(KEYS, 1.0), 0.1) < 0.01
+    assert solved(rng, dict.fromkeys(KEYS, 1.0), 1.0) < 0.02
 
 
-def test_a_compromise_between_runs_is_told_by_its_spread() -> None:
+def test_a_compromise_between_runs_is_told_by_its_spread(rng: np.random.Generator) -> None:
     halves = {k: 1.5 if i % 2 else 0.5 for i, k in enumerate(KEYS)}
-    assert solved(halves, 0.3) == pytest.approx(0.5, abs=0.02)
+    assert solved(rng, halves, 0.3) == pytest.approx(0.5, abs=0.02)
 
 
-def test_a_run_in_which_it_hardly_shows_does_not_say_how_large_it_is() -> None:
+def test_a_run_in_which_it_hardly_shows_does_not_say_how_large_it_is(rng: np.random.Generator) -> None:
     wrong = dict.fromkeys(KEYS, 1.0) | {KEYS[0]: 25.0}
-    assert solved(wrong, 0.3, {KEYS[0]: 0.02}) < 0.02
-    assert solved(wrong, 0.3, {KEYS[0]: 0.3}) > 1.0
+    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.02}) < 0.02
+    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.3}) > 1.0
 
 
 def test_a_worth_is_fair_within_a_fifth() -> None:

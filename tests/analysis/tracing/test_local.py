@@ -15,36 +15,35 @@ from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.model.effects.missed_counts import LOAD
 from tests.analysis.tracing.spiked import Columns, spiked, started
 
-RNG = np.random.default_rng(8)
 ANY = (0.0, np.inf)
 
 
-def test_a_jump_is_found_at_its_row_with_its_size() -> None:
-    e = 4e-6 * RNG.standard_normal(4000)
+def test_a_jump_is_found_at_its_row_with_its_size(rng: np.random.Generator) -> None:
+    e = 4e-6 * rng.standard_normal(4000)
     e[2500:] += 3e-5
     (found,) = _jumps(e, np.ones(4000, bool), 7.0, ANY)
     assert abs(found[0] - 2500) <= 4
     assert found[1] == pytest.approx(3e-5, rel=0.2)
 
 
-def test_a_jump_where_the_motor_turns_back_is_none() -> None:
-    e = 4e-6 * RNG.standard_normal(4000)
+def test_a_jump_where_the_motor_turns_back_is_none(rng: np.random.Generator) -> None:
+    e = 4e-6 * rng.standard_normal(4000)
     e[2500:] += 3e-5
     assert _jumps(e, np.abs(np.arange(4000) - 2500) > 43, 7.0, ANY) == []
 
 
-def test_noise_drift_and_waves_have_no_jumps() -> None:
+def test_noise_drift_and_waves_have_no_jumps(rng: np.random.Generator) -> None:
     n = np.arange(4000)
     for e in (0 * n, 1e-8 * n, 2e-5 * np.sin(n / 60)):
-        assert _jumps(e + 4e-6 * RNG.standard_normal(n.size), n >= 0, 7.0, ANY) == []
+        assert _jumps(e + 4e-6 * rng.standard_normal(n.size), n >= 0, 7.0, ANY) == []
 
 
-def test_a_line_stands_out_of_its_surroundings_at_its_frequency() -> None:
+def test_a_line_stands_out_of_its_surroundings_at_its_frequency(rng: np.random.Generator) -> None:
     t = np.arange(5000) * 0.008
     grid = np.arange(1.0, 55.0, 0.02)
-    heights = _heights(t, np.sin(2 * np.pi * 7.99 * t) + RNG.standard_normal(t.size), grid)
+    heights = _heights(t, np.sin(2 * np.pi * 7.99 * t) + rng.standard_normal(t.size), grid)
     assert grid[int(np.argmax(heights))] == pytest.approx(7.99, abs=0.05)
-    assert np.mean(_heights(t, RNG.standard_normal(t.size), grid) > 15.0) < 1e-2
+    assert np.mean(_heights(t, rng.standard_normal(t.size), grid) > 15.0) < 1e-2
 
 
 def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
@@ -56,23 +55,23 @@ def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
     return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)), dict.fromkeys(at, (LOAD,)))
 
 
-def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts() -> None:
+def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts(rng: np.random.Generator) -> None:
     turn = 2 * np.pi * 50
     assert not lost_counts(*jumped([0.3 * turn + 0.1 * i + turn * (i % 2) for i in range(8)], 2.0), [])
-    assert lost_counts(*jumped([float(a) for a in RNG.uniform(0, 2 * turn, 8)], 2.0), [])
+    assert lost_counts(*jumped([float(a) for a in rng.uniform(0, 2 * turn, 8)], 2.0), [])
 
 
 def test_jumps_in_runs_that_saw_a_few_degrees_of_the_output_may_be_lost_counts() -> None:
     assert lost_counts(*jumped([1.0, 9.0, 4.0, 12.0, 2.7, 7.0, 10.1, 5.5], 0.05), [])
 
 
-def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_torques() -> None:
+def test_steps_are_weighed_by_the_angle_they_explain_whatever_is_left_of_the_torques(rng: np.random.Generator) -> None:
     n = np.arange(1000)
     step = (n > 400) * 1.0
     noise = Noise({"A": 5e-6, "M": 2e-3}, {"A": 1.0, "M": 1.0}, {"A": np.inf, "M": np.inf})
     run: Any = SimpleNamespace(locked=False)
     eq = Equations((run,), {}, noise)
-    e = {(0, "A"): 5e-5 * (step - step.mean()), (0, "M"): 5e-3 * RNG.standard_normal(1000)}
+    e = {(0, "A"): 5e-5 * (step - step.mean()), (0, "M"): 5e-3 * rng.standard_normal(1000)}
     columns = {(0, "A"): step[:, None], (0, "M"): np.eye(1000)[:, 400:401]}
     assert explained(eq, e, columns) > 0.9
 
@@ -89,7 +88,9 @@ def test_below_a_floor_that_is_too_high_steps_must_still_take_a_part_of_all_ther
 
 
 @pytest.mark.parametrize(("after", "stays"), [(3e-5, True), (0.0, False)])
-def test_counts_are_lost_for_good_and_a_bump_is_not(monkeypatch: pytest.MonkeyPatch, after: float, stays: bool) -> None:
+def test_counts_are_lost_for_good_and_a_bump_is_not(
+    monkeypatch: pytest.MonkeyPatch, after: float, stays: bool, rng: np.random.Generator
+) -> None:
     """The held-out middle of a run goes up by 3e-5 rad; its other parts say whether it stayed there."""
     t = np.arange(1200) * 0.008
     middle = (t > 4.0) & (t < 6.0)
@@ -97,8 +98,8 @@ def test_counts_are_lost_for_good_and_a_bump_is_not(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(steps, "clock", lambda eq, key: times[key])
     eq: Any = SimpleNamespace(runs=[SimpleNamespace(name="speed"), SimpleNamespace(name=f"speed ({HELD_PART})")])
     e = {
-        (0, "A"): after * (times[0, "A"] > 5.0) + 2e-6 * RNG.standard_normal(times[0, "A"].size),
-        (1, "A"): 3e-5 * (times[1, "A"] > 5.0) + 2e-6 * RNG.standard_normal(times[1, "A"].size),
+        (0, "A"): after * (times[0, "A"] > 5.0) + 2e-6 * rng.standard_normal(times[0, "A"].size),
+        (1, "A"): 3e-5 * (times[1, "A"] > 5.0) + 2e-6 * rng.standard_normal(times[1, "A"].size),
     }
     assert steps._lasts(eq, e, (1, "A"), [(int(np.searchsorted(t[middle], 5.0)), 3e-5)]) is stays
 
@@ -156,7 +157,7 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none(tmp_pat
 
 @pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])
 def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_torque_as_one(
-    of_the_load: bool, share: float
+    rng: np.random.Generator, of_the_load: bool, share: float
 ) -> None:
     """In the proportion 1/K to 1/N; what one sensor picks up shows in one of them."""
     t = np.arange(4000) * 0.008
@@ -164,8 +165,8 @@ def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_tor
     columns = {(0, "A"): wave / 7200.0, (0, "M"): wave / 50.0}
     torque = wave @ np.array([0.2, 0.1])
     e = {
-        (0, "A"): torque / 7200.0 + 5e-6 * RNG.standard_normal(t.size),
-        (0, "M"): (torque / 50.0 if of_the_load else 0.0) + 2e-3 * RNG.standard_normal(t.size),
+        (0, "A"): torque / 7200.0 + 5e-6 * rng.standard_normal(t.size),
+        (0, "M"): (torque / 50.0 if of_the_load else 0.0) + 2e-3 * rng.standard_normal(t.size),
     }
     noise = Noise({"A": 5e-6, "M": 2e-3}, {"A": 1.0, "M": 1.0}, {"A": np.inf, "M": np.inf})
     run: Any = SimpleNamespace(locked=False)

@@ -15,7 +15,6 @@ from rig.analysis.tracing.trace import prepare
 from tests.analysis.tracing.test_few_channels import reduced
 from tests.contract.test_effects import motion
 
-RNG = np.random.default_rng(4)
 RUNS = ("slow_ke_1", "slow_ke_2", *(f"speed_{s}rpm_{i}" for s in ("60", "200", "400", "minus400") for i in (1, 2)))
 
 
@@ -28,8 +27,8 @@ def test_the_noise_of_the_load_angle_is_in_the_torque_of_the_inertia_twice_diffe
     assert torque[middle] == pytest.approx(-s.gear.J_l * (2 * np.pi * 10.0) ** 2 * wave[middle], abs=1e-6)
 
 
-def test_what_is_measured_has_its_own_noise_alone() -> None:
-    noise = RNG.standard_normal(motion().t.size)
+def test_what_is_measured_has_its_own_noise_alone(rng: np.random.Generator) -> None:
+    noise = rng.standard_normal(motion().t.size)
     read = dict.fromkeys(("theta_m", "theta_l", "tau_m", "tau_l"), noise)
     assert _in_stand_ins(read, motion(), motion().dt) == {}
 
