@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rig.analysis.conversion import factor, others
 from rig.analysis.intervals import against_limit
 from rig.analysis.result import Check, Estimate, Verdict
 from rig.core.nearest import nearest
@@ -16,6 +17,7 @@ WHERE = {
     Verdict.FAIL: "the whole interval is outside",
     Verdict.INCONCLUSIVE: "the limit lies within the interval",
 }
+SIDES = {"at least": "lower", "at most": "upper"}
 GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)  # one figure out of limits fails the run
 
 
@@ -38,9 +40,9 @@ class _Judged:
 def judge(estimates: Sequence[Estimate], limits: Mapping[str, Any]) -> Judgement:
     """Every limit against its figure.
 
-    `limits`: {estimate name: {"lower": x, "upper": y, "unit": u}} or {estimate name: upper}, in the unit of the
-    estimate; a `unit` given is compared, never converted; None is no limit. A limit without its figure is
-    INCONCLUSIVE: what was asked about was not measured.
+    `limits`: {estimate name: {"lower": x, "upper": y, "unit": u}} or {estimate name: upper}; without `unit` in that of
+    the estimate, else converted into it (an angle in arcsec, arcmin, deg, rad or mrad); None is no limit. A limit
+    without its figure, or in a unit of another quantity, is INCONCLUSIVE: what was asked about was not measured.
     """
     by_name = {e.name: e for e in estimates}
     asked = {name: limit for name, limit in limits.items() if limit is not None}
@@ -57,19 +59,27 @@ def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]
     e = by_name.get(name)
     if e is None:
         return _unjudged(name, f"This run has no figure '{name}' to judge against its limit; {nearest(name, by_name)}.")
-    unit, lower, upper = limit.get("unit", e.unit), limit.get("lower"), limit.get("upper")
-    if unit != e.unit:
-        return _unjudged(name, f"The limit of {e.label} is in {unit}, the figure in {e.unit}: it was not judged.")
-    if lower is None and upper is None:
+    unit = str(limit.get("unit") or e.unit)
+    given = {word: limit[key] for word, key in SIDES.items() if limit.get(key) is not None}
+    if not given:
         return _unjudged(name, f"The limit of {e.label} is no number: it was not judged.")
+    scale = factor(unit, e.unit)
+    words = " and ".join(f"{word} {bound:g} {unit}" for word, bound in given.items())
+    if not math.isfinite(scale):
+        return _unjudged(
+            name,
+            f"The limit of {e.label}, {words}, is in no unit of such a figure and was not judged; expected "
+            f"a number in {others(e.unit)}.",
+        )
     low, high = e.ci95
-    words = " and ".join(f"{w} {b:g} {unit}" for w, b in (("at least", lower), ("at most", upper)) if b is not None)
-    verdict = against_limit(e.ci95, lower, upper)
-    text = f"{e.label} {e.value:.4g} {unit} ({low:.4g} to {high:.4g}), limit {words}: {WHERE[verdict]}."
+    bounds = {word: bound * scale for word, bound in given.items()}
+    if scale != 1.0:
+        words += f" ({' and '.join(f'{bound:.6g}' for bound in bounds.values())} {e.unit})"
+    verdict = against_limit(e.ci95, bounds.get("at least"), bounds.get("at most"))
+    text = f"{e.label} {e.value:.4g} {e.unit} ({low:.4g} to {high:.4g}), limit {words}: {WHERE[verdict]}."
     unsettled = ""
     if verdict is Verdict.INCONCLUSIVE:
-        bounds = [float(b) for b in (lower, upper) if b is not None]
-        unsettled = _to_settle(e, min(bounds, key=lambda b: abs(b - e.value)))
+        unsettled = _to_settle(e, min(bounds.values(), key=lambda b: abs(b - e.value)))
     return _Judged(verdict, Check(f"limit_{name}", verdict is Verdict.PASS, text), unsettled)
 
 

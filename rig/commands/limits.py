@@ -10,8 +10,8 @@ from typing import Any
 from rig.core.errors import UsageError
 
 FORM = (
-    "expected NAME=UPPER, NAME=LOWER.. or NAME=LOWER..UPPER, with the figure's unit or without, for example "
-    "'peak-to-peak=60 arcsec' or 'K1=7000..'"
+    "expected NAME=UPPER, NAME=LOWER.. or NAME=LOWER..UPPER, in the figure's unit or with a space and another, for "
+    "example 'peak-to-peak=60 arcsec' or 'K1=7000..'"
 )
 
 
@@ -24,7 +24,8 @@ def limit_argument(parser: argparse.ArgumentParser) -> None:
         dest="limits",
         metavar="NAME=LIMIT",
         help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; "
-        "names as in hdrig trend or result.json, unit that of the figure",
+        "names as in hdrig trend or result.json; without a unit in the figure's, an angle also in arcsec, arcmin, deg, "
+        "rad or mrad",
     )
 
 

@@ -30,6 +30,28 @@ def test_the_whole_interval_must_lie_on_one_side_of_the_limit(limit: object, ver
     assert judge([FIGURE], {"swing": limit}).verdict is verdict
 
 
+@pytest.mark.parametrize(
+    ("unit", "arcsec"), [("arcsec", 1.0), ("arcmin", 60.0), ("deg", 3600.0), ("rad", 206264.806), ("mrad", 206.264806)]
+)
+def test_a_limit_of_an_angle_is_taken_in_any_of_its_units(unit: str, arcsec: float) -> None:
+    for bound, verdict in ((94.7, Verdict.PASS), (93.5, Verdict.INCONCLUSIVE), (91.3, Verdict.FAIL)):
+        judged = judge([FIGURE], {"swing": {"upper": bound / arcsec, "unit": unit}})
+        assert judged.verdict is verdict
+        assert ("arcsec)" in judged.checks[0].sentence.partition("limit")[2]) is (unit != "arcsec")
+
+
+def test_what_settles_a_converted_limit_is_said_in_the_figures_unit() -> None:
+    said = judge([FIGURE], {"swing": {"lower": 1.5, "upper": 1.5667, "unit": "arcmin"}})
+    assert "at least 1.5 arcmin and at most 1.5667 arcmin (90 and 94.002 arcsec)" in said.checks[0].sentence
+    assert "lies 1 arcsec from 94.002 arcsec" in said.unsettled
+
+
+def test_a_limit_in_a_quotient_of_units_is_taken_too() -> None:
+    stiffness = Estimate("k", "Stiffness", 7160.0, "N·m/rad", (7100.0, 7220.0), "From a loop.")
+    assert judge([stiffness], {"k": {"lower": 2.0, "unit": "N·m/arcmin"}}).verdict is Verdict.PASS
+    assert judge([stiffness], {"k": {"lower": 2.0, "unit": "N·m/rad/s"}}).verdict is Verdict.INCONCLUSIVE
+
+
 def test_one_figure_out_of_limits_fails_the_run_whatever_the_others_do() -> None:
     other = Estimate("drift", "Drift", 1.0, "arcsec/min", (0.0, 2.0), "From time.")
     assert judge([FIGURE, other], {"swing": 200.0, "drift": 1.5}).verdict is Verdict.INCONCLUSIVE
@@ -56,7 +78,9 @@ def test_without_known_contributions_it_says_how_the_interval_is_made() -> None:
     ("limits", "words"),
     [
         ({"swign": 94.0}, "did you mean 'swing'"),
-        ({"swing": {"upper": 1.5, "unit": "arcmin"}}, "in arcmin, the figure in arcsec"),
+        ({"swing": {"upper": 1.5, "unit": "parsec"}}, "at most 1.5 parsec, is in no unit of such a figure"),
+        ({"swing": {"upper": 1.5, "unit": "N·m"}}, "expected a number in arcsec, rad, mrad, deg, arcmin"),
+        ({"swing": {"upper": 1.5, "unit": "counts"}}, "at most 1.5 counts, is in no unit"),
         ({"swing": {}}, "is no number"),
     ],
 )

@@ -30,7 +30,10 @@ def test_what_is_no_limit_is_refused_with_the_form_expected(said: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("limit", "code"), [("120 arcsec", 0), ("60 arcsec", 1), ("1.5 arcmin", 6), ("80..", 0)])
+@pytest.mark.parametrize(
+    ("limit", "code"),
+    [("120 arcsec", 0), ("60 arcsec", 1), ("1 arcmin", 1), ("0.6 mrad", 0), ("1.5 parsec", 6), ("80..", 0)],
+)
 def test_analyse_judges_by_the_limit_it_is_given_and_leaves_the_manifest_alone(
     tmp_path: Path, limit: str, code: int
 ) -> None:
@@ -44,3 +47,11 @@ def test_analyse_judges_by_the_limit_it_is_given_and_leaves_the_manifest_alone(
 def test_a_sweep_of_many_runs_is_not_judged_by_one_limit(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "load-sweep", "--dry-run", "--limit", "peak-to-peak=60"]) == 2
     assert "hdrig analyse --limit" in capsys.readouterr().err
+
+
+def test_a_campaign_says_what_judges_its_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["campaign", "quick", "--dry-run", "--limit", "peak-to-peak=60"]) == 2
+    said = capsys.readouterr()
+    assert "--limit peak-to-peak=60" in said.err
+    assert "hdrig analyse CAMPAIGN" in said.err
+    assert not said.out
