@@ -98,4 +98,5 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         cannot=tuple(true_minus(s) for s in found.cannot),
         tables=found.tables,
         curves=found.curves,
+        limits=judged.limits,
     )

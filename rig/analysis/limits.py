@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rig.analysis.conversion import factor, others
@@ -28,12 +28,14 @@ class Judgement:
     verdict: Verdict  # MEASURED without any limit
     checks: tuple[Check, ...] = ()
     unsettled: str = ""  # what to do about the limits that settle nothing; "" where all do
+    limits: Mapping[str, str] = field(default_factory=dict)  # name of the figure → "Stiffness at least 7000 N·m/rad"
 
 
 @dataclass(frozen=True)
 class _Judged:
     verdict: Verdict
     check: Check
+    limit: str  # with its figure, in words
     unsettled: str = ""
 
 
@@ -52,25 +54,30 @@ def judge(estimates: Sequence[Estimate], limits: Mapping[str, Any]) -> Judgement
     ]
     verdicts = {j.verdict for j in judged}
     verdict = next((v for v in GRAVEST if v in verdicts), Verdict.MEASURED)
-    return Judgement(verdict, tuple(j.check for j in judged), " ".join(j.unsettled for j in judged if j.unsettled))
+    return Judgement(
+        verdict,
+        tuple(j.check for j in judged),
+        " ".join(j.unsettled for j in judged if j.unsettled),
+        {name: j.limit for name, j in zip(asked, judged, strict=True)},
+    )
 
 
 def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]) -> _Judged:
     e = by_name.get(name)
-    if e is None:
-        return _unjudged(name, f"This run has no figure '{name}' to judge against its limit; {nearest(name, by_name)}.")
-    unit = str(limit.get("unit") or e.unit)
     given = {word: limit[key] for word, key in SIDES.items() if limit.get(key) is not None}
+    if e is None:
+        why = f"This run has no figure '{name}' to judge against its limit; {nearest(name, by_name)}."
+        return _unjudged(name, why, f"{name} {_words(given, str(limit.get('unit') or '1'))}")
     if not given:
-        return _unjudged(name, f"The limit of {e.label} is no number: it was not judged.")
-    scale = factor(unit, e.unit)
-    words = " and ".join(f"{word} {bound:g} {unit}" for word, bound in given.items())
+        return _unjudged(name, f"The limit of {e.label} is no number: it was not judged.", f"{e.label} by no number")
+    unit = str(limit.get("unit") or e.unit)
+    scale, words = factor(unit, e.unit), _words(given, unit)
     if not math.isfinite(scale):
-        return _unjudged(
-            name,
+        why = (
             f"The limit of {e.label}, {words}, is in no unit of such a figure and was not judged; expected "
-            f"a number in {others(e.unit)}.",
+            f"a number in {others(e.unit)}."
         )
+        return _unjudged(name, why, f"{e.label} {words}")
     low, high = e.ci95
     bounds = {word: bound * scale for word, bound in given.items()}
     if scale != 1.0:
@@ -80,11 +87,16 @@ def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]
     unsettled = ""
     if verdict is Verdict.INCONCLUSIVE:
         unsettled = _to_settle(e, min(bounds.values(), key=lambda b: abs(b - e.value)))
-    return _Judged(verdict, Check(f"limit_{name}", verdict is Verdict.PASS, text), unsettled)
+    return _Judged(verdict, Check(f"limit_{name}", verdict is Verdict.PASS, text), f"{e.label} {words}", unsettled)
 
 
-def _unjudged(name: str, why: str) -> _Judged:
-    return _Judged(Verdict.INCONCLUSIVE, Check(f"limit_{name}", False, why), why)
+def _words(given: Mapping[str, float], unit: str) -> str:
+    """ "at least 30 arcsec and at most 40 arcsec"."""
+    return " and ".join(f"{word} {bound:g}{'' if unit == '1' else f' {unit}'}" for word, bound in given.items())
+
+
+def _unjudged(name: str, why: str, limit: str) -> _Judged:
+    return _Judged(Verdict.INCONCLUSIVE, Check(f"limit_{name}", False, why), limit, why)
 
 
 def _to_settle(e: Estimate, bound: float) -> str:

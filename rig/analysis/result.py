@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -52,11 +53,21 @@ class Check:
 
 
 @dataclass(frozen=True)
+class Former:
+    """A verdict that the same run had before it was judged again."""
+
+    verdict: str
+    limits: Mapping[str, str]  # as in Result; empty where there was none
+
+
+@dataclass(frozen=True)
 class Result:
     """All that one analysis of one run found.
 
     `curves` holds the arrays the figures are drawn from, by dotted name ("ke.theta_deg", "mse.k" …); the unit is in
-    the name or in the drawing function. `cannot` says what this run cannot tell, and why, one sentence each.
+    the name or in the drawing function. `cannot` says what this run cannot tell, and why, one sentence each. `limits`
+    is what the verdict is by: name of the figure to words ("Stiffness at least 7000 N·m/rad"). `former` are the
+    verdicts the run had by other limits, oldest first.
     """
 
     procedure: str
@@ -67,3 +78,5 @@ class Result:
     cannot: tuple[str, ...] = ()
     tables: dict[str, list[dict[str, float | str]]] = field(default_factory=dict)
     curves: dict[str, Array] = field(default_factory=dict)
+    limits: Mapping[str, str] = field(default_factory=dict)
+    former: tuple[Former, ...] = ()

@@ -67,13 +67,15 @@ def targets(folders: list[Path], out: Path | None) -> list[Path]:
 def analyse_folder(
     folder: Path, target: Path, reference: Run | None = None, limits: Mapping[str, Any] = NO_LIMITS
 ) -> tuple[Result, bool]:
-    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself.
+    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself. A verdict
+    that stands there already is kept in the result as a former one.
 
     `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
     in the same folder is taken. `limits` join those of the run's manifest and go before them. Returns the result, and
     whether the run is simulated.
     """
     from rig.analysis.analyse import analyse
+    from rig.report.history import with_former
     from rig.report.page import write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
@@ -84,7 +86,7 @@ def analyse_folder(
     refuse_changed(folder, run.manifest)
     if reference is None:
         reference = BESIDE.get(run.procedure, without)(run)
-    result = analyse(run, reference)
+    result = with_former(target, analyse(run, reference))
     with writing(target):
         target.mkdir(parents=True, exist_ok=True)
         made = [
@@ -142,10 +144,13 @@ def exit_of(result: Result) -> Exit:
 def print_result(result: Result, target: Path, folder: Path, simulated: bool) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
     from rig.analysis.latch_skew_words import bench_lines
+    from rig.report.history import told
     from rig.report.numbers import estimate
 
     said = {"MEASURED": "no limit set"}.get(result.verdict, str(result.verdict))
     print(f"{'SIMULATED ' if simulated else ''}{folder.name}\n{said}: {result.sentence}")
+    if history := told(result, last=1):
+        print(history)
     width = max((len(e.label) for e in result.estimates), default=0)
     for e in result.estimates:
         print(f"  {e.label:{width}s}  {estimate(e.value, e.ci95, e.unit)}")

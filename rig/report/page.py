@@ -19,6 +19,7 @@ from rig.analysis.result import Array, Result
 from rig.report import rows, words
 from rig.report.cards import cards
 from rig.report.figures import CATALOGUE, Drawing, Frame, styled, svg
+from rig.report.history import told
 from rig.report.numbers import duration, number_of
 from rig.report.palette import DARK, LIGHT, variables
 from rig.report.provenance import provenance
@@ -79,6 +80,7 @@ def render(
         "facts": _facts(manifest, gear, result.curves, run),
         "ruling": words.RULINGS[result.verdict],
         "sentence": result.sentence,
+        "judged": sentence_of(told(result)),
         "ending": words.ended_early(manifest),
         "main": cards(result.estimates),
         "checks": [{"passed": c.passed, "sentence": c.sentence} for c in result.checks],
@@ -208,6 +210,11 @@ def _css(run: str, mark: str) -> Markup:
 def code(text: str) -> Markup:
     """`text` escaped, with what stands between backticks set in the typewriter face."""
     return Markup(re.sub(r"`([^`]+)`", r'<code class="code">\1</code>', str(escape(text))))
+
+
+def sentence_of(text: str) -> str:
+    """`text` with a capital and a full stop; "" stays ""."""
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def css_string(text: str) -> str:

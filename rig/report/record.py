@@ -14,12 +14,14 @@ NAME = "result.json"
 
 
 def as_json(result: Result) -> dict[str, Any]:
-    """Everything but the curves; a number that is not finite becomes null."""
+    """Everything but the curves; a number that is not finite becomes null. `limits`, `former`: see Result."""
     return {
         "schema": "hdrig.result/1",
         "procedure": result.procedure,
         "verdict": str(result.verdict),
         "sentence": result.sentence,
+        "limits": dict(result.limits),
+        "former": [{"verdict": f.verdict, "limits": dict(f.limits)} for f in result.former],
         "estimates": {
             e.name: {
                 "label": e.label,

@@ -1,5 +1,6 @@
 """--limit: the words of an operator to the limits a run is judged against."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,24 @@ def test_a_campaign_says_what_judges_its_runs(capsys: pytest.CaptureFixture[str]
     assert "--limit peak-to-peak=60" in said.err
     assert "hdrig analyse CAMPAIGN" in said.err
     assert not said.out
+
+
+@pytest.mark.slow
+def test_a_run_judged_again_says_what_the_verdict_was_and_by_which_limit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = str(made_run(tmp_path / "run"))
+    told = []
+    for limit in ([], ["--limit", "peak-to-peak=2 arcmin"], ["--limit", "peak-to-peak=60 arcsec"]):
+        main(["analyse", run, *limit])
+        told.append(next((line for line in capsys.readouterr().out.splitlines() if "judged before" in line), ""))
+    name = "Kinematic error, peak to peak at most"
+    assert told == [
+        "",
+        f"judged before: no limit set; now PASS by {name} 2 arcmin (120 arcsec)",
+        f"judged before: PASS by {name} 2 arcmin (120 arcsec); now FAIL by {name} 60 arcsec",
+    ]
+    kept = json.loads((tmp_path / "run" / "result.json").read_text())
+    assert [f["verdict"] for f in kept["former"]] == ["MEASURED", "PASS"]
+    assert kept["limits"] == {"kinematic_error_peak_to_peak": f"{name} 60 arcsec"}
+    assert f"Judged before: no limit set, then PASS by {name} 2 arcmin" in (tmp_path / "run/report.html").read_text()
