@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from rig.catalogue.row import UNREADABLE, Row, moment
+from rig.catalogue.row import NO_LIMIT, UNREADABLE, Row, moment
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 
-VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "MEASURED", "none")
+VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", NO_LIMIT, "none")
+SAME = {"measured": NO_LIMIT}  # the word of manifests and of --json
 STATUSES = ("running", "completed", "stopped", "tripped", "interrupted", UNREADABLE)
 EARLIEST = datetime.min.replace(tzinfo=UTC)
 
@@ -21,7 +22,7 @@ ORDERS: dict[str, Callable[[Row], Any]] = {
     "procedure": lambda row: row.procedure,
     "gear": lambda row: row.gear,
     "status": lambda row: row.status,
-    "verdict": lambda row: row.verdict,
+    "verdict": lambda row: row.ruling,
     "duration": lambda row: -1.0 if row.duration is None else row.duration,
 }
 
@@ -44,7 +45,7 @@ class Filter:
         return (
             (not self.gear or fnmatch.fnmatchcase(row.gear, self.gear))
             and (not self.procedure or row.procedure.replace("-", "_") == self.procedure)
-            and (not self.verdict or (row.verdict or "none") == self.verdict)
+            and (not self.verdict or (row.ruling or "none") == self.verdict)
             and (not self.status or row.status == self.status)
             and self._in_time(row)
         )
@@ -84,7 +85,7 @@ def asked(
     return Filter(
         gear=gear,
         procedure=procedure.replace("-", "_"),
-        verdict=_one_of("verdict", verdict, VERDICTS),
+        verdict=_one_of("verdict", SAME.get(verdict.lower(), verdict), VERDICTS),
         status=_one_of("status", status, STATUSES),
         since=_when("since", since),
         until=_end("until", until),

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
+NO_LIMIT = "no-limit"  # the verdict of figures nobody set a limit for; manifests say MEASURED, also of the twin's
+ORIGINS = {"sim": "SIMULATED", "can": "MEASURED", "serial": "MEASURED", "imported": "IMPORTED"}  # by backend
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,16 @@ class Row:
         return self.backend == "sim"
 
     @property
+    def origin(self) -> str:
+        """Where its samples came from: SIMULATED, MEASURED or IMPORTED; "" where the manifest does not say."""
+        return ORIGINS.get(self.backend, "")
+
+    @property
+    def ruling(self) -> str:
+        """The verdict as shown: PASS, FAIL, INCONCLUSIVE or no-limit; "" of a run that was not analysed."""
+        return NO_LIMIT if self.verdict == "MEASURED" else self.verdict
+
+    @property
     def started(self) -> datetime | None:
         """Start, UTC; None when the manifest does not say it as ISO 8601."""
         return moment(self.started_utc)
@@ -54,6 +66,7 @@ class Row:
             "duration_s": self.duration,
             "rows": self.rows,
             "simulated": self.simulated,
+            "origin": self.origin or None,
             "conditions": finite(self.conditions),
             "path": str(self.path),
         }

@@ -12,7 +12,10 @@ from rig.catalogue.row import UNREADABLE, Row
 from rig.catalogue.scan import passing
 from rig.core.in_order import in_order
 
-HEAD = f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} run"
+HEAD = (
+    f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} "
+    f"{'origin':9s} run"
+)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +61,7 @@ def _line(row: Row) -> str:
     procedure = row.procedure.replace("_", "-")
     return (
         f"{row.started_utc[:19]:19s} {procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
-        f"{row.verdict or '–':12s} {row.path}{' SIMULATED' if row.simulated else ''}"
+        f"{row.ruling or '–':12s} {row.origin or '–':9s} {row.path}"
     )
 
 

@@ -16,6 +16,7 @@ from rig.catalogue.filter import asked
 from rig.cli import main
 from rig.core import in_order
 from rig.core.errors import UsageError
+from rig.report import words
 from tests.catalogue.folders import MANIFEST, run
 
 ANYTHING: st.SearchStrategy[Any] = st.recursive(
@@ -145,6 +146,23 @@ def test_the_command_lists_damage_in_words_and_json_line_by_line(
     assert main(["list", str(tmp_path), "--json", "--status", "completed"]) == 0
     (line,) = capsys.readouterr().out.splitlines()
     assert json.loads(line)["gear"] == "SN1"
+
+
+@pytest.mark.parametrize(
+    ("backend", "origin"),
+    [("sim", "SIMULATED"), ("can", "MEASURED"), ("serial", "MEASURED"), ("imported", "IMPORTED"), ("odd", "–")],
+)
+def test_measured_in_the_list_is_where_a_run_came_from_and_never_its_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], backend: str, origin: str
+) -> None:
+    run(tmp_path, "2026-11-20", backend=backend, verdict="MEASURED")
+    assert main(["list", str(tmp_path)]) == 0
+    head, line = capsys.readouterr().out.splitlines()
+    assert line[head.index("verdict") :].split()[:2] == ["no-limit", origin]
+    (row,) = runs(tmp_path, asked(verdict="no-limit"))
+    assert [row] == runs(tmp_path, asked(verdict="MEASURED")), "the word of manifests finds them too"
+    assert row.as_json()["verdict"] == "MEASURED"
+    assert (row.origin or "ORIGIN UNKNOWN") == words.origin(backend).word, "list and page say the same"
 
 
 def test_five_thousand_manifests_are_opened_once_each(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,7 +95,7 @@ def _run(row: Row) -> dict[str, str]:
         "gear": row.gear or ABSENT,
         "started": rows.utc(row.started_utc) if row.started_utc else ABSENT,
         "assembly": str(row.conditions.get("assembly", ABSENT)),
-        "ended": f"{row.status} {row.verdict}".strip(),
+        "ended": f"{row.status} {row.ruling}".strip(),
         "origin": run_words.origin(row.backend or None).word,
     }
 

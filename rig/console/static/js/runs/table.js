@@ -9,9 +9,9 @@ const COLUMNS = [
   ["Procedure", (row) => (row.procedure ?? "").replace(/_/g, "-")],
   ["Gear", (row) => row.gear ?? ""],
   ["Status", (row) => row.status ?? ""],
-  ["Verdict", (row) => row.verdict ?? ""],
+  ["Verdict", (row) => (row.verdict === "MEASURED" ? "no-limit" : row.verdict ?? "")],
   ["Duration", (row) => row.duration_s ?? -1, (row) => lasting(row.duration_s)],
-  ["Rig", (row) => (row.simulated ? "SIMULATED" : row.backend ?? "")],
+  ["Origin", (row) => row.origin ?? row.backend ?? ""],
 ];
 const MOST = 500; // rows shown; the filters narrow the rest
 let order = { column: 0, down: true };

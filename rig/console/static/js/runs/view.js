@@ -8,7 +8,7 @@ import { Trend } from "./trend.js";
 
 const FIGURES = ["peak-to-peak", "C_2", "K1", "hysteresis-loss", "friction"];
 const STATUSES = ["", "completed", "stopped", "tripped", "interrupted", "running", "unreadable"];
-const VERDICTS = ["", "PASS", "FAIL", "INCONCLUSIVE", "MEASURED", "none"];
+const VERDICTS = ["", "PASS", "FAIL", "INCONCLUSIVE", "no-limit", "none"];
 const PAUSE = 200; // ms without a key before the list is asked for again
 
 const chosen = new Map(); // runs to compare, by path
