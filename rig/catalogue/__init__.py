@@ -9,6 +9,7 @@
 | figures | the figures of one run, by the words people use |
 | sameness | which runs are repeats of one another |
 | scatter | how far repeats lie apart, and what is more than that |
+| lacking | which of the runs side by side has not which figure |
 | compare | runs side by side |
 | trend | one figure over days and assemblies |
 """

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.catalogue.figures import Figure, figures
+from rig.catalogue.lacking import lacks, refuse_nothing, shared, without_figures
 from rig.catalogue.repeats import COUNTS, Repeats
 from rig.catalogue.row import UNREADABLE, Row, finite
 from rig.catalogue.sameness import mounting, point
@@ -43,7 +44,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Line:
-    """One figure over all runs; None where a run has none."""
+    """One figure of two runs or more; None where a run has none."""
 
     name: str
     label: str
@@ -83,15 +84,16 @@ class Comparison:
 def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
     """Compare the runs in `paths` with the first of them. Repeats are looked for under `root`, or where the runs lie.
 
-    Raises UsageError for fewer than two runs, a path that is none, or a result that is damaged.
+    A figure that one run alone has is no line; the remarks say who lacks it. Raises UsageError for fewer than two runs,
+    a path that is none, a result that is damaged, or when no other run has any figure of the first.
     """
     if len(paths) < 2:
         raise UsageError("comparing needs at least two runs")
     found = tuple(_run(path) for path in paths)
     known = [figures(one.path) for one in found]
+    refuse_nothing(found, known)
     repeats = Repeats(rows(str(root or _home(paths))))
-    names = list(dict.fromkeys(name for one in known for name in one))
-    lines = tuple(_line(name, found, known, repeats) for name in names)
+    lines = tuple(_line(name, found, known, repeats) for name in shared(known))
     return Comparison(found, lines, tuple(_remarks(found, known)))
 
 
@@ -173,11 +175,9 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
     for one, names in zip(found, known, strict=True):
         if one.status not in COUNTS:
             said.append(f"{one.path.name} is {one.status}: its figures are from what was recorded")
-        if not names and not (one.path / "result.json").exists():
-            said.append(f"{one.path.name} was not analysed; hdrig analyse does so")
-        elif not names:
-            said.append(f"{one.path.name} has no figures: its report says why")
-    return said
+        if why := without_figures(one, names):
+            said.append(why)
+    return [*said, *lacks(found, known)]
 
 
 def _unlike(a: Row, b: Row) -> str:
@@ -185,7 +185,7 @@ def _unlike(a: Row, b: Row) -> str:
     pairs = {"procedure": (a.procedure, b.procedure)}
     for key in [*a.conditions, *(k for k in b.conditions if k not in a.conditions)]:
         if key not in ("note", "assembly"):
-            pairs[key] = (a.conditions.get(key, "–"), b.conditions.get(key, "–"))
+            pairs[key] = (a.conditions.get(key, "not said"), b.conditions.get(key, "not said"))
     return ", ".join(f"{key} {x} and {y}" for key, (x, y) in pairs.items() if x != y) or "their kind"
 
 

@@ -75,10 +75,10 @@ def _of_runs(line: Line) -> list[str]:
 
 def shown(value: Figure | None) -> str:
     """A figure with its interval."""
-    from rig.report.numbers import ABSENT, estimate
+    from rig.report.numbers import estimate
 
     if value is None:
-        return ABSENT
+        return "not in this run"
     return estimate(value.value, (value.low, value.high), value.unit) + (" (rejected run)" if value.rejected else "")
 
 
@@ -99,7 +99,7 @@ def _how(found: Comparison) -> list[str]:
     """The estimate of reproducibility behind the first figure, which all of one point share but for its number."""
     first = next((d for line in found.lines for d in line.differences if d is not None), None)
     if first is None:
-        return ["nothing to compare: the runs share no figure"]
+        return ["no differences: a run was rejected, or its figures are in other units"]
     return [
         "differences are to run 1, with 95 % intervals; two unchanged runs stay within reproducibility 99 times of 100",
         f"{found.lines[0].label}: {first.how}",

@@ -164,6 +164,48 @@ def test_both_are_json_for_programs_and_lines_for_people(tmp_path: Path, capsys:
     assert [p["changed"] for p in points] == [False] * 4 + [True]
 
 
+def test_a_figure_one_run_alone_has_is_no_line_of_dashes_but_a_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a, b, c = run(tmp_path, DAYS[0]), run(tmp_path, DAYS[1]), run(tmp_path, DAYS[2])
+    added(a, "drift", "Drift")
+    for folder in (a, b):
+        added(folder, "swing", "Swing")
+    found = compare([a, b, c])
+    assert [line.name for line in found.lines] == ["kinematic_error_peak_to_peak", "swing"]
+    assert found.remarks == (
+        f"{b.name} lacks a figure that another has: Drift",
+        f"{c.name} lacks 2 figures that another has: Drift; Swing",
+    )
+    assert main(["compare", str(a), str(b), str(c)]) == 0
+    said = capsys.readouterr().out
+    assert "  3  not in this run" in said.split("Swing\n")[1]
+
+
+def test_runs_that_share_no_figure_are_refused_with_who_lacks_what(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    a = run(tmp_path, DAYS[0])
+    b = run(tmp_path, DAYS[1], name="coulomb", procedure="friction")
+    c = run(tmp_path, DAYS[2])
+    (c / "result.json").unlink()
+    assert main(["compare", str(a), str(b), str(c)]) == 2
+    out, err = capsys.readouterr()
+    assert not out
+    assert err.count("\n") == 1
+    assert f"nothing to compare: {c.name} was not analysed (hdrig analyse does so); {b.name} (friction) has no" in err
+    assert f"no figure of {a.name} (kinematic-error): Kinematic error, peak to peak" in err
+    assert main(["compare", str(c), str(b), "--json"]) == 2
+    assert "no figure of" not in capsys.readouterr().err, "the first run has none at all"
+
+
+def added(folder: Path, name: str, label: str) -> None:
+    """One more figure in the result of a run."""
+    said = json.loads((folder / "result.json").read_text())
+    said["estimates"][name] = {"label": label, "value": 1.0, "unit": "arcsec", "ci95": [0.5, 1.5], "how": "made up"}
+    (folder / "result.json").write_text(json.dumps(said))
+
+
 def test_a_damaged_result_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     a, b = run(tmp_path, DAYS[0]), run(tmp_path, DAYS[1])
     (b / "result.json").write_text("{")

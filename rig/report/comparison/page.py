@@ -107,7 +107,7 @@ def _line(
     for value, d in zip(values, differences, strict=True):
         cells.append(
             {
-                "value": ABSENT if value is None else estimate(value.value, (value.low, value.high), unit),
+                "value": "not in this run" if value is None else estimate(value.value, (value.low, value.high), unit),
                 "void": value is not None and value.rejected,
                 "difference": "" if d is None or d.value == 0 else _signed(d, unit),
                 "mark": "" if d is None else MARKS[d.mark],
