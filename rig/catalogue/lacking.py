@@ -1,4 +1,4 @@
-"""Figures that some of the runs side by side do not have: which run lacks which, and when there is nothing to compare."""
+"""Figures that some of the runs side by side do not have: which run lacks which, and when nothing is left."""
 
 from __future__ import annotations
 

@@ -179,7 +179,7 @@ def test_a_figure_one_run_alone_has_is_no_line_of_dashes_but_a_sentence(
     )
     assert main(["compare", str(a), str(b), str(c)]) == 0
     said = capsys.readouterr().out
-    assert "  3  not in this run" in said.split("Swing\n")[1]
+    assert "  3  not in this run" in said.split("\n\nSwing\n")[1]
 
 
 def test_runs_that_share_no_figure_are_refused_with_who_lacks_what(
