@@ -25,7 +25,15 @@ RPM = np.pi / 30.0  # rad/s
 SPEEDS = (120.0, 300.0, 500.0)  # rpm, the paper's Fig. 11
 NEAR = 0.05  # of an end of what was covered: a speed held by a constant torque is a few per cent off
 ORDERS = 8  # printed; beyond, amplitudes are below what a rig resolves
-HEAD = ("rpm", "τ, N·m", "θ̃ p-p, arcsec", "θ̃_p p-p", "θ̃_s p-p", "speed p-p, rpm", "τ_l p-p, N·m")
+HEAD = (  # each ends in its unit; p-p is peak to peak over one turn of the wave generator
+    "motor speed, rpm",
+    "motor torque τ, N·m",
+    "θ̃ p-p, arcsec",
+    "θ̃_p p-p (pure part), arcsec",
+    "θ̃_s p-p (flexible part), arcsec",
+    "motor speed p-p, rpm",
+    "shaft torque τ_l p-p, N·m",
+)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -134,7 +142,7 @@ def describe(file: GearFile, waves: Sequence[Waveform], load: float) -> str:
     from rig.report.numbers import quantity
 
     gears = drawn_gears(file)
-    names = (*HEAD, *(f"order {n}, arcsec" for n in range(1, ORDERS + 1)))
+    names = (*HEAD, *(f"amplitude of θ̃, order {n}, arcsec" for n in range(1, ORDERS + 1)))
     columns = []
     for wave in waves:
         speed = wave.mean_speed
@@ -146,7 +154,7 @@ def describe(file: GearFile, waves: Sequence[Waveform], load: float) -> str:
     width = max(len(n) for n in names)
     lines = [f"  {n:{width}s}  " + "  ".join(f"{c[i]:>18s}" for c in columns) for i, n in enumerate(names)]
     how = f"± 95 %: {len(gears)} gears drawn from the gear file" if gears else "no intervals: nothing was measured"
-    return "\n".join([*lines, f"  ({how}; means over time, amplitudes over the wave-generator angle)"])
+    return "\n".join([*lines, f"  ({how}; means over time, p-p and amplitudes over the wave-generator angle)"])
 
 
 def draw(path: Path, wave: Waveform, source: str) -> None:

@@ -24,12 +24,12 @@ def lines(file: GearFile, torques: Sequence[float], load: float) -> Iterator[str
     if not np.isfinite(torques).all():
         raise UsageError(f"--start {' '.join(f'{x:g}' for x in torques)}: expected torques in N·m")
     gears = [file.gear(), *drawn_gears(file)]
-    yield f"{'τ, N·m':>10s}{'does it turn':>22s}{'rpm':>20s}{'run up in, s':>20s}"
+    yield f"{'τ, N·m':>10s}{'does it turn':>22s}{'motor speed, rpm':>20s}{'run up in, s':>20s}"
     for tau in torques:
         yield line(tau, run_up(gears, tau, SECONDS, load))
     drawn = len(gears) - 1
     how = f"± 95 %: {drawn} gears drawn from the gear file" if drawn else "no intervals: nothing was measured"
-    yield f"  ({how}; rpm: mean from {0.8 * SECONDS:g} to {SECONDS:g} s; run up: 95 % of it)"
+    yield f"  ({how}; motor speed: mean from {0.8 * SECONDS:g} to {SECONDS:g} s; run up: 95 % of it)"
     if (tau_s := file.parameters["tau_s"]).origin != "measured":
         yield f"  breakaway was not measured (tau_s {tau_s.value:.3g} N·m {tau_s.origin}): what starts hangs on it"
 
@@ -39,7 +39,7 @@ def line(tau: float, made: RunUp) -> str:
     turning, drawn = made.turning[0], made.turning[1:]
     share = f" ({drawn.sum()} of {drawn.size})" if drawn.size else ""
     if not turning:
-        went = f"it stops or sticks after {made.moved[0]:.2g} turns"
+        went = f"it stops or sticks after {made.moved[0]:.2g} motor turns"
         return f"{tau:10.4g}{('no' + share):>22s}   {went}"
     speed, time = made.speed / RPM, made.time
     return (

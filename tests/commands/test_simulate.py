@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -53,3 +54,23 @@ def test_a_breakaway_measured_at_rest_stands_beside_one_that_was_assumed() -> No
     measured = replace(file, parameters={**file.parameters, "tau_s": Parameter(0.5, (0.4, 0.6))})
     assert breakaway_beside(measured) == []
     assert breakaway_beside(gear()) == []
+
+
+UNITS = ("rpm", "N·m", "arcsec", "s")
+
+
+def test_every_row_of_the_table_names_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "twin", "--speed", "300"]) == 0
+    lines = capsys.readouterr().out.splitlines()[1:-1]
+    rows = [re.split(r"\s{2,}", line.strip()) for line in lines]
+    assert len(rows) == 15
+    assert [row for row in rows if row[0].rpartition(", ")[2] not in UNITS] == []
+    assert len({row[0] for row in rows}) == len(rows)
+
+
+def test_every_column_of_the_starting_table_names_its_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["simulate", "twin", "--start", "0.3"]) == 0
+    head, row = capsys.readouterr().out.splitlines()[1:3]
+    names = re.split(r"\s{2,}", head.strip())
+    assert [name for name in names if name.rpartition(", ")[2] not in UNITS] == ["does it turn"]
+    assert row.endswith("motor turns")

@@ -47,7 +47,7 @@ def test_simulate_takes_the_twin_and_a_constant_torque(tmp_path: Path, capsys: p
     page = tmp_path / "fig.html"
     assert main(["simulate", "twin", "--torque", "0.4237", "--out", str(page)]) == 0
     said = capsys.readouterr().out
-    row = next(line for line in said.splitlines() if line.strip().startswith("rpm"))
+    row = next(line for line in said.splitlines() if line.strip().startswith("motor speed, rpm"))
     assert float(row.split()[-1]) == pytest.approx(300, abs=1)
     assert "nothing was measured" in said
     assert "<svg" in page.read_text()
