@@ -5,6 +5,7 @@ One definition serves the search for effects in measured runs, the refit, the si
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from rig.core.once import Once
 from rig.model.fourier import FourierSeries
+from rig.model.gloss import gloss
 
 Array = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.int64]
@@ -100,19 +102,22 @@ class Signals(Once):
         """
         if self.thinned == 1:
             return np.ones(omega.size)
-        hz, rate = order * np.abs(omega) / (2.0 * np.pi), self.thinned / self.dt
-        if np.max(hz, initial=0.0) * self.dt < 1.0 / 3.0:
-            return np.ones(omega.size)
-        folded = np.abs(hz - rate * np.rint(hz / rate)) * self.dt
-        return np.asarray(0.5 + 0.5 * np.cos(np.pi * np.clip(3.0 * folded - 1.0, 0.0, 1.0)))
+        from rig.model.waves import left_of  # compiled: not for those who only read a gear file
+
+        return np.asarray(left_of(order, omega, self.dt, self.thinned / self.dt))
 
     def heat(self, t_w: float) -> Array:
         """What the motor's friction has turned into heat since the campaign began, leaking with `t_w` s: J, (n,)."""
         out = np.zeros(self.t.size)
+        first, last = (float(self.t[0]), float(self.t[-1])) if self.t.size else (0.0, 0.0)
+        cooled = np.exp((first - self.t) / t_w)
         for run in self.past:
             power = self.gear.tau_c * run.speed + self.gear.B_m * run.square
-            since, until = np.maximum(self.t - run.start, 0.0), np.maximum(self.t - run.end, 0.0)
-            out += power * t_w * (np.exp(-until / t_w) - np.exp(-since / t_w))
+            if run.end <= first:  # most have: what is left of their heat cools alike
+                out += power * t_w * (math.exp((run.end - first) / t_w) - math.exp((run.start - first) / t_w)) * cooled
+            elif run.start < last:
+                since, until = np.maximum(self.t - run.start, 0.0), np.maximum(self.t - run.end, 0.0)
+                out += power * t_w * (np.exp(-until / t_w) - np.exp(-since / t_w))
         return out
 
     @cached_property
@@ -254,6 +259,7 @@ class Effect(ABC):
 
     name: ClassVar[str]  # also the file's name
     in_short: ClassVar[str]  # one line for people
+    glosses: ClassVar[Mapping[str, str]] = {}  # what its parameters are, by name; see rig/model/gloss.py
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[frozenset[str]] = frozenset()  # parameters of which several terms of it make one sum
@@ -275,6 +281,10 @@ class Effect(ABC):
     @abstractmethod
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The coefficients in the words of the field."""
+
+    def gloss(self, name: str) -> str:
+        """What its parameter of that name is, a short phrase; "" where nothing is said of it."""
+        return gloss(self.glosses, name)
 
     def plausible(self, fit: Fit) -> bool:
         """False when the coefficients have a sign or size no such effect can have."""

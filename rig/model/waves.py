@@ -7,6 +7,7 @@ has all digits of a double. Vectors of the processor take several angles at once
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from math import factorial
 from typing import Final
@@ -32,16 +33,22 @@ BLOCK: Final = 512  # angles, which stay in the nearest cache
 
 def cosine_and_sine(angle: Array) -> tuple[Array, Array]:
     """Of `angle` rad (n,), each (n,), to the last digit but one."""
-    if np.max(np.abs(angle), initial=0.0) < FURTHEST:  # else, and where one is not finite, numpy's
-        cos, sin = np.empty(angle.size), np.empty(angle.size)
-        _turned(np.ascontiguousarray(angle), cos, sin)
-        return cos, sin
-    return np.cos(angle), np.sin(angle)
+    cos, sin = np.empty(angle.size), np.empty(angle.size)
+    if not _turned(np.ascontiguousarray(angle), cos, sin):  # too far, or one is not finite
+        return np.cos(angle), np.sin(angle)
+    return cos, sin
 
 
-def wave(angle: Array) -> Array:
-    """Cosine and sine of `angle` rad (n,) side by side, (n, 2)."""
-    return np.stack(cosine_and_sine(angle), 1)
+def wave(angle: Array, height: Array | None = None) -> Array:
+    """Cosine and sine of `angle` rad (n,) side by side, (n, 2); `height` (n,) times them."""
+    cos, sin = cosine_and_sine(angle)
+    out = np.empty((angle.size, 2))
+    if height is None:
+        out[:, 0], out[:, 1] = cos, sin
+    else:
+        np.multiply(cos, height, out=out[:, 0])
+        np.multiply(sin, height, out=out[:, 1])
+    return out
 
 
 def powers(angle: Array, orders: int, slopes: bool = False) -> Array:
@@ -66,7 +73,32 @@ def sums(series: FourierSeries, angle: Array, *derivatives: int) -> tuple[Array,
 
 
 @njit(cache=True, nogil=True)
-def _turned(angle: Array, cos: Array, sin: Array) -> None:
+def left_of(order: float, omega: Array, dt: float, rate: float) -> Array:
+    """Share (n,) of a wave of `order` periods a turn at `omega` rad/s (n,) that is left in rows `dt` s apart, brought
+    down from readings at `rate` Hz: all below a third of the rows' own rate, nothing above two thirds; readings fold
+    over what is faster than half of theirs."""
+    out = np.ones(omega.size)
+    slow, limit = 0, 2.0 * math.pi / (3.0 * dt * order)
+    for i in range(omega.size):
+        slow += 1 if abs(omega[i]) < limit else 0
+    if slow == omega.size:
+        return out
+    for i in range(omega.size):
+        hz = order * abs(omega[i]) / (2.0 * math.pi)
+        beyond = 3.0 * abs(hz - rate * np.rint(hz / rate)) * dt - 1.0
+        if beyond > 0.0:
+            out[i] = 0.5 + 0.5 * math.cos(math.pi * min(beyond, 1.0))
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _turned(angle: Array, cos: Array, sin: Array) -> bool:
+    """False, and nothing made, where an angle is too far or not finite."""
+    near = 0
+    for i in range(angle.size):
+        near += 1 if abs(angle[i]) < FURTHEST else 0
+    if near < angle.size:
+        return False
     for i in range(angle.size):
         turns = np.rint(angle[i] / 1.5707963267948966)
         x = ((angle[i] - turns * FIRST) - turns * SECOND) - turns * THIRD
@@ -80,6 +112,7 @@ def _turned(angle: Array, cos: Array, sin: Array) -> None:
         a, b = (s, c) if swapped else (c, s)
         cos[i] = -a if quarter == 1.0 or quarter == 2.0 else a
         sin[i] = -b if quarter >= 2.0 else b
+    return True
 
 
 @njit(cache=True, nogil=True)

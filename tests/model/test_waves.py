@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rig.model.fourier import FourierSeries
-from rig.model.waves import BLOCK, FURTHEST, cosine_and_sine, powers, sums, wave
+from rig.model.waves import BLOCK, FURTHEST, cosine_and_sine, left_of, powers, sums, wave
 
 LAST = 2.3e-16  # the last digit of a double below 1
 ANGLES = np.concatenate(
@@ -33,6 +33,19 @@ def test_angles_too_large_or_unknown_are_left_to_numpy(far: float) -> None:
 
 def test_waves_stand_side_by_side() -> None:
     assert np.allclose(wave(ANGLES), np.stack([np.cos(ANGLES), np.sin(ANGLES)], 1), atol=LAST)
+
+
+def test_a_height_times_waves() -> None:
+    height = np.linspace(-2.0, 3.0, ANGLES.size)
+    assert np.array_equal(wave(ANGLES, height), wave(ANGLES) * height[:, None])
+
+
+@pytest.mark.parametrize(
+    ("hz", "left"), [(10.0, 1.0), (30.0, 1.0), (50.0, 0.5), (70.0, 0.0), (950.0, 0.5), (995.0, 1.0)]
+)
+def test_rows_have_lost_what_is_faster_and_readings_fold_over_what_is_faster_still(hz: float, left: float) -> None:
+    omega = 2.0 * np.pi * np.array([hz, -hz, 1.0]) / 7.0
+    np.testing.assert_allclose(left_of(7.0, omega, 0.01, 1000.0), [left, left, 1.0], atol=1e-12)
 
 
 def test_powers_are_the_orders_and_their_slopes() -> None:

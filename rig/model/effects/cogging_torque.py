@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.motor_orders import MOTOR_ORDERS
 from rig.model.waves import wave
 
@@ -15,6 +16,9 @@ class CoggingTorque(Effect):
 
     name: ClassVar[str] = "cogging_torque"
     in_short: ClassVar[str] = "motor torque ripple at rest, fixed orders of the motor"
+    glosses: ClassVar[Mapping[str, str]] = waved(
+        "order_{n}", "the motor torque lost without current, {n} times a motor turn", "{n}·θ_m"
+    )
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
@@ -26,7 +30,7 @@ class CoggingTorque(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine."""
         x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m)
-        return {Port.MOTOR_TORQUE: wave(x) * kept[:, None]}
+        return {Port.MOTOR_TORQUE: wave(x, kept)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

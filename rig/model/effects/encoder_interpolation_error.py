@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import wave
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter
@@ -21,6 +22,10 @@ class EncoderInterpolationError(Effect):
 
     name: ClassVar[str] = "encoder_interpolation_error"
     in_short: ClassVar[str] = "orders of the encoder's line count"
+    glosses: ClassVar[Mapping[str, str]] = {
+        **waved("load_{n}_lines", "the load encoder's error, once a line of {n} a turn", "{n}·θ_l"),
+        **waved("motor_{n}_lines", "the motor encoder's error, once a line of {n} a turn", "{n}·θ_m"),
+    }
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("side", "lines")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
@@ -50,7 +55,7 @@ class EncoderInterpolationError(Effect):
             x, kept, port = lines * signals.theta_l, signals.kept(lines, signals.omega_l), Port.READS_THETA_L
         else:
             x, kept, port = lines * signals.theta_m, signals.kept(lines, signals.omega_m), Port.READS_THETA_M
-        return {port: wave(x) * kept[:, None]}
+        return {port: wave(x, kept)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase, named by side and line count."""

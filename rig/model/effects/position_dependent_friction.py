@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import wave
 
 
@@ -17,6 +18,9 @@ class PositionDependentFriction(Effect):
 
     name: ClassVar[str] = "position_dependent_friction"
     in_short: ClassVar[str] = "friction modulated by wave-generator angle"
+    glosses: ClassVar[Mapping[str, str]] = waved(
+        "order_{n}", "the friction that changes {n} times a motor turn", "{n}·θ_m"
+    )
     source: ClassVar[str] = "tuttle1992"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
@@ -38,7 +42,7 @@ class PositionDependentFriction(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine, with the sign of the motion."""
         x = shape[0] * signals.theta_m
-        return {Port.MOTOR_TORQUE: wave(x) * signals.way[:, None]}
+        return {Port.MOTOR_TORQUE: wave(x, signals.way)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""

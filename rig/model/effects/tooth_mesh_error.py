@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import wave
 
 
@@ -19,6 +20,9 @@ class ToothMeshError(Effect):
 
     name: ClassVar[str] = "tooth_mesh_error"
     in_short: ClassVar[str] = "orders of the tooth count"
+    glosses: ClassVar[Mapping[str, str]] = waved(
+        "order_{n}", "the kinematic error of the teeth, {n} times a motor turn", "{n}·θ_m"
+    )
     source: ClassVar[str] = "tuttle1992"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     loose: ClassVar[tuple[bool, ...]] = (False,)
@@ -35,7 +39,7 @@ class ToothMeshError(Effect):
         """Cosine and sine, with their lever."""
         k = shape[0]
         x, kept = k * signals.theta_m, signals.kept(k, signals.omega_m)
-        waves = wave(x) * kept[:, None]
+        waves = wave(x, kept)
         return {Port.KINEMATIC_ERROR: waves, Port.LEVER: waves[:, ::-1] * (-k, k)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

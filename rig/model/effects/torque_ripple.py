@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.motor_orders import MOTOR_ORDERS
 from rig.model.waves import wave
 
@@ -23,6 +24,10 @@ class TorqueRipple(Effect):
 
     name: ClassVar[str] = "torque_ripple"
     in_short: ClassVar[str] = "motor torque ripple in proportion to current"
+    glosses: ClassVar[Mapping[str, str]] = {
+        **waved("order_{n}", "the motor torque's ripple over the torque, {n} times a motor turn", "{n}·θ_m"),
+        **waved("order_{n}_by_torque", "what the ripple of order {n} gains per N·m of motor torque", "{n}·θ_m"),
+    }
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
@@ -37,7 +42,7 @@ class TorqueRipple(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """τ_m times cosine and sine, and τ_m² times them."""
         x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m) * signals.tau_m
-        waves = wave(x) * kept[:, None]
+        waves = wave(x, kept)
         return {Port.MOTOR_TORQUE: np.hstack([waves, waves * signals.tau_m[:, None]]) if shape[1] else waves}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

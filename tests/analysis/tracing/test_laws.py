@@ -64,6 +64,8 @@ def test_heat_comes_from_friction_stays_with_a_slow_leak_and_goes_with_a_fast_on
     np.testing.assert_allclose(at.heat(1e7), power * np.array([0.0, 25.0, 50.0, 50.0]), rtol=1e-4)
     np.testing.assert_allclose(at.heat(20.0)[1], power * 20.0 * (1 - np.exp(-25 / 20)))
     assert at.heat(20.0)[3] < 1e-3 * power
+    later = dataclasses.replace(at, t=at.t[2:])  # the run had ended by then
+    np.testing.assert_allclose(later.heat(20.0), at.heat(20.0)[2:])
 
 
 @pytest.mark.parametrize("side", [BEFORE, AFTER])

@@ -5,15 +5,18 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
-from rig.analysis.tracing.fit.laid import Block, Index, Single, laid
+from rig.analysis.tracing.fit.laid import Block, Index, Sheet, Single
 from rig.analysis.tracing.runs.recording import Recording, settled
 from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array, Effect, Reach
+
+ROOM: Final = 2  # columns of a term, more than most have in a channel
 
 Products = tuple[dict[str, Array], ...]
 """By term and channel, (k, k)."""
@@ -87,24 +90,26 @@ Blocks = dict[Key, Block]
 def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> tuple[Blocks, Blocks]:
     """One run's part of the bank, and what sensor noise does to it. Term by term, so that no run's columns are held in
     double precision together."""
-    clean: list[dict[str, Single]] = []
-    noise: list[dict[str, Single]] = []
     rows = {c: np.flatnonzero(r.keep) for c, r in eq.kept(run).items()}
+    clean, noise = ({c: Sheet(eq, (run, c), at, ROOM * len(terms)) for c, at in rows.items()} for _ in range(2))
     for term in terms:
         made = eq.unmasked_term(run, term)
-        clean.append({c: laid(eq, (run, c), m, rows[c]) for c, m in made.items()})
+        for c, sheet in clean.items():
+            sheet.add(made.get(c))
         if run not in eq.noisy:
             continue
         if term.effect.moved_by_noise():  # see `Equations.spoilt_term`
-            noise.append({c: np.zeros_like(m) for c, m in clean[-1].items()})
+            for c, sheet in noise.items():
+                sheet.add_zeros(clean[c].widths[-1])
             continue
         noisy = eq.unmasked_term(run, term, noisy=True)
-        noise.append({c: laid(eq, (run, c), noisy[c] - m, rows[c]) for c, m in made.items()})
+        for c, sheet in noise.items():
+            sheet.add(noisy[c] - made[c] if c in made else None)
     return _blocks(run, clean), _blocks(run, noise)
 
 
-def _blocks(run: int, made: Sequence[dict[str, Single]]) -> Blocks:
-    return {(run, c): Block.of([m.get(c) for m in made]) for c in CHANNELS if any(c in m for m in made)}
+def _blocks(run: int, made: Mapping[str, Sheet]) -> Blocks:
+    return {(run, c): block for c, sheet in made.items() if (block := sheet.block()) is not None}
 
 
 def _widest(blocks: Sequence[Block], terms: int) -> Index:
