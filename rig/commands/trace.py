@@ -82,7 +82,7 @@ def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
     from rig.report.numbers import counted
     from rig.report.trace.sizes import said
-    from rig.report.trace.words import remainder
+    from rig.report.trace.words import gloss, remainder
 
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
     print(f"  {found.verdict.sentence}")
@@ -90,7 +90,8 @@ def tell(found: Trace) -> None:
         print(f"  {rest}")
     for effect in found.effects:
         for p in effect.parameters:
-            print(f"  {effect.effect} {p.name} {said(p)}")
+            what = gloss(effect.effect, p.name, p.unit)
+            print(f"  {effect.effect} {p.name} {said(p)}" + (f"  {what}" if what else ""))
     for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):
         if name in found.ratios_before:
             print(

@@ -10,10 +10,14 @@ import pytest
 
 from rig.analysis.tracing.court.shadows import SHADOWS
 from rig.analysis.tracing.fit.equations import Term, acting
+from rig.analysis.tracing.floor.steps import Steps
+from rig.analysis.tracing.floor.vibration import Line, Vibration
 from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
-from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY
+from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY, missed_counts
 from rig.model.fourier import FourierSeries
+from rig.model.gloss import gloss
 from rig.model.references import REFERENCES
+from rig.report.trace.words import PARAMETERS
 
 N, DT = 50.0, 0.001
 KNOWN = Known(7000.0, 5.0, 1.5e-3, 0.8, FourierSeries((1e-5, 2e-4, 0.0), (0.0, 1e-4, 1e-5)))
@@ -95,6 +99,51 @@ def test_parameters_have_a_name_a_unit_and_an_interval_around_the_value(effect: 
         assert p.ci95[0] <= p.value <= p.ci95[1]
         assert np.isfinite([p.value, *p.ci95]).all()
     assert isinstance(effect.plausible(fit), bool)
+
+
+def named(effect: Effect) -> set[str]:
+    """What the parameters of `effect` are called, whatever its shape, and what the detectors of each run's own say."""
+    names = {"external_vibration": shaken(), "missed_counts": lost()}.get(effect.name, set())
+    for shape in effect.shapes(REACH):
+        k = next(iter(effect.columns(motion(n=50), shape).values())).shape[1]
+        size = k + len(shape)
+        fit = Fit(np.linspace(0.01, 0.02, k), shape, np.eye(size) * 1e-6, KNOWN, N)
+        names = names | {p.name for p in effect.parameters(fit)}
+    return names
+
+
+def shaken() -> set[str]:
+    line = Line(8.0, {"L": 1.0}, 0.1, 0.1, 1.0)
+    return {p.name for p in Vibration((line, line), {}).parameters()}
+
+
+def lost() -> set[str]:
+    sides = {0: (missed_counts.LOAD, missed_counts.MOTOR)}
+    return {p.name for p in Steps({0: (5, 9)}, {0: (1e-3, 2e-3)}, sides).parameters()}
+
+
+@every_effect
+def test_every_parameter_has_a_gloss_and_every_gloss_a_parameter(effect: Effect):
+    names = named(effect)
+    assert names
+    assert {name for name in names if not effect.gloss(name)} == set()
+    assert len({effect.gloss(name) for name in names}) == len(names), "two parameters are not told apart"
+    for key in effect.glosses:
+        assert any(gloss({key: "said"}, name) for name in names), f"no parameter is called {key}"
+
+
+def test_a_gloss_says_the_order_and_that_a_parameter_is_of_another_term():
+    glosses = {"order_{n}_amplitude": "order {n}", "lag": "a lag"}
+    assert gloss(glosses, "order_2.04_amplitude") == "order 2.04"
+    assert gloss(glosses, "order_2.04_amplitude_3") == "order 2.04 (another of its kind)"
+    assert gloss(glosses, "lag_2") == "a lag (another of its kind)"
+    assert gloss(glosses, "lagged") == gloss(glosses, "order_amplitude") == ""
+
+
+def test_lag_is_told_in_other_words_in_the_baseline_and_in_the_effect_that_has_one():
+    own = LIBRARY["load_dependent_kinematic_error"].gloss("lag")
+    assert "follows the torque" in own
+    assert PARAMETERS["lag"][1] != own
 
 
 @pytest.mark.parametrize("name", sorted(FRICTION))

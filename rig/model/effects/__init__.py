@@ -10,7 +10,8 @@ How to write one: subclass `Effect` (rig/model/effect.py), `name` as the file, a
   what tells a bad sensor from a real torque), filters columns and readings alike, masks sticking and reversals and
   takes out every run's own offsets. A kinematic error that really is in the gear also gives LEVER, its derivative by
   theta_m. Use signals as given: do not filter again, do not take differences. States with memory start at rest.
-- `parameters(fit)`: coefficients as the field names them, with unit and 95 % interval (`harmonic`, `parameter`).
+- `parameters(fit)`: coefficients as the field names them, with unit and 95 % interval (`harmonic`, `parameter`); and
+  `glosses`: what each of them is, in a short phrase with its symbol (`waved` for a pair of `harmonic`).
 - `plausible(fit)`: signs that must hold (friction opposes motion).
 
 Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member. Effects whose coefficients every run has

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import wave
 
 MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
@@ -21,6 +22,12 @@ class AngleDependentStiffness(Effect):
 
     name: ClassVar[str] = "angle_dependent_stiffness"
     in_short: ClassVar[str] = "stiffness modulated by angle"
+    glosses: ClassVar[Mapping[str, str]] = {
+        **waved("kappa_order_{n}", "κ, the compliance's change over its mean, {n} times a motor turn", "{n}·θ_m"),
+        **waved(
+            "kappa_order_{n}_of_output", "κ, the compliance's change over its mean, {n} times an output turn", "{n}·θ_l"
+        ),
+    }
     source: ClassVar[str] = "ghorbel2001"
     backbone: ClassVar[bool] = True  # over a stroke the output's angle goes with the time since it began
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")

@@ -24,6 +24,14 @@ class ChannelTimeSkew(Effect):
 
     name: ClassVar[str] = "channel_time_skew"
     in_short: ClassVar[str] = "one channel read later than another"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "skew_theta_l": "δ, by how much the load angle is read too late",
+        "skew_theta_m": "δ, by how much the motor angle is read too late",
+        "skew_tau_l": "δ, by how much the shaft torque is read too late",
+        "drift_theta_l": "δ', by how much the load angle's lateness grows per second",
+        "drift_theta_m": "δ', by how much the motor angle's lateness grows per second",
+        "drift_tau_l": "δ', by how much the shaft torque's lateness grows per second",
+    }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("side", "about", "drifts")  # about: s, the skew the expansion is made at

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import wave
 
 
@@ -17,6 +18,9 @@ class FlexsplineFrameError(Effect):
 
     name: ClassVar[str] = "flexspline_frame_error"
     in_short: ClassVar[str] = "orders that ride on the flexspline (2.04, 4.08 …)"
+    glosses: ClassVar[Mapping[str, str]] = waved(
+        "order_{n}", "the kinematic error that rides on the flexspline, {n} times a motor turn", "{n}·θ_m"
+    )
     source: ClassVar[str] = "jia2021"
     shape_names: ClassVar[tuple[str, ...]] = ("k", "sigma")
     loose: ClassVar[tuple[bool, ...]] = (False, False)

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 
 NONE, THIRD = 0.0, 3.0  # of the second shape parameter: the overtone
 
@@ -20,6 +21,11 @@ class GravityUnbalance(Effect):
 
     name: ClassVar[str] = "gravity_unbalance"
     in_short: ClassVar[str] = "torque once per output turn"
+    glosses: ClassVar[Mapping[str, str]] = {
+        **waved("unbalance", "m·g·e, the load's torque once an output turn", "θ_l"),
+        **waved("twice_a_turn", "the load's torque twice an output turn", "2·θ_l"),
+        **waved("three_times_a_turn", "the load's torque three times an output turn", "3·θ_l"),
+    }
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "overtone")
     loose: ClassVar[tuple[bool, ...]] = (False, False)

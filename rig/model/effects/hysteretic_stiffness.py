@@ -26,6 +26,11 @@ class HystereticStiffness(Effect):
 
     name: ClassVar[str] = "hysteretic_stiffness"
     in_short: ClassVar[str] = "rate-independent loop in torque against wind-up"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "hysteresis_loss": "wind-up between the loop's branches at zero torque",
+        "loss_at_20_Nm": "wind-up between the loop's branches at 20 N·m",
+        "T_h": "torque after a reversal over which the loop opens",
+    }
     source: ClassVar[str] = "seyfferth1995"
     shape_names: ClassVar[tuple[str, ...]] = ("T_h", "law")
     loose: ClassVar[tuple[bool, ...]] = (True, False)

@@ -34,6 +34,12 @@ class LoadDependentKinematicError(Effect):
 
     name: ClassVar[str] = "load_dependent_kinematic_error"
     in_short: ClassVar[str] = "kinematic error shrinks as load grows (the paper's Fig. 9)"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "A_inf": "A_∞, share of the largest order that stays under a high load",
+        "A_inf_order_{n}": "A_∞ of order {n}, the share of it that stays",
+        "T_c": "torque through the gear over which the rest goes away",
+        "lag": "time constant by which the kinematic error follows the torque",
+    }
     source: ClassVar[str] = "ghorbel2001, Fig. 9"
     shape_names: ClassVar[tuple[str, ...]] = ("of", "T_c", "lag", "delta")
     loose: ClassVar[tuple[bool, ...]] = (False, True, True, False)

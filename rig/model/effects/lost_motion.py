@@ -18,6 +18,9 @@ class LostMotion(Effect):
 
     name: ClassVar[str] = "lost_motion"
     in_short: ClassVar[str] = "dead zone at zero torque (Oldham backlash)"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "gap": "2b, the whole dead zone at the output",
+    }
     source: ClassVar[str] = "harmonicdrive"
     backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("epsilon",)

@@ -21,6 +21,11 @@ class MissedCounts(Effect):
 
     name: ClassVar[str] = "missed_counts"
     in_short: ClassVar[str] = "permanent steps in one encoder"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "steps": "steps found in all runs",
+        "step_theta_l": "usual step of the load encoder's reading, at the output",
+        "step_theta_m": "usual step of the motor encoder's reading",
+    }
     source: ClassVar[str] = "usdigital"
     each_run: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("side", "instant")

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
+from rig.model.gloss import waved
 from rig.model.waves import powers
 
 
@@ -20,6 +21,7 @@ class MotorEncoderEccentricity(Effect):
 
     name: ClassVar[str] = "motor_encoder_eccentricity"
     in_short: ClassVar[str] = "once per motor turn, never amplified by the dynamics"
+    glosses: ClassVar[Mapping[str, str]] = waved("eccentricity", "the motor encoder's error, once a motor turn", "θ_m")
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     ORDERS: Final = 5

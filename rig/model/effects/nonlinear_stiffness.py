@@ -22,6 +22,11 @@ class NonlinearStiffness(Effect):
 
     name: ClassVar[str] = "nonlinear_stiffness"
     in_short: ClassVar[str] = "soft wind-up, cubic or piecewise K1/K2/K3"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "K_near_zero": "K near zero torque",
+        "T_0": "torque about which the spring gets as stiff as K",
+        "k_3": "cubic part of the spring T = K·φ + k_3·φ³",
+    }
     source: ClassVar[str] = "harmonicdrive"
     backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("kind", "T_0")

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.gloss import waved
 from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, slopes, waves
 
 
@@ -17,6 +18,7 @@ class OutputOncePerRev(Effect):
 
     name: ClassVar[str] = "output_once_per_rev"
     in_short: ClassVar[str] = "once per output turn in angle"
+    glosses: ClassVar[Mapping[str, str]] = waved("order_{n}", "the error in angle, {n} times an output turn", "{n}·θ_l")
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("first", "last")
     loose: ClassVar[tuple[bool, ...]] = (False, False)

@@ -22,6 +22,11 @@ class PreslidingFriction(Effect):
 
     name: ClassVar[str] = "presliding_friction"
     in_short: ClassVar[str] = "friction with memory around reversals"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "tau_presliding": "motor friction that builds up after a reversal",
+        "tau_presliding_l": "load friction that builds up after a reversal",
+        "x_0": "angle over which it builds up",
+    }
     source: ClassVar[str] = "dahl1968"
     shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0")
     loose: ClassVar[tuple[bool, ...]] = (False, True)

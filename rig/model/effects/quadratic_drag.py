@@ -18,6 +18,12 @@ class QuadraticDrag(Effect):
 
     name: ClassVar[str] = "quadratic_drag"
     in_short: ClassVar[str] = "drag with the square of speed"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "drag_at_10_rad_s": "D, drag when the motor turns at 10 rad/s",
+        "drag_forward_at_10_rad_s": "D forward, drag when the motor turns at +10 rad/s",
+        "drag_backward_at_10_rad_s": "D backward, drag when the motor turns at −10 rad/s",
+        "exponent": "p, power of the speed by which the drag grows",
+    }
     source: ClassVar[str] = "wolf2018"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("by_way", "exponent")

@@ -15,6 +15,11 @@ class StribeckFriction(Effect):
 
     name: ClassVar[str] = "stribeck_friction"
     in_short: ClassVar[str] = "friction falls with speed near rest"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "tau_s_minus_tau_c": "τ_s − τ_c, friction at rest beyond the constant one",
+        "omega_s": "ω_s, Stribeck speed of the motor, over which that falls off",
+        "delta": "δ, exponent of how it falls with speed",
+    }
     source: ClassVar[str] = "armstrong1994"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")

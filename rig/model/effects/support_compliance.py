@@ -22,6 +22,11 @@ class SupportCompliance(Effect):
 
     name: ClassVar[str] = "support_compliance"
     in_short: ClassVar[str] = "the housing moves"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "compliance": "1/K_s, how far the housing turns under the torque",
+        "frequency": "frequency at which the housing resonates",
+        "zeta": "ζ, damping ratio of that resonance",
+    }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("held", "frequency", "zeta")

@@ -24,6 +24,12 @@ class ThermalFrictionDrift(Effect):
 
     name: ClassVar[str] = "thermal_friction_drift"
     in_short: ClassVar[str] = "friction falls as the drive warms"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "tau_cold": "τ_1, constant friction of the cold drive that warming takes away",
+        "B_cold": "B_1, viscous friction of the cold drive that warming takes away",
+        "t_w": "time constant of the warm-up, or of the heat that leaks",
+        "beta": "β, by how much a joule of frictional heat takes it away",
+    }
     source: ClassVar[str] = "wolf2018"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("t_w", "law", "beta")

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.gloss import waved
 from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, waves
 
 
@@ -19,6 +20,9 @@ class TorqueSensorCrosstalk(Effect):
 
     name: ClassVar[str] = "torque_sensor_crosstalk"
     in_short: ClassVar[str] = "once or twice per output turn in the torque sensor alone"
+    glosses: ClassVar[Mapping[str, str]] = waved(
+        "order_{n}", "what the torque sensor reads too much, {n} times an output turn", "{n}·θ_l"
+    )
     source: ClassVar[str] = "taghirad1999"
     LARGEST: Final = 3e-4  # rad times K: 2 N·m in the paper's gear, whose sensor reaches some 100 N·m
     needs: ClassVar[frozenset[str]] = frozenset({"tau_l"})

@@ -48,6 +48,12 @@ class TorsionalMode(Effect):
 
     name: ClassVar[str] = "torsional_mode"
     in_short: ClassVar[str] = "a second resonance beyond the gear's own"
+    glosses: ClassVar[Mapping[str, str]] = {
+        "J_2": "inertia on a spring of its own",
+        "frequency": "frequency at which that spring and inertia resonate",
+        "zeta": "ζ, damping ratio of that resonance",
+        "coupling_compliance": "1/k, compliance of the coupling between motor and wave generator",
+    }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("side", "frequency", "zeta", "about")  # about: rad/(N·m), of a coupling

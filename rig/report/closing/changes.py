@@ -9,6 +9,7 @@ from rig.analysis.tracing.outcome.result import CHANNELS
 from rig.model.effect import Parameter
 from rig.report.numbers import ABSENT, counted
 from rig.report.trace.sizes import said
+from rig.report.trace.words import gloss
 from rig.report.words import humanise
 
 APART: Final = 0.1  # of an error over its floor: less is what other held-out runs make of it
@@ -41,7 +42,9 @@ def sizes(now: Mapping[str, Any], last: Mapping[str, Any] | None) -> list[tuple[
 
 def _parameters(r: Mapping[str, Any]) -> dict[str, str]:
     return {
-        f"{humanise(effect)}: {name}": said(Parameter(name, p["value"], tuple(p["ci95"]), p["unit"]))
+        ", ".join(part for part in (f"{humanise(effect)}: {name}", gloss(effect, name, p["unit"])) if part): said(
+            Parameter(name, p["value"], tuple(p["ci95"]), p["unit"])
+        )
         for effect, found in r["parameters"].items()
         for name, p in found.items()
         if p["value"] is not None and None not in p["ci95"]

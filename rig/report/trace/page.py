@@ -122,7 +122,7 @@ def _effect(name: str, parameters: Sequence[Any], share: float) -> dict[str, Any
         "name": words.named(name),
         "in_short": words.in_short(name),
         "share": f"{100 * min(max(share, 0.0), 1.0):.0f} %",
-        "parameters": [(p.name, said(p)) for p in parameters],
+        "parameters": [(p.name, words.gloss(name, p.name, p.unit), said(p)) for p in parameters],
     }
 
 

@@ -10,7 +10,7 @@ from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
 from rig.analysis.tracing.outcome.result import Found, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
-from rig.model.effects import CATALOGUE
+from rig.model.effects import CATALOGUE, LIBRARY
 from rig.report.numbers import plain
 from rig.report.trace import sizes as sized
 from rig.report.trace.channels import CHANNELS
@@ -53,7 +53,7 @@ PARAMETERS = {  # of the baseline: symbol, what it is
     "B_l": ("B_l", "viscous friction, load side"),
     "tau_cl": ("τ_cl", "constant friction, load side"),
     "tau_l0": ("z", "zero of the torque sensor"),
-    "lag": ("δ", "lag of the torque sensor"),
+    "lag": ("δ", "delay of the torque sensor"),
 }
 
 ORDER = "theta_p_order_"
@@ -93,6 +93,13 @@ def in_short(effect: str) -> str:
     return CATALOGUE[effect].in_short if effect in CATALOGUE else IN_SHORT.get(effect, "")
 
 
+def gloss(effect: str, name: str, unit: str) -> str:
+    """What the parameter `name` of an effect is, "" of one unheard of; and that it has no unit, where `unit` is "1"."""
+    known = LIBRARY.get(effect)
+    parts = [known.gloss(name) if known else "", "(no unit)" if unit == "1" else ""]
+    return " ".join(part for part in parts if part)
+
+
 def plainly(text: str) -> str:
     """A sentence of the trace with the effects' machine names as words."""
     for name in (*CATALOGUE, *IN_SHORT):
@@ -111,7 +118,10 @@ def sizes(found: Sequence[Found]) -> list[str]:
     """One sentence for each effect added: its first parameters with their intervals."""
     out = []
     for effect in found:
-        parts = [f"{p.name} = {sized.said(p)}" for p in effect.parameters[:3]]
+        parts = []
+        for p in effect.parameters[:3]:
+            what = gloss(effect.effect, p.name, "")
+            parts.append(f"{p.name} = {sized.said(p)}" + (f" ({what})" if what else ""))
         if parts:
             out.append(f"{named(effect.effect)}: {', '.join(parts)}.")
     return out

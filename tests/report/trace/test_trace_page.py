@@ -120,7 +120,15 @@ def test_where_nothing_was_added_there_is_no_before_and_after(pages: dict[str, R
 
 
 def test_the_size_of_the_effect_has_its_interval_in_the_verdict(pages: dict[str, Reader]) -> None:
-    assert "A_inf = 0.461 ± 0.011, lag = 4.30 ± 0.20 ms" in pages["explained"].words
+    words = pages["explained"].words
+    assert "A_inf = 0.461 ± 0.011 (A_∞, share of the largest order" in words
+    assert "lag = 4.30 ± 0.20 ms (time constant by which the kinematic error follows the torque)" in words
+
+
+def test_beside_each_parameter_of_an_effect_stands_what_it_is(pages: dict[str, Reader]) -> None:
+    words = pages["explained"].words
+    assert "A_inf A_∞, share of the largest order that stays under a high load (no unit) 0.461 ± 0.011" in words
+    assert "lag time constant by which the kinematic error follows the torque 4.30 ± 0.20 ms" in words
 
 
 def test_a_baseline_parameter_that_moved_beyond_its_interval_is_marked() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from rig.analysis.tracing.outcome.result import Before, Trace
 from rig.model.effect import Parameter
+from rig.model.effects import LIBRARY
 
 SCHEMA = "hdrig.trace/1"
 
@@ -38,7 +39,7 @@ def document(trace: Trace) -> dict[str, Any]:
         "candidates": [asdict(candidate) for candidate in trace.candidates],
         "verdict": asdict(trace.verdict),
         "effects": {
-            f.effect: {"parameters": _parameters(f.parameters), "share_removed": min(f.share, 1.0)}
+            f.effect: {"parameters": _parameters(f.parameters, f.effect), "share_removed": min(f.share, 1.0)}
             for f in trace.effects
         },
         "before": _errors(trace.before),
@@ -56,8 +57,13 @@ def write_trace(path: Path, trace: Trace) -> Path:
     return path
 
 
-def _parameters(found: Sequence[Parameter]) -> dict[str, Any]:
-    return {p.name: {"value": p.value, "ci95": p.ci95, "unit": p.unit} for p in found}
+def _parameters(found: Sequence[Parameter], effect: str = "") -> dict[str, Any]:
+    """By name; those of an effect with what they are."""
+    out: dict[str, Any] = {p.name: {"value": p.value, "ci95": p.ci95, "unit": p.unit} for p in found}
+    if effect in LIBRARY:
+        for name, entry in out.items():
+            entry["meaning"] = LIBRARY[effect].gloss(name)
+    return out
 
 
 def _errors(errors: Before) -> dict[str, Any]:
