@@ -75,6 +75,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "under_load": words.under_load(trace),
         "heads": heads,
         "each": each,
+        "free": tables.free_runs(trace),
         "where": [plot for plot in plots[: len(WHERE)] if plot is not None],
         "before_after": [plot for plot in plots[len(WHERE) :] if plot is not None],
         "next": _next(trace),

@@ -145,3 +145,16 @@ def each_run(trace: Trace) -> tuple[list[str], list[tuple[str, list[Cell]]]]:
         for name, before, after in pairs
     ]
     return heads, rows
+
+
+def free_runs(trace: Trace) -> list[tuple[str, str, str]]:
+    """(run, RMS error of the kinematic error by free simulation before and after, arcsec) of the held-out runs that
+    were simulated, what they come to together last where there are two; [] where none was."""
+    pairs = [(n, e, trace.after.per_run.get(n, e)) for n, e in trace.before.per_run.items()]
+    pairs = [pair for pair in pairs if pair[1].free_kinematic_error_rms_arcsec is not None]
+    if len(pairs) > 1:
+        pairs.append(("Together", trace.before.pooled, trace.after.pooled))
+    return [
+        (name, three(a.free_kinematic_error_rms_arcsec), three(b.free_kinematic_error_rms_arcsec))
+        for name, a, b in pairs
+    ]

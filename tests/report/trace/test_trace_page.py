@@ -131,6 +131,24 @@ def test_beside_each_parameter_of_an_effect_stands_what_it_is(pages: dict[str, R
     assert "lag time constant by which the kinematic error follows the torque 4.30 ± 0.20 ms" in words
 
 
+def test_errors_of_the_free_simulation_stand_in_a_table_of_their_own_with_their_unit() -> None:
+    base = made_up.explained()
+
+    def simulated(errors: Before, size: float) -> Before:
+        first, second = list(made_up.RUNS)[:2]
+        one = replace(errors.per_run[first], free_kinematic_error_rms_arcsec=size)
+        two = replace(errors.per_run[second], free_kinematic_error_rms_arcsec=2 * size)
+        pooled = replace(errors.pooled, free_kinematic_error_rms_arcsec=1.6 * size)
+        return Before(errors.per_run | {first: one, second: two}, pooled)
+
+    trace = replace(base, curves={}, before=simulated(base.before, 10.0), after=simulated(base.after, 2.7))
+    words = read(trace).words
+    assert "RMS in arcsec before → after" in words
+    assert "slow_ke_2 10.0 → 2.70 speed_400rpm_2 20.0 → 5.40 Together 16.0 → 4.32" in words
+    none = read(replace(base, curves={})).words
+    assert "By free simulation of the whole model" not in none, "no run was simulated"
+
+
 def test_a_baseline_parameter_that_moved_beyond_its_interval_is_marked() -> None:
     text = page.render(bare(made_up.explained()), made_up.source())
     rows = [part for part in text.split("<tr") if '<th scope="row">K ' in part or '<th scope="row">J_m ' in part]
