@@ -23,6 +23,7 @@ from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, SEVERAL
+from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY
 
@@ -107,11 +108,12 @@ def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: 
     """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
     left = {key: s.residual(key) for key in s.keys}
     floors = {**floors, **p.court.floors}
-    home = in_the_floor(p.eq, left, after, floors)
     of_what = "what unseen runs have beyond what neighbouring turns differ by"
-    if home is None:
-        home = ticking(p.eq, left, after) or hidden_order(p.eq, left, after, floors)
-        of_what = "what unseen runs leave there"
+    with meanwhile(lambda: ticking(p.eq, left, after)) as ticks:  # most campaigns ask for both
+        home = in_the_floor(p.eq, left, after, floors)
+        if home is None:
+            home = ticks() or hidden_order(p.eq, left, after, floors)
+            of_what = "what unseen runs leave there"
     if home is None:
         return None
     what = "the angle the output has gone"

@@ -7,7 +7,6 @@ its frequency, which does not follow the speed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +16,7 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
-from rig.analysis.tracing.workers import WORKERS
+from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
 
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
@@ -68,7 +67,10 @@ def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key
     """Sought in the fitted residuals `e` alone, then read in `unseen` too. A line in one sensor shows in every equation
     that uses it: the channel where it is loudest is the one told, all are rid of it.
     """
-    found = [line for c in WHOLE if (line := _in_channel(eq, e, unseen, c)) is not None]
+    keys = sorted((k for k in e if k[1] in WHOLE and not eq.runs[k[0]].locked), key=lambda k: -e[k].size)
+    tracked = dict(zip(keys, each(lambda k: _track(*even_grid(eq, k, e[k])), keys), strict=True))
+    tracks = {k: t for k in e if (t := tracked.get(k)) is not None}
+    found = [line for c in WHOLE if (line := _in_channel(eq, e, unseen, c, tracks)) is not None]
     if not found:
         return None
     loudest = max(found, key=lambda line: line.share)
@@ -76,12 +78,10 @@ def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key
 
 
 def _in_channel(
-    eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str
+    eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str, tracks: Mapping[Key, _Track]
 ) -> Interference | None:
     keys = [k for k in e if k[1] == channel and not eq.runs[k[0]].locked]
-    with ThreadPoolExecutor(WORKERS) as pool:
-        tracked = pool.map(lambda k: _track(*even_grid(eq, k, e[k])), keys)
-        tracks = {k: t for k, t in zip(keys, tracked, strict=True) if t is not None}
+    tracks = {k: t for k, t in tracks.items() if k[1] == channel}
     hits = {k: t for k, t in tracks.items() if np.mean(t.height > LINE) > LINE_RUNS and t.leaps < LEAP}
     if len(hits) < 3 or len(hits) < LINE_RUNS * len(tracks):
         return None

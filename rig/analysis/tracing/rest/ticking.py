@@ -32,6 +32,8 @@ SEEN: Final = 4.0  # power over its surroundings, mean of runs at other speeds: 
 HARMONICS: Final = 3  # of its frequency: what rubs for half of the time has as many
 FINER: Final = 40  # orders tried on each side, a quarter of what a run resolves apart
 
+Spectrum = tuple[float, float, Array, Array]
+"""Lowest and highest Hz that a run can tell, its frequencies Hz (n,), and the power there over what is around (n,)."""
 Sense = Callable[[Array], Array]
 """From motor angle (n,) to the sign with which the rest is taken, (n,)."""
 SENSES: Final[Sequence[Sense]] = (lambda angle: np.ones(angle.size), lambda angle: np.sign(np.gradient(angle)))
@@ -39,28 +41,35 @@ SENSES: Final[Sequence[Sense]] = (lambda angle: np.ones(angle.size), lambda angl
 
 def ticking(eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array]) -> Home | None:
     """The loudest such line of the fitted residuals, with its share of the unseen ones; None where there is none."""
-    found = [_in_channel(eq, fitted, unseen, channel, sense) for channel in WHOLE for sense in SENSES]
-    return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
+    found = [home for channel in WHOLE for home in _in_channel(eq, fitted, unseen, channel)]
+    return max(found, key=lambda home: home.share, default=None)
 
 
-def _in_channel(
-    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str, sense: Sense
-) -> Home | None:
-    signed = {k: e * sense(eq.rows[k].theta_m) for k, e in fitted.items() if _tells(eq, k, channel, e)}
-    hz = _loudest(eq, signed)
-    if hz is None or not _of_the_clock(eq, signed, hz):
-        return None
-    part = min(_share(eq, e, channel, sense, hz) for e in (fitted, unseen))
-    return Home("time_periodic", channel, part, frequency_hz=hz) if part > LOUD_LINE else None
+def _in_channel(eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str) -> list[Home]:
+    mine = {k: e for k, e in fitted.items() if _tells(eq, k, channel, e)}
+    spectra: dict[Key, Spectrum] = {}
+    out = []
+    for sense in SENSES:
+        signs = {k: sense(eq.rows[k].theta_m) for k in mine}
+        signed = {k: e * signs[k] for k, e in mine.items()}
+        one_way = {k for k in spectra if abs(signs[k].sum()) == signs[k].size}  # which changes no power
+        spectra = {k: spectra[k] if k in one_way else _spectrum(eq, k, x) for k, x in signed.items()}
+        hz = _loudest(eq, signed, spectra)
+        if hz is None or not _of_the_clock(eq, signed, spectra, hz):
+            continue
+        part = min(_share(eq, e, channel, sense, hz) for e in (fitted, unseen))
+        if part > LOUD_LINE:
+            out.append(Home("time_periodic", channel, part, frequency_hz=hz))
+    return out
 
 
 def _tells(eq: Equations, key: Key, channel: str, e: Array) -> bool:
     return key[1] == channel and not eq.runs[key[0]].locked and e.size > 256
 
 
-def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
+def _loudest(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, Spectrum]) -> float | None:
     """Hz of the line that stands out in most of the runs that are long enough for it."""
-    runs = [_spectrum(eq, key, x) for key, x in e.items()]
+    runs = [*spectra.values()]
     if len(runs) < FEWEST:
         return None
     grid = np.arange(min(low for low, _, _, _ in runs), min(high for _, high, _, _ in runs), GRID)
@@ -74,7 +83,7 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
     return sharpened(eq, e, [*e], float(grid[top])) if score[top] > 0 else None
 
 
-def _spectrum(eq: Equations, key: Key, e: Array) -> tuple[float, float, Array, Array]:
+def _spectrum(eq: Equations, key: Key, e: Array) -> Spectrum:
     """Lowest and highest frequency that a run can tell, its frequencies, and its power there over what is usual around
     each, the largest within half of what it resolves."""
     even, dt, _ = even_grid(eq, key, e - e.mean())
@@ -88,11 +97,11 @@ def _spectrum(eq: Equations, key: Key, e: Array) -> tuple[float, float, Array, A
     return low, high, hz[band], np.max(near, axis=0)
 
 
-def _of_the_clock(eq: Equations, e: Mapping[Key, Array], hz: float) -> bool:
+def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, Spectrum], hz: float) -> bool:
     """Whether the line follows the clock and no angle: it stands out at speeds far apart; or, where most runs turn at
     one speed, it does not add up over the motor's angle with one phase for all, and the others show it faintly."""
     speeds = {key: eq.runs[key[0]].turning for key in e}
-    heights = {key: _height(eq, key, x, hz) for key, x in e.items()}
+    heights = {key: _height(spectrum, hz) for key, spectrum in spectra.items()}
     plain = [speed for key, speed in speeds.items() if heights[key] > LINE]
     usual = float(np.median(plain))
     others = [key for key, speed in speeds.items() if not usual / LINE_SPEEDS < speed < usual * LINE_SPEEDS]
@@ -111,9 +120,9 @@ def _of_the_clock(eq: Equations, e: Mapping[Key, Array], hz: float) -> bool:
     return by_time > CLOCKED * by_angle
 
 
-def _height(eq: Equations, key: Key, e: Array, hz: float) -> float:
+def _height(spectrum: Spectrum, hz: float) -> float:
     """Of one run at a frequency; 1 where it is too short for it."""
-    low, high, at, over = _spectrum(eq, key, e)
+    low, high, at, over = spectrum
     return float(np.interp(hz, at, over)) if 0.5 * low < hz < high else 1.0
 
 
