@@ -82,9 +82,11 @@ def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
     from rig.report.numbers import counted
     from rig.report.trace.sizes import said
-    from rig.report.trace.words import gloss, remainder
+    from rig.report.trace.words import gloss, not_read, remainder, runs_read
 
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
+    if found.left_out:
+        print(f"  {runs_read(found)} read. {not_read(found)}")
     print(f"  {found.verdict.sentence}")
     if rest := remainder(found):
         print(f"  {rest}")

@@ -96,3 +96,16 @@ def test_readings_no_sensor_gives_count_as_missing(tmp_path: Path) -> None:
 def test_a_ratio_no_gear_has_is_refused(tmp_path: Path, ratio: float) -> None:
     with pytest.raises(UsageError, match=r"gear\.ratio is 1e.*, expected 0\.001 to 100000"):
         read_campaign(campaign(tmp_path, lambda c: c, gear={"ratio": ratio}))
+
+
+def test_what_was_left_out_is_named_whatever_was_wrong_with_it(tmp_path: Path) -> None:
+    folder = campaign(tmp_path, lambda c: c, runs=6)
+    names = sorted(path.name for path in folder.iterdir())
+    torn, empty, garbled, nameless = (folder / name for name in names[:4])
+    (torn / "samples.parquet").write_bytes((torn / "samples.parquet").read_bytes()[:1000])
+    pq.write_table(pq.read_table(empty / "samples.parquet").slice(0, 0), empty / "samples.parquet")
+    (garbled / "manifest.json").write_text("{")
+    (nameless / "manifest.json").unlink()
+    found = read_campaign(folder)
+    assert found.left_out == tuple(names[:4])
+    assert {run.name for run in found.runs} == set(names[4:])

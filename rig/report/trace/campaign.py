@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rig.analysis.tracing.outcome.result import Trace
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.report.numbers import counted, duration, number_of
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
@@ -56,11 +57,14 @@ class Provenance:
         found = [f"Gear {', '.join(sorted(gears))}"] if gears else []
         found += [f"ratio {', '.join(sorted(ratios))}"] if ratios else []
         found += [utc(starts[0])] if starts else []
-        return [*found, f"{counted(len(trace.fitted), 'run')} fitted", f"{len(trace.held_out)} held out"]
+        neither = trace.read - len({whole_run(name) for name in (*trace.fitted, *trace.held_out)})
+        found += [f"{counted(len(trace.fitted), 'run')} fitted", f"{len(trace.held_out)} held out"]
+        return [*found, *([f"{neither} neither"] if neither > 0 else [])]
 
     def rows(self, trace: Trace) -> list[RunRow]:
         """Every run, fitted, held out or neither."""
         part = dict.fromkeys(trace.held_out, "held out") | dict.fromkeys(trace.fitted, "fitted")
+        part |= dict.fromkeys(trace.left_out, "left out")
         started = {name: str(m.get("started_utc") or "") for name, m in self.manifests.items()}
         order = sorted(self.manifests, key=lambda n: (started[n], n))
         order += [name for name in part if name not in self.manifests]

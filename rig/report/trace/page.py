@@ -52,6 +52,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "facts": source.facts(trace),
         "sentence": words.plainly(trace.verdict.sentence),
         "left_out": [words.plainly(s) for s in (*trace.cannot, *trace.notes) if s not in meant],
+        "not_read": words.not_read(trace),
         "remainder": words.remainder(trace),
         "ruling": words.ruled(trace),
         "meaning": words.meant(trace),
@@ -109,8 +110,7 @@ def drawn(trace: Trace) -> dict[str, Array]:
 def _origin(trace: Trace, source: Provenance) -> Origin:
     """Of the campaign: simulated when any run is, else what its manifests agree on."""
     found = run_words.origin("sim" if trace.simulated else source.backend)
-    runs = len(source.manifests) or len(trace.fitted) + len(trace.held_out)
-    return found._replace(run=f"Trace of {runs} runs, {found.word.lower()}")
+    return found._replace(run=f"Trace of {words.runs_read(trace)}, {found.word.lower()}")
 
 
 def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any] | None]:

@@ -11,7 +11,7 @@ from rig.analysis.tracing.outcome.result import Found, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE, LIBRARY
-from rig.report.numbers import plain
+from rig.report.numbers import counted, plain
 from rig.report.trace import sizes as sized
 from rig.report.trace.channels import CHANNELS
 from rig.report.words import Ruling, humanise
@@ -125,6 +125,17 @@ def sizes(found: Sequence[Found]) -> list[str]:
         if parts:
             out.append(f"{named(effect.effect)}: {', '.join(parts)}.")
     return out
+
+
+def runs_read(trace: Trace) -> str:
+    """ "36 runs", or of how many so many were read."""
+    read = trace.read or len(trace.fitted) + len(trace.held_out)
+    return f"{read} of {read + len(trace.left_out)} runs" if trace.left_out else counted(read, "run")
+
+
+def not_read(trace: Trace) -> str:
+    """Which runs of the campaign were left out, by name; "" where none was."""
+    return f"Left out: {listed(trace.left_out)}." if trace.left_out else ""
 
 
 def heading(trace: Trace) -> str:

@@ -271,3 +271,24 @@ def test_what_stands_only_where_the_motor_turns_back_is_told_beside_the_whole_mo
     assert "where the motor turns back 6.10 → 1.00 ×" in card.ratio
     assert "1.50 times that where the motor turns back" in card.how
     assert not any("turns back" in f"{c.ratio}{c.how}" for c in quiet)
+
+
+def test_the_header_says_how_many_of_how_many_runs_were_read_and_names_the_others() -> None:
+    whole = replace(bare(made_up.explained()), read=7)
+    assert "Trace of 7 runs, simulated" in read(whole).words
+    assert "Left out:" not in read(whole).words
+    some = read(replace(whole, left_out=("load_5nm_1", "torn"))).words
+    header = some[: some.index("Explained", some.index("What the model lacks"))]
+    assert "Trace of 7 of 9 runs" in header
+    assert "Left out: load_5nm_1 and torn." in header
+    fitted, held = len(whole.fitted), len(whole.held_out)
+    assert f"{fitted} runs fitted {held} held out {7 - fitted - held} neither" in header
+
+
+def test_a_run_that_was_left_out_is_called_so_in_the_list_of_runs() -> None:
+    trace = replace(made_up.explained(), left_out=("torn",))
+    rows = Provenance({"torn": {}, "slow_ke_1": {}}).rows(trace)
+    assert {row.name: row.part for row in rows if row.name in ("torn", "slow_ke_1")} == {
+        "torn": "left out",
+        "slow_ke_1": "fitted",
+    }

@@ -22,7 +22,13 @@ def document(trace: Trace) -> dict[str, Any]:
         "schema": SCHEMA,
         "campaign": trace.campaign,
         "simulated": trace.simulated,
-        "runs": {"fitted": trace.fitted, "held_out": trace.held_out, "how": trace.held_out_how},
+        "runs": {
+            "fitted": trace.fitted,
+            "held_out": trace.held_out,
+            "how": trace.held_out_how,
+            "read": trace.read,
+            "left_out": trace.left_out,
+        },
         "noise_floor": {f.channel: {"rms": f.rms, "unit": f.unit, "how": f.how} for f in trace.floors},
         "baseline": {
             "parameters": _parameters(trace.baseline),

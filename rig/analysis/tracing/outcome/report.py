@@ -105,6 +105,8 @@ def report(
         notes=(*meant, *(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
         curve=curve,
+        read=len(p.campaign.runs),
+        left_out=p.campaign.left_out,
         cannot=(*ruling.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )

@@ -133,3 +133,5 @@ class Trace:
     curves: dict[str, Array] = field(default_factory=dict)
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
     curve: bool = False  # whether a curve without a name was added, in the verdict's coordinate
+    read: int = 0  # runs of the campaign that were read, standstill among them
+    left_out: tuple[str, ...] = ()  # runs that were not, by folder; the notes say why

@@ -32,6 +32,7 @@ class Campaign:
     runs: tuple[Recording, ...]
     simulated: bool
     notes: tuple[str, ...]
+    left_out: tuple[str, ...] = ()  # folders with samples or a manifest that are none of the runs
 
 
 def folders_of_runs(folder: Path) -> list[Path]:
@@ -52,7 +53,8 @@ def read_campaign(folder: Path) -> Campaign:
     """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
     places = folders_of_runs(folder)
     opened, out = _open(places)
-    out += _nameless(folder)
+    nameless = _nameless(folder)
+    out += nameless
     opened, unfit = one_rig(opened)
     _refuse_other_gears(folder.name, opened)
     begun = starts(opened)
@@ -68,7 +70,11 @@ def read_campaign(folder: Path) -> Campaign:
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))
-    return Campaign(folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes))
+    left = {place.name for place in places} | {said.run for said in nameless}
+    left -= {run.name for run in runs}
+    return Campaign(
+        folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left))
+    )
 
 
 def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
