@@ -20,7 +20,9 @@ PAGE = "rig.report.trace.page"
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig trace`."""
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of run folders of one rig")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write trace.json there too")
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help="write trace.json there too; keys in rig/analysis/tracing/REPORT.md"
+    )
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write there instead of into the campaign")
     parser.add_argument(
         "--hold-out",

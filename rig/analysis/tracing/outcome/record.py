@@ -1,4 +1,4 @@
-"""trace.json: the result for programs, schema hdrig.trace/1."""
+"""trace.json: the result for programs, schema hdrig.trace/1; its keys are told in rig/analysis/tracing/REPORT.md."""
 
 from __future__ import annotations
 
