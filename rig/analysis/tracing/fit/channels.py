@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -68,6 +69,17 @@ SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction
 
 
 @dataclass(frozen=True)
+class Sums:
+    """Means over rows of columns (b,) and response, and products of the columns less theirs with each other (b, b) and
+    with the response less its (b,)."""
+
+    z: Array
+    y: float
+    gram: Array
+    right: Array
+
+
+@dataclass(frozen=True)
 class Rows:
     """One channel of one run: response (n,), baseline columns (n, b) and which columns of BASELINE they are. `own` are
     columns (n, q) whose coefficients no other run shares."""
@@ -78,6 +90,13 @@ class Rows:
     keep: Array  # bool, before masking
     theta_m: Array  # rad, (n,)
     own: Array
+
+    @cached_property
+    def sums(self) -> Sums:
+        """Of these rows: they never change, and are fitted many times over."""
+        z, y = self.z.mean(0), self.y.mean()
+        apart = self.z - z
+        return Sums(z, float(y), apart.T @ apart, apart.T @ (self.y - y))
 
 
 def is_measured(run: Recording, channel: str) -> bool:

@@ -128,6 +128,21 @@ class Equations:
         """The same of `x` (n, k), not written out."""
         return Bare(x, self.share_of_mean(key, x.shape[0]) * x.mean(0), self.local.get(key))
 
+    def baseline(self, key: Key) -> Bare:
+        """The baseline's columns of a block without what the run has to itself, not written out."""
+        r = self.rows[key]
+        return Bare(r.z, self.share_of_mean(key, r.y.size) * r.sums.z, self.local.get(key))
+
+    def products(self, key: Key) -> tuple[Array, Array]:
+        """Of those columns with each other (b, b) and with the response (b,). Where a share s of their mean m is the
+        run's own, what stays of it adds n·(1 − s)²·m·mᵀ to products about the mean."""
+        r = self.rows[key]
+        if key in self.local:
+            z = self.baseline(key).whole()
+            return z.T @ z, z.T @ self.bare(key, r.y)
+        left = r.y.size * (1.0 - self.share_of_mean(key, r.y.size)) ** 2 * r.sums.z
+        return r.sums.gram + np.multiply.outer(left, r.sums.z), r.sums.right + left * r.sums.y
+
     def kept(self, run: int) -> dict[str, Rows]:
         """Rows of a run by channel."""
         return {c: r for c in CHANNELS if (r := self.rows.get((run, c))) is not None}

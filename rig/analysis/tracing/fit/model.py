@@ -111,18 +111,25 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
     """Columns of the baseline and of `terms` for those runs."""
     spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
 
-    def of(key: Key) -> tuple[Array, Part]:
+    def of(key: Key) -> tuple[Array, Part, tuple[Array, Array]]:
         r, noise = eq.rows[key], spoilt[key][1] if key in spoilt else None
-        return eq.bare(key, r.y), Part(eq.bared(key, r.z), np.array(r.at), noise)
+        return eq.bare(key, r.y), Part(eq.baseline(key), np.array(r.at), noise), eq.products(key)
 
     keys = eq.of(runs)
     with ThreadPoolExecutor(WORKERS) as pool:
         made = dict(zip(keys, pool.map(of, keys), strict=True))
-    y = {key: y for key, (y, _) in made.items()}
-    parts: dict[Key, tuple[Part, ...]] = {key: (part,) for key, (_, part) in made.items()}
-    out = Design(eq, (), (), y, {key: n for key, (n, _) in spoilt.items()}, parts, np.zeros((0, 0)), np.zeros(0))
-    gram, right = normal(out, {key: part[0] for key, part in parts.items()})
-    out = replace(out, gram=gram, right=right)
+    y = {key: y for key, (y, _, _) in made.items()}
+    gram, right = np.zeros((len(BASELINE), len(BASELINE))), np.zeros(len(BASELINE))
+    for key, (_, part, (across, along)) in made.items():
+        w = eq.noise.weight(key[1])
+        gram[np.ix_(part.at, part.at)] += w * across
+        right[part.at] += w * along
+        if part.spoilt is not None:  # see `normal`
+            noise, v = part.spoilt.whole(), w * eq.stands_for.get(key, 0.0)
+            gram[np.ix_(part.at, part.at)] -= v * (noise.T @ noise)
+            right[part.at] -= v * (noise.T @ spoilt[key][0])
+    noise_of = {key: n for key, (n, _) in spoilt.items()}
+    out = Design(eq, (), (), y, noise_of, {key: (part,) for key, (_, part, _) in made.items()}, gram, right)
     for term in terms:
         out = extended(out, term, runs)
     return out

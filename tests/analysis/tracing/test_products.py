@@ -1,0 +1,30 @@
+"""Products of the baseline's columns made from sums over rows are those of the columns themselves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit.channels import Rows
+from rig.analysis.tracing.fit.equations import Equations, Noise
+
+KEY = (0, "L")
+
+
+def block(rng: np.random.Generator, own: int) -> Rows:
+    """Two hundred rows of four columns, one of them a constant and one far from zero beside what it varies by."""
+    z = np.stack([rng.standard_normal(200), np.ones(200), 1e5 + rng.standard_normal(200), rng.uniform(size=200)], 1)
+    every = np.ones(200, dtype=bool)
+    return Rows(3.0 + rng.standard_normal(200), z, (0, 1, 2, 3), every, np.zeros(200), rng.uniform(size=(200, own)))
+
+
+@pytest.mark.parametrize("local", [1e-3, 0.02, np.inf])
+@pytest.mark.parametrize("own", [0, 2])
+def test_products_are_those_of_bare_columns(rng: np.random.Generator, local: float, own: int) -> None:
+    r = block(rng, own)
+    eq = Equations((), {KEY: r}, Noise({"L": 0.1}, {"L": 2.0}, {"L": local}))
+    bare = eq.bare(KEY, r.z)
+    gram, right = eq.products(KEY)
+    np.testing.assert_allclose(gram, bare.T @ bare, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(right, bare.T @ eq.bare(KEY, r.y), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(eq.baseline(KEY).whole(), bare, rtol=1e-12, atol=1e-9)
