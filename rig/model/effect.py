@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -269,6 +270,7 @@ class Effect(ABC):
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     modes_apart: ClassVar[float] = np.inf  # of its first loose shape parameter: so much higher, a term is another mode
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
+    usual: ClassVar[Mapping[str, float]] = MappingProxyType({})  # exponents of its textbook law, by name
 
     @abstractmethod
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

@@ -13,6 +13,9 @@ REFERENCES: dict[str, str] = {
     "Biometrika 73 (1986) 13-22",
     "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "
     "improved finite sample properties, Journal of Econometrics 29 (1985) 305-325",
+    "angrist2009": "J. D. Angrist, J.-S. Pischke, Mostly Harmless Econometrics, Princeton University Press (2009)",
+    "bell2002": "R. M. Bell, D. F. McCaffrey, Bias reduction in standard errors for linear regression with multi-stage "
+    "samples, Survey Methodology 28 (2002) 169-181",
     "meier1953": "P. Meier, Variance of a weighted mean, Biometrics 9 (1953) 59-73",
     "preisig1993": "H. A. Preisig, D. W. T. Rippin, Theory and application of the modulating function method, "
     "Computers & Chemical Engineering 17 (1993) 1-16",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import ClassVar, Final
 
 import numpy as np
@@ -28,6 +29,7 @@ class QuadraticDrag(Effect):
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("by_way", "exponent")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
+    usual: ClassVar[Mapping[str, float]] = MappingProxyType({"exponent": 2.0})
     EXPONENTS: Final = (1.6, 2.0, 2.6)
     AT: Final = 10.0  # rad/s
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import ClassVar, Final
 
 import numpy as np
@@ -24,6 +25,7 @@ class StribeckFriction(Effect):
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
     loose: ClassVar[tuple[bool, ...]] = (True, True)
+    usual: ClassVar[Mapping[str, float]] = MappingProxyType({"delta": 2.0})
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
     CREEP: Final = 0.2  # of the fastest speed
     EXPONENTS: Final = (1.0, 2.0)  # what is reported: 0.5 to 2; between these two the curves differ by a tenth

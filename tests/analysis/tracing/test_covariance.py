@@ -13,12 +13,13 @@ from rig.analysis.tracing.fit.model import Design, Part, Solution, fit, inverse,
 RUNS, ROWS, SLOPE = 16, 200, 2.0
 
 
-def solved(seed: int, gain: float) -> Solution:
-    """One slope fitted to runs each of which shows it by a `gain` (standard deviation) of its own too large."""
+def solved(seed: int, gain: float, telling: int = RUNS) -> Solution:
+    """One slope fitted to runs each of which shows it by a `gain` (standard deviation) of its own too large; all but
+    the first `telling` of them hardly show it."""
     rng = np.random.default_rng(seed)
     y, parts = {}, {}
     for run in range(RUNS):
-        x = rng.normal(0, 1, ROWS)
+        x = rng.normal(0, 1 if run < telling else 0.03, ROWS)
         y[run, "A"] = SLOPE * (1 + gain * rng.normal()) * x + rng.normal(0, 1, ROWS)
         parts[run, "A"] = (Part(Bare(x[:, None]), np.array([0]), None),)
     eq = Equations((), {}, Noise({"A": 1.0}, {"A": 1.0}, {"A": np.inf}))
@@ -28,11 +29,11 @@ def solved(seed: int, gain: float) -> Solution:
     return fit(Design(eq, (), (), y, {}, parts, gram, right))
 
 
-def coverage(gain: float, spread: Callable[[Solution], np.ndarray]) -> float:
+def coverage(gain: float, spread: Callable[[Solution], np.ndarray], telling: int = RUNS) -> float:
     """Share of fits whose 95 % interval holds the slope."""
     inside = 0
     for seed in range(300):
-        s = solved(seed, gain)
+        s = solved(seed, gain, telling)
         inside += abs(s.x[0] - SLOPE) < 1.96 * np.sqrt(spread(s)[0, 0])
     return inside / 300
 
@@ -46,6 +47,11 @@ def test_intervals_cover_where_runs_differ_by_their_gain() -> None:
 @pytest.mark.slow
 def test_intervals_cover_where_there_is_noise_alone() -> None:
     assert 0.90 < coverage(0.0, covariance) < 0.99
+
+
+@pytest.mark.slow
+def test_intervals_cover_where_four_runs_of_sixteen_tell_nearly_all() -> None:
+    assert 0.91 < coverage(0.2, covariance, telling=4) < 0.99
 
 
 def test_of_one_run_pieces_are_left_out() -> None:

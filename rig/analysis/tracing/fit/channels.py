@@ -200,6 +200,11 @@ def _angle(s: Signals, f: Smoother, has: Has) -> Columns:
     return y, columns
 
 
+def third_rate(run: Recording) -> Array:
+    """T⃛ of a run, pieces joined, all rows (n,)."""
+    return np.concatenate([run.smoother(piece.tau_l, 3) for piece in run.pieces])
+
+
 def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
     y = f(s.tau_m - s.tau_l / s.ratio)
     lever = f(-s.tau_l[:, None] * slopes(s.theta_m))

@@ -5,31 +5,42 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.stats import t as student
 
 from rig.analysis.tracing.fit.model import Solution, evened, inverse
 from rig.model.effect import Array
 
 PIECES = 4  # of a run and channel: each many correlation times long
 FEW = 12  # runs: with fewer their pieces are left out instead, each many correlation times long
+FREEDOM = 2.0  # degrees, and no fewer: of one run alone the runs say nothing
 LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be told by the others
 
 
 def covariance(s: Solution) -> Array:
-    """Jackknife (p, p), all channels of a run together      [mackinnon1985]
+    """Jackknife (p, p), all channels of a run together, so wide that ±1.96 σ is Student's 95 % interval
+    [mackinnon1985; bell2002]
 
     Runs differ by what no row shows: gains that drift, small effects that are in no model. Without run r, whose normal
-    matrix is G_r and whose score is u_r, the fit is off by (G − G_r)⁻¹·u_r.
+    matrix is G_r and whose score is u_r, the fit is off by (G − G_r)⁻¹·u_r. Two runs that say most of something have
+    few degrees of freedom, however many others there are.
     """
     scaled, scale = evened(s.gram)
     sizes, axes = np.linalg.eigh(scaled)  # sensor noise taken off can leave some below zero
     root = (axes / np.sqrt(np.maximum(sizes, 1e-11))).T * scale
     out, count = np.zeros_like(s.gram), 0
+    expected, squares = np.zeros(s.x.size), np.zeros(s.x.size)
     for gram, score in _clusters(s):
-        share, along = np.linalg.eigh(root @ gram @ root.T)
+        inner = root @ gram @ root.T
+        share, along = np.linalg.eigh(inner)
         off = root.T @ (along @ ((along.T @ (root @ score)) / (1 - np.minimum(share, LEVERAGE))))
         out += np.outer(off, off)
+        part = np.maximum(np.einsum("ji,jk,ki->i", root, inner, root), 0.0)  # of each variance, were all rows alike
+        expected += part
+        squares += part**2
         count += 1
-    return np.asarray(out * (count - 1) / max(count, 1))
+    freedom = np.maximum(expected**2 / np.maximum(squares, 1e-300), FREEDOM)
+    wide = student.ppf(0.975, freedom) / 1.96
+    return np.asarray(out * (count - 1) / max(count, 1) * wide * wide[:, None])
 
 
 def scatter(s: Solution) -> Array:

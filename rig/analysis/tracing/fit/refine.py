@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Design, Solution, extended, fit
+from rig.analysis.tracing.thresholds import EVIDENCE, OTHER_LAW
 from rig.model.effect import Array, Reach, Shape
 
 NUDGE = 1e-2  # relative, of a shape parameter: large against rounding, small against a shape's width
@@ -18,12 +19,28 @@ ROUNDS = 4
 
 
 def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:
-    """The design with `term` in the shape that fits best, and its solution."""
+    """The design with `term` in the shape that fits best, and its solution. An exponent is the textbook's unless the
+    runs tell another one plainly: torques nobody measured move the motor a little, and bend what friction seems to do
+    with its speed."""
+    free = [i for i, loose in enumerate(term.effect.loose) if loose]
+    best = _refined(d, term, runs, covered, free)
+    usual = term.effect.usual
+    if not usual:
+        return best
+    shape = tuple(usual.get(name, v) for name, v in zip(term.effect.shape_names, best[0].terms[-1].shape, strict=True))
+    held = [i for i in free if term.effect.shape_names[i] not in usual]
+    plain = _refined(d, replace(term, shape=shape), runs, covered, held)
+    least = max(2 * EVIDENCE, OTHER_LAW * (plain[1].gain - fit(d).gain))
+    return plain if best[1].gain - plain[1].gain < least else best
+
+
+def _refined(
+    d: Design, term: Term, runs: Sequence[int], covered: Reach, free: Sequence[int]
+) -> tuple[Design, Solution]:
     best = extended(d, term, runs)
     found = fit(best)
     if term.effect.expands(term.shape):
         best, found = _expanded(d, best, found, runs)
-    free = [i for i, loose in enumerate(term.effect.loose) if loose]
     if not free:
         return best, found
     gain, bounds = found.gain, term.effect.bounds(covered)

@@ -1,0 +1,47 @@
+"""Coefficients in words: the spring's damping beyond the terms that are fitted; an exponent the runs do not tell."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit import parameters
+from rig.analysis.tracing.fit.channels import BASELINE, INDEX
+from rig.analysis.tracing.fit.equations import Bare, Equations, Noise
+from rig.analysis.tracing.fit.model import Design, Part, fit, normal
+
+K, B_SP = 7160.0, 7.0
+HZ = (13.3, 6.7)
+RUN: Any = SimpleNamespace(locked=False)
+
+
+def waves(derivative: int) -> np.ndarray:
+    """T and its derivatives of two orders at two speeds, (n,)."""
+    t = np.arange(0.0, 3.0, 4e-3)
+    made = [2 * np.pi * f for f in HZ]
+    return np.asarray(sum(w**derivative * np.cos(w * t + 0.7 + derivative * np.pi / 2) for w in made))
+
+
+def wind_up() -> np.ndarray:
+    """T/(K + B_sp·d/dt), exactly, (n,)."""
+    t = np.arange(0.0, 3.0, 4e-3)
+    return np.asarray(sum((np.exp(1j * (2 * np.pi * f * t + 0.7)) / (K + 2j * np.pi * f * B_SP)).real for f in HZ))
+
+
+def test_damping_is_right_though_the_model_ends_with_the_second_derivative(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("compliance", "damping", "damping_2")
+    at, key, size = np.array([INDEX[n] for n in names]), (0, "A"), len(BASELINE)
+    rows: Any = {key: SimpleNamespace(keep=np.ones(waves(0).size, bool), own=np.zeros((waves(0).size, 0)))}
+    eq = Equations((RUN,), rows, Noise({"A": 1e-8}, {"A": 1.0}, {"A": np.inf}))
+    parts = {key: (Part(Bare(np.stack([waves(d) for d in range(3)], 1)), at, None),)}
+    empty = Design(eq, (), (), {key: wind_up()}, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right = normal(empty, {key: parts[key][0]})
+    monkeypatch.setattr(parameters, "third_rate", lambda run: waves(3))
+    s = fit(Design(eq, (), (), empty.y, {}, parts, gram, right))
+    fitted = -s.value("damping") / s.value("compliance") ** 2
+    assert fitted < 0.996 * B_SP  # what the coefficient alone says
+    found = {p.name: p.value for p in parameters.baseline(s)}
+    assert found["B_sp"] == pytest.approx(B_SP, rel=5e-4)

@@ -1,0 +1,35 @@
+"""An exponent is the textbook's until the runs tell another one plainly."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rig.analysis.tracing.fit import refine
+from rig.analysis.tracing.fit.equations import Term
+from rig.model.effects.stribeck_friction import StribeckFriction
+
+WITHOUT, EFFECT = 1e6, 2e4  # gain of the model without it, and what the effect adds to that
+STRIBECK = Term(StribeckFriction(), (1.0, 1.0))
+
+
+@pytest.mark.parametrize(("more", "exponent"), [(20.0, 2.0), (150.0, 2.0), (250.0, 2.7)])
+def test_another_exponent_takes_a_hundredth_of_what_the_effect_itself_explains(
+    monkeypatch: pytest.MonkeyPatch, more: float, exponent: float
+) -> None:
+    tried = []
+
+    def refined(d: Any, term: Term, runs: Any, covered: Any, free: list[int]) -> Any:
+        tried.append((term.shape, free))
+        shape = (1.2, 2.7) if 1 in free else (1.3, term.shape[1])
+        found = SimpleNamespace(gain=WITHOUT + EFFECT + (more if 1 in free else 0.0))
+        return SimpleNamespace(terms=(Term(term.effect, shape),)), found
+
+    monkeypatch.setattr(refine, "_refined", refined)
+    monkeypatch.setattr(refine, "fit", lambda d: SimpleNamespace(gain=WITHOUT))
+    nothing: Any = None
+    best, _ = refine.refine(nothing, STRIBECK, (), nothing)
+    assert best.terms[-1].shape[1] == exponent
+    assert tried == [((1.0, 1.0), [0, 1]), ((1.2, 2.0), [0])]
