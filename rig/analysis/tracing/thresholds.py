@@ -27,7 +27,7 @@ FAINTEST: Final = 1e-5  # share of a column that must be its own before it is so
 RELATIVE: Final = 3e-4  # of the first effect's evidence: below a sixtieth of its size lies what its law has wrong
 CLEAR: Final = 0.5  # share of a column beside the model that must not be sensor noise
 EVIDENCE: Final = 12.0  # nats; at 300 variants tried, chance gets there once in a thousand campaigns
-OTHER_LAW: Final = 0.01  # of an effect's evidence: what differs by less than a tenth of its size is no other law
+OTHER_LAW: Final = 0.01  # of an effect's evidence and of the noise's: a tenth of either's size makes no other law
 
 NAMED: Final = 0.6  # of the held-out excess an effect must remove; true ones 0.73 and more, mimics 0.21 at most
 EXPLAINED: Final = 1.3  # held-out RMS over floor below which nothing more is looked for

@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit import refine
@@ -15,9 +16,12 @@ WITHOUT, EFFECT = 1e6, 2e4  # gain of the model without it, and what the effect 
 STRIBECK = Term(StribeckFriction(), (1.0, 1.0))
 
 
-@pytest.mark.parametrize(("more", "exponent"), [(20.0, 2.0), (150.0, 2.0), (250.0, 2.7)])
-def test_another_exponent_takes_a_hundredth_of_what_the_effect_itself_explains(
-    monkeypatch: pytest.MonkeyPatch, more: float, exponent: float
+@pytest.mark.parametrize(
+    ("more", "rows", "exponent"),
+    [(20.0, 0, 2.0), (150.0, 30_000, 2.0), (250.0, 30_000, 2.7), (150.0, 6_000, 2.7)],
+)
+def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_the_noise(
+    monkeypatch: pytest.MonkeyPatch, more: float, rows: int, exponent: float
 ) -> None:
     tried = []
 
@@ -30,6 +34,8 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_itself_explains(
     monkeypatch.setattr(refine, "_refined", refined)
     monkeypatch.setattr(refine, "fit", lambda d: SimpleNamespace(gain=WITHOUT))
     nothing: Any = None
-    best, _ = refine.refine(nothing, STRIBECK, (), nothing)
+    noise = SimpleNamespace(kappa={"M": 2.0})
+    d: Any = SimpleNamespace(y={(0, "M"): np.zeros(2 * rows)}, eq=SimpleNamespace(noise=noise))
+    best, _ = refine.refine(d, STRIBECK, (), nothing)
     assert best.terms[-1].shape[1] == exponent
     assert tried == [((1.0, 1.0), [0, 1]), ((1.2, 2.0), [0])]

@@ -30,7 +30,8 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     shape = tuple(usual.get(name, v) for name, v in zip(term.effect.shape_names, best[0].terms[-1].shape, strict=True))
     held = [i for i in free if term.effect.shape_names[i] not in usual]
     plain = _refined(d, replace(term, shape=shape), runs, covered, held)
-    least = max(2 * EVIDENCE, OTHER_LAW * (plain[1].gain - fit(d).gain))
+    rows = sum(y.size / d.eq.noise.kappa[channel] for (_, channel), y in d.y.items())
+    least = max(2 * EVIDENCE, OTHER_LAW * min(plain[1].gain - fit(d).gain, rows))
     return plain if best[1].gain - plain[1].gain < least else best
 
 
