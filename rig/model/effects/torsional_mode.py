@@ -125,11 +125,10 @@ class TorsionalMode(Effect):
         late = [resonance(np.ascontiguousarray(u), s.dt, omega, zeta) for u in (self._through(s, about), s.alpha_m)]
         (by_torque, jerk_t), (by_alpha, jerk_a) = late
         lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)
-        none, turned = np.zeros_like(lever), s.torque * bend
-        return {
-            Port.KINEMATIC_ERROR: np.stack([lever * by_torque, lever * by_alpha, none], 1),
-            Port.MOTOR_TORQUE: np.stack([turned * by_torque, turned * by_alpha - jerk_t, -jerk_a], 1),
-        }
+        turned, twist, torque = s.torque * bend, np.zeros((lever.size, 3)), np.empty((lever.size, 3))
+        twist[:, 0], twist[:, 1] = lever * by_torque, lever * by_alpha
+        torque[:, 0], torque[:, 1], torque[:, 2] = turned * by_torque, turned * by_alpha - jerk_t, -jerk_a
+        return {Port.KINEMATIC_ERROR: twist, Port.MOTOR_TORQUE: torque}
 
     def _through(self, s: Signals, about: float) -> Array:
         """T times the lever at the wave generator's own angle, N·m."""

@@ -100,11 +100,14 @@ def search(
     above the floor."""
     s = fit(d)
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, refused)
-    u = cross(bank, d, keys, 0)
+    first, of_baseline = len(BASELINE), dict[str, Array]()
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
         if still(s, floors) and not (quiet and not s.design.terms):
             break
+        u = cross(bank, d, keys, first if of_baseline else 0)  # of terms anew: what they lean on has changed
+        u = {c: np.vstack([of_baseline[c], m]) for c, m in u.items()} if of_baseline else u
+        of_baseline = {c: m[:first] for c, m in u.items()}
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
         least = max(EVIDENCE, RELATIVE * (ranking[0].evidence if ranking else 0.0))
@@ -113,11 +116,9 @@ def search(
         if chosen is None:
             break
         s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
-        d, first, entered = s.design, len(BASELINE), s.design.terms[-1]
-        new = cross(bank, d, keys, first)
-        u = {c: m[:first] for c, m in u.items()}
-        u = {c: np.vstack([u[c], new[c]]) for c in u}
-        d, s, u = _pruned(s, u)
+        entered = s.design.terms[-1]
+        s = _pruned(s)
+        d = s.design
         if entered not in d.terms:
             barren.add(chosen.term)
     return Found(s, ranking)
@@ -219,7 +220,7 @@ def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
     return tuple(best.values())
 
 
-def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[str, Array]]:
+def _pruned(s: Solution) -> Solution:
     """Without terms that explain nothing any more beside the newer ones."""
     d = s.design
     while len(d.terms) > 1:
@@ -228,11 +229,9 @@ def _pruned(s: Solution, u: dict[str, Array]) -> tuple[Design, Solution, dict[st
         worst = int(np.argmin(loss))
         if loss[worst] > EVIDENCE:
             break
-        stay = np.setdiff1d(np.arange(d.size), np.arange(d.size)[d.place(worst)])
         d = reduced(d, [worst])
         s = fit(d)
-        u = {c: m[stay] for c, m in u.items()}
-    return d, s, u
+    return s
 
 
 def reduced(d: Design, gone: Sequence[int]) -> Design:
