@@ -15,8 +15,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.linalg import expm
 
 from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.equations import Term
@@ -120,6 +118,8 @@ class _Led:
 
 
 def _led(s: Signals, model: Model, read_m: Array) -> _Led:
+    from scipy.interpolate import CubicSpline  # here and below: a tenth of a second before anything is read
+
     spline = CubicSpline(np.arange(s.t.size), s.theta_m - read_m)
     fine = np.arange((s.t.size - 1) * FINE + 1) / FINE
     theta, omega, alpha = spline(fine), spline(fine, 1) / s.dt, spline(fine, 2) / s.dt**2
@@ -161,6 +161,8 @@ def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> 
 def _filtered(top: Sequence[float], bottom: Sequence[float], h: float, x: Array) -> Array:
     """`x` (m,) every h s, straight between, through (top_1·s + top_0)/(J·s² + d·s + K), begun in balance with x[0];
     exact."""
+    from scipy.linalg import expm
+
     inertia, damping, stiffness = bottom
     matrix = np.zeros((4, 4))  # of the state, of x and of its slope
     matrix[0, 1] = matrix[2, 3] = 1.0

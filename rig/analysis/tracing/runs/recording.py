@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import minimum_filter1d
 
 from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.tame import LARGEST, RATIOS, Tame, number
@@ -197,6 +195,8 @@ def _uniform(t: Array, x: Array, dt: float) -> Array:
     even = t[0] + dt * np.arange(t.size)
     if np.max(np.abs(t - even)) < 0.02 * dt:
         return x
+    from scipy.interpolate import CubicSpline  # a tenth of a second, and most loggers keep time
+
     grid = np.arange(t[0], t[-1], dt)
     return np.asarray(CubicSpline(t, x)(grid)) if np.isfinite(x).all() else np.interp(grid, t, x)
 
@@ -358,4 +358,6 @@ def direction(omega: Array, dt: float) -> Array:
 def settled(piece: Signals) -> npt.NDArray[np.bool_]:
     """Where it has slid, and goes on to slide, for so long that what stuck has come loose; (n,)."""
     width = max(1, round(SETTLING / piece.dt)) - max(1, round(LOOSE / piece.dt))
-    return np.asarray(minimum_filter1d(piece.way != 0, 2 * width + 1), dtype=np.bool_)
+    stopped, rows = np.concatenate([[0], np.cumsum(piece.way == 0)]), np.arange(piece.t.size)
+    before, after = np.maximum(rows - width, 0), np.minimum(rows + width + 1, rows.size)
+    return np.asarray(stopped[after] == stopped[before])
