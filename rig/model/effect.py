@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
@@ -142,6 +142,10 @@ class Signals(Once):
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self._series[0]
+
+    def states(self, make: Callable[[Signals], tuple[Array, ...]]) -> tuple[Array, ...]:
+        """What `make` gives of the whole piece, in these rows (n,): a state remembers what was before the first."""
+        return make(self) if self.cut is None else tuple(self.cut.of(x) for x in make(self.cut.whole))
 
     def part(self, rows: slice | Rows) -> Signals:
         """Some rows of it: a slice, or their numbers (m,) in rising order, stretches side by side."""
@@ -301,7 +305,7 @@ class Effect(ABC):
 
     def has_state(self) -> bool:
         """Whether what it does at a row depends on more than that row and its neighbours: then its columns in a part of
-        a piece have to be cut from those of the whole."""
+        a piece have to be cut from those of the whole. Not of one that asks for `Signals.states`."""
         return False
 
     def moved_by_noise(self) -> bool:

@@ -57,15 +57,14 @@ class LoadDependentKinematicError(Effect):
         other = [(of, c, delta) for of in (TORQUE, EACH) for delta in (self.SPREAD, self.SUDDEN) for c in self.LATER]
         return tuple((of, c, self.LAG, delta) for of, c, delta in (*whole, *orders, *other) if c < 1.5 * reach.torque)
 
-    def has_state(self) -> bool:
-        """The torque is lagged."""
-        return True
-
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """The fitted series times the decay, and its lever; by orders where each has its own share."""
         of, t_c, lag, delta = shape
-        torque = np.abs(signals.torque) if of % EACH == SIZE else signals.torque
-        decay = np.exp(-((np.abs(lagged(torque, lag, signals.dt)) / t_c) ** delta))[:, None]
+
+        def late(whole: Signals) -> tuple[Array, ...]:
+            return (lagged(np.abs(whole.torque) if of % EACH == SIZE else whole.torque, lag, whole.dt),)
+
+        decay = np.exp(-((np.abs(signals.states(late)[0]) / t_c) ** delta))[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
         if of >= EACH:
             values, slopes = signals.once(self.name, lambda: _by_orders(signals, values, slopes))

@@ -90,10 +90,6 @@ class TorsionalMode(Effect):
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
         return shape[0] in (LOAD, MOTOR) and shape[1] > 1.15 * reach.band
 
-    def has_state(self) -> bool:
-        """It swings."""
-        return True
-
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
         two, for J_2 and for J_2/k; of a soft coupling three, for 1/k, 1/ω² and J_2/ω²."""
@@ -104,11 +100,15 @@ class TorsionalMode(Effect):
             return self._soft(signals, 2.0 * np.pi * frequency, zeta, about)
         if side in (BEFORE, AFTER):
             return self._stiff(signals, side, about)
-        alpha = np.ascontiguousarray(signals.alpha_m if side == MOTOR else signals.alpha_l)
-        # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
-        alpha = np.where(np.abs(signals.omega_m) > self.EXCITED, alpha, 0.0)
+
+        def swinging(whole: Signals) -> tuple[Array, ...]:
+            alpha = np.ascontiguousarray(whole.alpha_m if side == MOTOR else whole.alpha_l)
+            # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
+            alpha = np.where(np.abs(whole.omega_m) > self.EXCITED, alpha, 0.0)
+            return (resonated(alpha, whole.dt, 2.0 * np.pi * frequency, zeta),)
+
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
-        return {port: resonated(alpha, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]}
+        return {port: signals.states(swinging)[0][:, None]}
 
     def _stiff(self, s: Signals, side: float, about: float) -> Mapping[Port, Array]:
         through = self._through(s, about)
@@ -122,8 +122,11 @@ class TorsionalMode(Effect):
         }
 
     def _soft(self, s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, Array]:
-        late = [resonance(np.ascontiguousarray(u), s.dt, omega, zeta) for u in (self._through(s, about), s.alpha_m)]
-        (by_torque, jerk_t), (by_alpha, jerk_a) = late
+        def swinging(whole: Signals) -> tuple[Array, ...]:
+            torque, alpha = self._through(whole, about), np.ascontiguousarray(whole.alpha_m)
+            return (*resonance(torque, whole.dt, omega, zeta), *resonance(alpha, whole.dt, omega, zeta))
+
+        by_torque, jerk_t, by_alpha, jerk_a = s.states(swinging)
         lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)
         turned, twist, torque = s.torque * bend, np.zeros((lever.size, 3)), np.empty((lever.size, 3))
         twist[:, 0], twist[:, 1] = lever * by_torque, lever * by_alpha
@@ -139,7 +142,8 @@ class TorsionalMode(Effect):
         return s.torque * (1.0 / s.ratio - slope)
 
     def _hub(self, s: Signals) -> Mapping[Port, Array]:
-        turned = np.stack([s.alpha_l, np.gradient(s.torque_rate, s.dt)], 1)
+        (bend,) = s.states(lambda whole: (np.gradient(whole.torque_rate, whole.dt),))  # over its neighbours
+        turned = np.stack([s.alpha_l, bend], 1)
         lever = 1.0 / s.ratio - s.series_slope
         return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
 

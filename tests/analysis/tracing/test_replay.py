@@ -60,6 +60,21 @@ def test_an_angle_read_late_is_late_in_the_simulation():
     assert (found - plain)[START:].mean() == pytest.approx(5e-4 * s.omega_l[0], rel=1e-3)
 
 
+def test_a_state_follows_the_simulated_motion_not_the_measured_one_a_part_was_cut_from():
+    s = turning(300.0, tau_ext=-20.0)
+    effect = CATALOGUE["load_dependent_kinematic_error"]
+    terms = ((Term(effect, (0.0, 6.0, 3e-3, 1.0)), np.array([2.0])),)
+    plain, whole, part = (
+        _kinematic_error(of, Model(KNOWN, 1.0, 0.4, 0.0, t))
+        for of, t in ((s, ()), (s, terms), (s.part(slice(0, s.t.size)), terms))
+    )
+    assert plain is not None
+    assert whole is not None
+    assert part is not None
+    assert np.std((whole - plain)[START:]) > 1e-6
+    np.testing.assert_array_equal(part, whole)
+
+
 def test_the_fixed_point_of_a_map_that_overshoots_is_found():
     rng = np.random.default_rng(0)
     matrix = -0.9 * np.eye(20) + 0.5 * rng.standard_normal((20, 20)) / np.sqrt(20)

@@ -155,6 +155,7 @@ def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> 
         tau_l=read,
         torque_rate=np.gradient(torque, h)[here],
         gear=g,
+        cut=None,  # what was measured before is no past of this motion
     )
 
 
