@@ -22,7 +22,7 @@ no time            rows have no known distance: whatever is a rate belongs to ea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -112,9 +112,11 @@ def rows(run: Recording, channel: str) -> Rows:
     keep = np.concatenate([valid(piece, run, channel) for piece in run.pieces])
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
-    shared = shared_columns(run, channel, at)
+    shared, z = shared_columns(run, channel, at), z[keep]
+    if shared.all():  # most runs: theirs is the bulk of what a trace holds, and is copied no more than it must
+        return Rows(y[keep], z, at, keep, theta_m[keep], np.zeros((len(z), 0)))
     places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
-    return Rows(y[keep], z[keep][:, shared], places, keep, theta_m[keep], z[keep][:, ~shared])
+    return Rows(y[keep], z[:, shared], places, keep, theta_m[keep], z[:, ~shared])
 
 
 def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDArray[np.bool_]:
@@ -135,12 +137,16 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     """Response (n,), baseline columns (n, b) and their places, all rows."""
     make = {"A": _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
-    y = np.concatenate([m[0] for m in made])
-    z = np.concatenate([np.stack(list(m[1].values()), 1) for m in made])
+    y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
         z[:, names.index("J_m")] = 0.0
     return y, z, tuple(INDEX[name] for name in names)
+
+
+def joined(parts: Sequence[Array]) -> Array:
+    """One after the other, (n, ...); of one part no copy."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _shaken(run: Recording, alpha: Array) -> bool:
