@@ -70,7 +70,10 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
     def of(run: int) -> tuple[Blocks, Blocks]:
         return _filled(eq, run, terms)
 
-    clean, noise = ({k: b for found in part for k, b in found.items()} for part in zip(*each(of, runs), strict=True))
+    longest = sorted(runs, key=lambda run: -_work(eq, run))  # first, or one process waits for the other in the end
+    made = dict(zip(longest, each(of, longest), strict=True))
+    parts = zip(*(made[run] for run in runs), strict=True)
+    clean, noise = ({k: b for found in part for k, b in found.items()} for part in parts)
     wide = {c: _widest([b for (_, channel), b in clean.items() if channel == c], len(terms)) for c in CHANNELS}
     clean, noise = ({key: b.spread(wide[key[1]]) for key, b in blocks.items()} for blocks in (clean, noise))
     give_back()  # columns of single terms, half as much again as the bank
@@ -82,6 +85,11 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
         _summed({key: b.products for key, b in clean.items()}, wide),
         _summed({key: eq.stands_for[key] * b.products for key, b in noise.items()}, wide),
     )
+
+
+def _work(eq: Equations, run: int) -> int:
+    """Of one run, in rows."""
+    return sum(piece.t.size for piece in eq.runs[run].pieces) * (2 if run in eq.noisy else 1)
 
 
 Blocks = dict[Key, Block]
