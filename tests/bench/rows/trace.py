@@ -48,10 +48,11 @@ class Trace(Row):
     cannot, gives intervals and writes the report: all of that is in its time. Found: a fifth of the fastest of them is
     out of reach as long as that is compared; what a person waits for is the wall time. Mended: a cosine of numpy's
     costs 9 ns, of ours 1; resonances waited for divisions; what effects keep with signals, what Arrow had read the runs
-    into and heaps of threads stayed until the end, a sixth of a gigabyte. Columns were made one by one and put together,
-    states' consequences along rows that nobody asked for, products of the same rows for every fit anew; one process
-    waited for the other at the end of the bank, and while the verdict listened for a clock. Left: the search itself,
-    whose two threads take turns at the interpreter more than they share the work, and half a second of imports.
+    into and heaps of threads stayed until the end, a sixth of a gigabyte. Columns were made one by one and put
+    together, what a state leads to along rows that nobody asked for, products of the same rows for every fit anew; one
+    process waited for the other at the end of the bank, and while the verdict listened for a clock. Left: the search
+    itself, whose two threads take turns at the interpreter more than they share the work, and most of a second of
+    imports.
     """
 
     number: ClassVar[int] = 9
