@@ -22,7 +22,6 @@ from rig.model.effect import Array
 
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
-AS_WELL = 0.95  # of what a step foretells: bins that do as much are no coincidence
 WITH_TIME = ("time", "temperature")
 
 
@@ -110,18 +109,12 @@ def _of_the_output(found: Home, r: Rest) -> Home:
     return found
 
 
-def _pull(r: Rest) -> Array:
-    """The torque, as a spring shows it that has become softer."""
-    load = r.at["load"]
-    return np.asarray(np.nan_to_num(load) / max(float(np.nanstd(load)), 1e-12))
-
-
 def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
-    """Steps at one moment, said first of all where they do best: they have one number. Not where a coordinate does as
-    well by itself: all slow runs may have been taken before all fast ones."""
-    steps = [since(h, channel, sense) for sense in (*SENSES, _pull)]
+    """Steps at one moment, said first of all: they have one number. Not where a coordinate by itself does nearly as
+    well: all slow runs may have been taken before all fast ones."""
+    steps = [since(h, channel, sense) for sense in SENSES]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
-    return [replace(step, first=best < AS_WELL * step.share) for step in steps]
+    return [replace(step, first=best < PLAIN_ENOUGH * step.share) for step in steps]
 
 
 def _wound(h: Halves, channel: str) -> Home | None:
