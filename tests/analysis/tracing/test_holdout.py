@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 
+from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.holdout import split
+from tests.analysis.tracing.test_few_channels import reduced
 
 
 def run(speed: float, start: float) -> Any:
@@ -37,3 +41,16 @@ def test_the_first_and_the_last_run_are_fitted_whatever_else_is_held_out() -> No
             assert found
             assert (first, min(times.values())) not in found
             assert (last, max(times.values()) + 50.0) not in found
+
+
+@pytest.mark.slow
+def test_of_a_procedure_that_was_run_once_a_part_is_held_out(tmp_path: Path, shared: Path) -> None:
+    names = ("slow_ke_1", "slow_ke_2", "speed_120rpm_1", "speed_120rpm_2", "lock_60_1")
+    campaign = read_campaign(reduced(tmp_path, shared / "cases" / "open-1", names, ()))
+    parts = split(campaign.runs, ())
+    tested = sorted(parts.runs[i].name for i in parts.held_out)
+    assert tested == ["lock_60_1 (part held out)", "slow_ke_2", "speed_120rpm_2"]
+    lock = [parts.runs[i] for i in range(len(parts.runs)) if parts.runs[i].name.startswith("lock")]
+    whole = next(run for run in campaign.runs if run.name == "lock_60_1")
+    assert sum(run.duration for run in lock) == pytest.approx(whole.duration)
+    assert parts.how.endswith("of what was done only once a third, whole turns or strokes")

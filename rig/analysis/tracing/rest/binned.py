@@ -83,6 +83,18 @@ class Halves:
         return max(float(np.mean(self.rest.e**2)) - 1.0, LEAST)
 
 
+def own_excess(r: Rest) -> float:
+    """Mean square beyond the floor's that stays beside a baseline fitted to this channel alone."""
+    h = Halves(r.by_itself, folds(r))
+    return float(sum(np.sum(h.alone[half][h.fold == half] ** 2) for half in (0, 1))) / max(r.e.size, 1) - 1.0
+
+
+def straightened(r: Rest) -> Rest:
+    """The rest beside a baseline fitted to this channel alone."""
+    alone = r.by_itself
+    return replace(alone, e=r.e - beside(alone, np.ones(r.e.size, dtype=np.bool_)).of(r))
+
+
 def folds(r: Rest) -> Array:
     """0 and 1 in turn, stretches of 2 s: long against correlation, short against everything that drifts."""
     return np.asarray((r.at["time"] // 2.0).astype(int) % 2)

@@ -54,6 +54,11 @@ class Rest:
         by_run: Array = np.stack([np.bincount(run, column, minlength=runs.size) for column in wide.T], 1)
         return Whole(wide, runs, run, np.asarray(wide.T @ wide), by_run)
 
+    @property
+    def by_itself(self) -> Rest:
+        """The same with nothing known from the other channels."""
+        return replace(self, known=ALL_OF_IT * self.z.T @ self.z / max(len(self.z), 1))
+
     def part(self, rows: Index) -> Rest:
         """Some rows of it, side by side in memory."""
         at = {name: x[rows] for name, x in self.at.items()}

@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.binned import Halves, folds, score
+from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, score, straightened
 from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
@@ -22,6 +22,7 @@ from rig.model.effect import Array
 
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
+BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
 WITH_TIME = ("time", "temperature")
 
 
@@ -128,14 +129,28 @@ def _wound(h: Halves, channel: str) -> Home | None:
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
     """Best coordinates of the channel with the most left."""
-    channel = next(iter(loudness(e, floors)))
-    most = rest(eq, e, floors, channel)
+    most, channel = _loudest(eq, e, floors)
     if most is None:
         return []
     found = homes(most, channel)
     if channel == "L":  # its zero may wander from run to run, or a gain does that only loads of several runs show
         found += homes(replace(most, own_zeros=False), channel)
     return plainest(found)
+
+
+def _loudest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> tuple[Rest | None, str]:
+    """The channel with the most left; where that is only what another one forces on it by the coefficients they share,
+    the one with the most left beside a baseline of its own."""
+    loud = loudness(e, floors)
+    first = next(iter(loud))
+    rests = {c: r for c, square in loud.items() if square > 1 and (r := rest(eq, e, floors, c)) is not None}
+    if first not in rests:
+        return rest(eq, e, floors, first), first
+    left = {c: own_excess(r.thinned(MOST)) for c, r in rests.items()}
+    if left[first] > BENT * (loud[first] - 1.0):
+        return rests[first], first
+    other = max(left, key=lambda c: left[c])
+    return straightened(rests[other]), other
 
 
 def smooth_term(

@@ -45,7 +45,12 @@ def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
         return _parts(runs, moving)
     held = _levels_and_repeats(runs, groups)
     fitted = tuple(i for i in moving if i not in held)
-    return Split(tuple(runs), fitted, tuple(sorted(held)), "whole repeats, and whole loads and speeds between others")
+    tested = {runs[i].procedure for i in held}
+    made, parts = _parted(runs, [i for i in fitted if runs[i].procedure not in tested])
+    how = "whole repeats, and whole loads and speeds between others"
+    if parts:
+        how += "; of what was done only once a third, whole turns or strokes"
+    return Split(made, fitted, (*sorted(held), *parts), how)
 
 
 def whole_run(name: str) -> str:
@@ -104,20 +109,25 @@ def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> s
 
 
 def _parts(runs: Sequence[Recording], moving: list[int]) -> Split:
-    """A third of every run: every third stretch of one that turns on and on, else the last turns or strokes."""
-    made = list(runs)
-    held: list[int] = []
-    for i in moving:
+    made, held = _parted(runs, moving)
+    if not held:
+        raise UsageError(TOO_SHORT)
+    how = "a third of every run, whole turns or strokes: there are no repeats"
+    return Split(made, tuple(moving), held, how)
+
+
+def _parted(runs: Sequence[Recording], chosen: Sequence[int]) -> tuple[tuple[Recording, ...], tuple[int, ...]]:
+    """The runs with a third of each chosen one as a run of its own behind the others, and where those are: every third
+    stretch of one that turns on and on, else the last turns or strokes."""
+    made, held = list(runs), []
+    for i in chosen:
         parts = _stretches(runs[i]) or _head_and_tail(runs[i])
         if parts is None:
             continue
         made[i] = replace(runs[i], pieces=parts[0])
         made.append(replace(runs[i], pieces=parts[1], name=f"{runs[i].name} ({HELD_PART})"))
         held.append(len(made) - 1)
-    if not held:
-        raise UsageError(TOO_SHORT)
-    how = "a third of every run, whole turns or strokes: there are no repeats"
-    return Split(tuple(made), tuple(moving), tuple(held), how)
+    return tuple(made), tuple(held)
 
 
 Parts = tuple[tuple[Signals, ...], tuple[Signals, ...]]
