@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.rest.binned import own_excess, straightened
 from rig.analysis.tracing.rest.home import plainest
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.unknown import homes
@@ -66,6 +67,11 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         lambda at: at["direction"] * np.exp(-((np.mod(5.537 * at["motor_angle"], 6.283) - 2) ** 2) / 0.02),
     ),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
+    "a brinell mark in the race": (
+        "motor_angle",
+        lambda at: np.exp(-((np.mod(at["motor_angle"] - 3.8, 2 * np.pi) - np.pi) ** 2) / 2 / 0.02**2),
+    ),
+    "waves of a torque sensor's scale": ("load", lambda at: np.sin(2 * np.pi * at["load"] / 3.0)),
     "a knee in the load": ("load", lambda at: np.abs(at["load"])),
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
     "a clamp that slips under torque": ("memory", slipping),
@@ -167,3 +173,18 @@ def test_what_the_baseline_has_taken_on_does_not_hide_the_coordinate() -> None:
 def triangle(x: np.ndarray) -> np.ndarray:
     """Between −1 and 1, period 4."""
     return np.abs(np.mod(x - 1, 4) - 2) - 1
+
+
+def test_a_channel_that_coefficients_shared_with_another_one_bend_is_straight_beside_a_baseline_of_its_own() -> None:
+    """A seventh wave of θ̃_p that the motor's torque asks for and the angle does not."""
+    rng = np.random.default_rng(9)
+    at = coordinates(rng)
+    run = np.repeat(np.arange(RUNS), ROWS)
+    z = np.stack([np.cos(7 * at["motor_angle"]), np.sin(7 * at["motor_angle"])], 1)
+    believed = 100.0 * np.eye(2)  # what the other channel knows, for each row: a hundred times what these rows do
+    bent = Rest(8.0 * z[:, 0] + rng.normal(0, 1, run.size), run, at, DT, z, believed)
+    assert own_excess(bent) < 0.1
+    assert np.mean(straightened(bent).e ** 2) == pytest.approx(1.0, abs=0.05)
+    dented = Rest(bent.e + 3.0 * (np.abs(at["load"]) > 8.0), run, at, DT, z, believed)
+    assert own_excess(dented) > 0.5
+    assert plainest(homes(straightened(dented), "M"))[0].coordinate == "load"

@@ -13,7 +13,7 @@ from rig.model.effect import Array
 TURN = 2 * np.pi
 BINS = 60  # of a turn: 6°, a few teeth
 LEVELS = 24  # of a range
-FINER = 4  # a dent in a race, the waves of a sensor's scale: narrower than what most rests ask for
+FINER = 4  # times as many: a tooth and a half; 2 % of a range
 PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
 
 
@@ -88,6 +88,11 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
     "temperature": lambda r: _levels(r.at["temperature"]),
     "memory": lambda r: both(_levels(r.at["load"]), both(_branch(r), (r.at["direction"] + 1).astype(int))),
 }
+FINE: Sequence[tuple[str, Callable[[Rest], Index]]] = (
+    ("motor_angle", lambda r: turned(r.at["motor_angle"], FINER * BINS)),
+    ("load", lambda r: _steps(r.at["load"], FINER * LEVELS)),
+)
+"""The same once more: a dent in a race is narrow, and so are the waves of a sensor's scale."""
 LATE: Sequence[tuple[str, Callable[[Rest], Index]]] = (("memory", _since_turned), ("memory", _slid))
 """Asked last: where the motor turned back at one place, or never, it is an angle gone and the time."""
 JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
@@ -100,17 +105,13 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
         lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),
         lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
     ),
-    "motor_angle": (
-        lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),
-        lambda r: turned(r.at["motor_angle"], FINER * BINS),
-    ),
+    "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
         lambda r: _steps(np.abs(r.at["speed"])),
         lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),
     ),
     "load": (
         lambda r: _steps(r.at["load"]),
-        lambda r: _steps(r.at["load"], FINER * LEVELS),
         lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),
     ),
     "memory": (*_memories("load"), *_memories("motor_torque"), *_leaks("speed")),

@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, score, straightened
-from rig.analysis.tracing.rest.coordinates import INDICES, JOINT, LATE
+from rig.analysis.tracing.rest.coordinates import FINE, INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
@@ -46,7 +46,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     """Coordinates by the share of the excess they predict, best first. Rows are fitted and tested on turn about."""
     seen, r = line(r, channel), r.thinned(MOST)
     h = Halves(r, folds(r))
-    alone = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in INDICES.items()]
+    plain = [*INDICES.items(), *FINE]
+    alone = [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in plain]
     ways = [(name, index) for name, several in JOINT.items() for index in several]
     out = alone + [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
