@@ -64,7 +64,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     covered = with_lines(covered, start, runs)
-    suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values())]
+    suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values() if shadow.searched)]
     # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
     bank = fill(some(p.eq.afresh(), runs), suspects, runs, covered)
     found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)

@@ -130,14 +130,47 @@ class EvenSpring(Effect):
         return ()
 
 
+class SensorLoop(Effect):
+    """The torque sensor's own hysteresis: it reads Σ c_i·P_{r_i}[T] too much, play operators of the torque [kuhnen2003]
+
+    In a lock test it is a loop in the spring; where the output is free the torque it makes up accelerates no load and
+    loads no motor.
+    """
+
+    name: ClassVar[str] = "sensor_loop"
+    in_short: ClassVar[str] = "the torque sensor has hysteresis"
+    source: ClassVar[str] = "kuhnen2003"
+    remembers: ClassVar[bool] = True
+    WIDTHS: Final = (0.5, 1.5, 4.0, 10.0, 25.0)  # N·m, half: from the swing of a slow run to that of a lock test
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is such a sensor."""
+        return ((),) if "tau_l" in reach.has else ()
+
+    def has_state(self) -> bool:
+        """A loop."""
+        return True
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """What each play stays behind by."""
+        torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
+        return {Port.READS_TAU_L: np.stack([torque - play(torque, width) for width in self.WIDTHS], 1)}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
 @dataclass(frozen=True)
 class Shadow:
-    """A law, what it is taken for, and the coordinate it lives in."""
+    """A law, what it is taken for, the coordinate it lives in, and whether it is searched for by itself as well: not
+    one that a friction of the load would be taken for."""
 
     effect: Effect
     of: frozenset[str]
     coordinate: str
     sentence: str
+    searched: bool = True
 
 
 SHADOWS: Final = {
@@ -154,6 +187,14 @@ SHADOWS: Final = {
         "direction",
         "The load angle stays behind by the same whichever way the motor turns and whatever the torque, as an encoder "
         "does whose coupling has play; a loop in the spring explains less, and no effect of the library explains it.",
+    ),
+    "sensor_loop": Shadow(
+        SensorLoop(),
+        frozenset({"hysteretic_stiffness"}),
+        "memory",
+        "The torque that is read stays behind the torque there is by more the longer it has swung, as a sensor with "
+        "hysteresis does; a loop in the spring explains less, and no effect of the library explains it.",
+        searched=False,
     ),
     "even_spring": Shadow(
         EvenSpring(),
