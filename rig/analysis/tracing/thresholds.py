@@ -65,6 +65,7 @@ ALONE: Final = (
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
 LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand
+PART: Final = 0.25  # of a channel's excess: names that take no more are none beside all the rest
 AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there it is not what it is called
 CLOSE: Final = 0.95  # of what an effect explains alone another one must reach to be called a rival
 STILL: Final = 1.02  # RMS over floor of a channel below which only what is beyond doubt is said

@@ -62,6 +62,7 @@ def test_a_worth_is_fair_within_a_fifth() -> None:
 def test_a_worth_is_plain_however_many_floors_its_law_leaves() -> None:
     plain = Worth("presliding_friction", 0.89, 46.0, 8.6, 0.99, (), unsteady=0.06, apart=0.06)
     assert plain.plain
+    assert not replace(plain, runs=2).plain  # which have one size for want of others
     assert not replace(plain, share=0.75).plain
     assert not replace(plain, true=1.4).plain
     assert not replace(plain, unsteady=0.35).plain

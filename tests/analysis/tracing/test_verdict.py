@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rig.analysis.tracing.court.judge import Worth
+from rig.analysis.tracing.court.verdict import _share as share
 from rig.analysis.tracing.court.verdict import _standing as standing
+from rig.analysis.tracing.thresholds import PART
 
 CLEAN = Worth("cogging_torque", 0.7, 3.0, 1.1, 1.0, (), anywhere=1.1)
 PLAIN = Worth("hysteretic_stiffness", 0.9, 30.0, 6.0, 1.0, (), anywhere=6.0)
@@ -34,3 +36,8 @@ def test_beside_a_memory_a_loop_stands_only_where_it_is_plain() -> None:
 def test_what_leaves_much_in_the_runs_it_acts_in_stands_only_where_it_is_plain() -> None:
     assert named("load", True, replace(CLEAN, left=2.2)) == ()
     assert named("load", True, PLAIN) == ("hysteretic_stiffness",)
+
+
+def test_what_takes_next_to_nothing_of_the_channel_it_gains_most_in_is_no_part_of_it() -> None:
+    assert share(4.34, 4.28) < PART < share(4.34, 3.6)  # a sensor's wobble, of which a spring took a thirtieth
+    assert share(1.3, 1.0) == 1.0

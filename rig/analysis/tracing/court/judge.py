@@ -28,6 +28,7 @@ from rig.analysis.tracing.thresholds import (
     PLAINLY,
     QUIET,
     REAL,
+    SEVERAL,
     SMALLEST,
     TURNED,
     UNREAL,
@@ -84,7 +85,8 @@ class Worth:
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
     the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
-    largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's."""
+    largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's. `runs`
+    fitted ones show it."""
 
     name: str
     share: float
@@ -97,6 +99,7 @@ class Worth:
     harm: float = 1.0
     anywhere: float = 0.0
     work: float = 0.0
+    runs: int = SEVERAL
 
     @property
     def named(self) -> bool:
@@ -114,9 +117,9 @@ class Worth:
     @property
     def plain(self) -> bool:
         """Whether it is plainly what acts there, whatever its law leaves: most of the excess goes with it, with one
-        size in all runs. How large the rest is in floors says nothing against it: that of a law a little off grows with
-        the effect."""
-        one = max(self.unsteady, self.apart) < ABOUT
+        size in all runs, of which there are a few: in one or two a size is the same for want of others. How large the
+        rest is in floors says nothing against it: that of a law a little off grows with the effect."""
+        one = max(self.unsteady, self.apart) < ABOUT and self.runs >= SEVERAL
         return self.share > PLAINLY and abs(self.true - 1.0) < ABOUT and one
 
     @property
@@ -182,6 +185,7 @@ def worth(s: Solution, d: Design, at: Court, whole: Mapping[Key, Array], name: s
         harm(at, bare, whole),
         max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
         sum(r**2 * whole[key].size for key, r in size.items()),
+        seen[2],
     )
 
 
@@ -196,15 +200,16 @@ def harm(at: Court, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> fl
     return max(found)
 
 
-def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> tuple[float, float]:
+def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> tuple[float, float, int]:
     """How much an effect's size differs from run to run: RMS, relative, weighted by what it does there, what noise
-    makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. `rest` is
-    the fit without the effect.
+    makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. And how many
+    runs show it plainly. `rest` is the fit without the effect.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
     like an effect has its size from a compromise between runs; a real one has the same in each.
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
+    shown = set()
     for key in d.y:
         e = d.residual(key, s.x) / floors[key]
         f = d.residual(key, rest.x) / floors[key] - e
@@ -212,12 +217,14 @@ def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, fl
         if own > FAINT**2 * e.size:
             spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
             work[key[1]] += own
+        if own > SMALLEST**2 * e.size:
+            shown.add(key[0])
     total = sum(work.values())
     fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
     apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
     # a channel it hardly shows in says nothing of it: what is left there is something else's
     whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
-    return float(whole), float(apart)
+    return float(whole), float(apart), len(shown)
 
 
 def convicted(s: Solution, at: Court) -> tuple[Solution, Design, list[Worth]]:

@@ -22,7 +22,7 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, SEVERAL
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY
@@ -64,8 +64,7 @@ def decide(
     names = tuple(name for name in weighed if name not in SHADOWS)
     one = MISSING if names else ALONE
     loud = p.court.loud(after, one, bool(names)) or line is not None
-    # in one or two runs a size is the same for want of others
-    plain = {w.name for w in worths if w.plain} if len(p.split.fitted) >= SEVERAL else set()
+    plain = {w.name for w in worths if w.plain}
     if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
         return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
@@ -83,7 +82,8 @@ def decide(
     # from it too
     shared = [name for name in names if name not in p.own.made]
     told = line is None and (known or total <= EXPLAINED)
-    best, stand = where[0], _standing(where[0].coordinate, shared, worths, plain, told)
+    best, taken = where[0], _share(*_most(p, before, after))
+    stand = _standing(best.coordinate, shared, worths, plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else _of_the_rest(best, total)
     if stand:
         sentence = f"{_lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
@@ -174,6 +174,11 @@ def _most(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) 
     keys = [[k for k in after if k[1] == c] for c in CHANNELS]
     pairs = [(p.court.ratio(before, mine), p.court.ratio(after, mine)) for mine in keys if mine]
     return max(pairs, key=lambda pair: pair[0] - pair[1])
+
+
+def _share(before: float, after: float) -> float:
+    """Of the excess over the floor, what has gone."""
+    return (before**2 - after**2) / max(before**2 - 1.0, 1e-9)
 
 
 def _of_the_rest(best: Home, total: float) -> str:
