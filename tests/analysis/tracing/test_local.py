@@ -155,6 +155,28 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none(tmp_pat
     assert "held-out ones have none" in found.verdict.sentence
 
 
+@pytest.mark.slow
+def test_a_fitted_run_that_stands_far_above_its_floor_is_said_though_unseen_runs_leave_nothing(
+    tmp_path: Path, shared: Path
+) -> None:
+    """Counts lost one by one over two seconds: no step, and no run that is held out has it."""
+    names = ("slow_ke_1", "slow_ke_2", "load_10nm_1", "load_10nm_2", "speed_200rpm_1", "speed_200rpm_2")
+    campaign = shared / "cases" / "open-1"
+    hit = started(campaign / "load_10nm_1")
+
+    def slipping(c: Columns, began: float) -> Columns:
+        t = c["t"] - c["t"][0]
+        lost = 40 * 2 * np.pi / 65536 * np.clip((t - 0.45 * t[-1]) / 2.0, 0.0, 1.0)
+        return {"theta_m": c["theta_m"] - lost} if began == hit else {}
+
+    found = spiked(tmp_path, campaign, slipping, names)
+    assert "load_10nm_1" in found.fitted
+    assert (found.verdict.status, found.verdict.coordinate) == ("unknown_effect", "time")
+    assert found.verdict.effects == ()
+    assert found.verdict.sentence.startswith("load_10nm_1 alone has ")
+    assert "load_10nm_2, taken alike, has not" in found.verdict.sentence
+
+
 @pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])
 def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_torque_as_one(
     rng: np.random.Generator, of_the_load: bool, share: float

@@ -6,6 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import along, deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
@@ -15,14 +17,15 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.local import IN_SHORT
-from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.floor.noise import leniency
+from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, IN_ONE_RUN, MISSING, MOSTLY, PART
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
 from rig.model.effects import CATALOGUE, LIBRARY
@@ -69,7 +72,7 @@ def decide(
         return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
-        hidden = None if names else _in_the_floor(p, s, after, floors)
+        hidden = None if names else _in_one_run(p, s) or _in_the_floor(p, s, after, floors)
         return hidden or _settled(p, names, found, *_falls(p, before, after))
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
@@ -102,6 +105,27 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where
+
+
+def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
+    """Unseen runs leave nothing, but a fitted one has far more left than its floor; None where there is none.
+
+    A run like it that has nothing left says that something happened in the one.
+    """
+    over = {k: float(np.sqrt(np.mean(s.residual(k) ** 2))) / p.floors[k] for k in s.keys if k[1] != "R"}
+    worst = max(over, key=lambda k: over[k])
+    if over[worst] < IN_ONE_RUN * leniency(p.measured, p.eq, worst):
+        return None
+    run = p.eq.runs[worst[0]]
+    others = [*over, *p.court.floors]
+    twins = [p.eq.runs[i] for i, c in others if c == worst[1] and i != worst[0] and alike(p.eq.runs[i], run)]
+    sentence = (
+        f"{run.name} alone has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
+        + (f", which {twins[0].name}, taken alike, has not" if twins else "")
+        + ": something happened in that run, which no effect of the library explains. Unseen runs leave nothing."
+    )
+    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, sentence)
+    return Ruling(verdict, None, ("time",), along("time"))
 
 
 def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
