@@ -86,3 +86,19 @@ def test_a_single_run_may_exceed_a_floor_of_few_independent_parts_by_more() -> N
     assert 1.0 < leniency(measured(12.0), eq, at) <= LENIENT
     assert leniency(measured(2.0), eq, at) == LENIENT
     assert leniency(measured(2.0), eq, (6, "A")) == 1.0  # nothing is known of that channel
+
+
+def test_what_lock_tests_differ_by_is_no_floor_of_runs_that_turn_freely() -> None:
+    """A gain that is never twice the same makes ten times as much under the torques of a lock test."""
+    runs = [run_at(12.0 + 5.0 * i, 1.0) for i in range(8)]
+    runs[6].locked = runs[7].locked = True
+    by_run = {(i, "L"): 0.4 if run.locked else 0.04 for i, run in enumerate(runs)}
+    of = Measured(Noise({"L": 0.2}, {"L": 1.0}, {"L": 1e-3}), by_run, {}, {}, dict.fromkeys(by_run, 500.0))
+    for run in runs:
+        run.counts_m = 0.0
+    rows = {(i, "L"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool)) for i in range(8)}
+    eq: Any = SimpleNamespace(runs=runs, rows=rows)
+    assert floor_of(of, eq, (0, "L")) == pytest.approx(0.04)
+    assert floor_of(of, eq, (6, "L")) == pytest.approx(0.4)
+    few: Any = SimpleNamespace(runs=runs, rows={key: rows[key] for key in [*rows][3:]})
+    assert floor_of(of, few, (3, "L")) == pytest.approx(0.2)  # three free ones tell too little by themselves

@@ -205,10 +205,23 @@ def against_both(theta: Array, e: Array) -> Array:
 
 def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
     """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all; where a
-    motor sticks and jumps, its encoder's rounding at least, which repeats share.
+    motor sticks and jumps, its encoder's rounding at least, which repeats share. And no less than all of its kind come
+    to: one pair tells little.
     """
     alone = float(np.hypot(_compared(measured, eq, key), _gain(measured, eq, key)))
-    return max(alone, float(np.hypot(measured.noise.sigma[key[1]], _rounding(eq, key))))
+    return max(alone, float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
+
+
+def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
+    """Of all pairs; of those that turn freely alone where it does and enough were compared: under the torques of a lock
+    test a gain that is never twice the same makes many times what it does elsewhere."""
+    run, channel = key
+    free = [i for i, c in measured.by_run if c == channel and not eq.runs[i].locked and (i, c) in eq.rows]
+    if eq.runs[run].locked or len(free) < 2 * ENOUGH:
+        return measured.noise.sigma[channel]
+    rows = [eq.rows[i, channel].y.size for i in free]
+    pooled = float(np.sqrt(np.average([measured.by_run[i, channel] ** 2 for i in free], weights=rows)))
+    return min(pooled, measured.noise.sigma[channel])
 
 
 def leniency(measured: Measured, eq: Equations, key: Key) -> float:
