@@ -63,6 +63,7 @@ ALONE: Final = (
     2.0  # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
 )
 IN_ONE_RUN: Final = 2.5  # RMS over floor of a fitted run that is no noise any more, though unseen runs leave nothing
+LOCKS_DIFFER: Final = 3.0  # times as much as runs that turn freely: on clean campaigns 0.8 to 1.4
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
 LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand

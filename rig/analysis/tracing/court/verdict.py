@@ -23,6 +23,7 @@ from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, IN_ONE_RUN, MISSING, MOSTLY, PART
@@ -72,7 +73,7 @@ def decide(
         return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
-        hidden = None if names else _in_one_run(p, s) or _in_the_floor(p, s, after, floors)
+        hidden = None if names else _hidden(p, s, after, floors)
         return hidden or _settled(p, names, found, *_falls(p, before, after))
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
@@ -105,6 +106,26 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where
+
+
+def _hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
+    """What unseen runs leave is no more than their floor, but there is something all the same; None where not."""
+    return _in_one_run(p, s) or _in_lock_tests(p, s, after) or _in_the_floor(p, s, after, floors)
+
+
+def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruling | None:
+    left = {key: s.residual(key) for key in s.keys}
+    found = lock_tests_differ(p.eq, p.measured, {**left, **after})
+    if found is None:
+        return None
+    home, times = found
+    what = f"comes and goes {_how_often(home)}" if home.frequency_hz else f"follows the {home.coordinate}"
+    sentence = (
+        f"Lock tests differ by {times:.1f} times what runs that turn freely do: the stiffness is not the same twice, "
+        f"and {what} ({min(home.share, 1.0):.0%} of it); it is in the floor, and no effect of the library explains it."
+    )
+    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
+    return Ruling(verdict, None, (home.coordinate,), along(home.coordinate))
 
 
 def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
