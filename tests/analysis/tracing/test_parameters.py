@@ -45,3 +45,21 @@ def test_damping_is_right_though_the_model_ends_with_the_second_derivative(monke
     assert fitted < 0.996 * B_SP  # what the coefficient alone says
     found = {p.name: p.value for p in parameters.baseline(s)}
     assert found["B_sp"] == pytest.approx(B_SP, rel=5e-4)
+
+
+def test_a_sensor_that_would_be_early_has_no_delay_and_an_interval_as_wide_as_the_rows_leave_it(
+    rng: np.random.Generator,
+) -> None:
+    at, key, size = np.array([INDEX[n] for n in ("J_l", "lag")]), (0, "L"), len(BASELINE)
+    z = np.stack([waves(2) / 1e3, -waves(1)], 1)
+    y = z @ np.array([0.8, -2e-5]) + 0.05 * rng.standard_normal(len(z))  # 20 µs early
+    eq = Equations((RUN,), {}, Noise({"L": 0.05}, {"L": 1.0}, {"L": np.inf}))
+    parts = {key: (Part(Bare(z), at, None),)}
+    empty = Design(eq, (), (), {key: y}, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right = normal(empty, {key: parts[key][0]})
+    (lag,) = (
+        p for p in parameters.baseline(fit(Design(eq, (), (), empty.y, {}, parts, gram, right))) if p.name == "lag"
+    )
+    assert (lag.value, lag.ci95[0]) == (0.0, 0.0)
+    alone = 1.96 * 0.05 / np.sqrt(np.sum(waves(1) ** 2))  # of rows of that noise
+    assert 0.3 * alone < lag.ci95[1] < 3 * alone

@@ -11,7 +11,7 @@ from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import Solution, extended, fit, solve
+from rig.analysis.tracing.fit.model import Solution, extended, fit, prior, solve
 from rig.analysis.tracing.fit.refine import nudged
 from rig.model.effect import Array, Fit, Parameter, parameter
 
@@ -26,6 +26,7 @@ PLAIN = {
 }
 
 ROUNDS = 4  # each leaves a fiftieth of what the one before left
+NO_LAG = 1e-9  # s
 LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms would tell
 
 
@@ -42,9 +43,17 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
         both += _unit(c, "compliance") * (2 * s.value("damping") * stiff - lag) * stiff**2
         out.append(_of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad"))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    out = [_at_its_bound(s, p) if p.name == "lag" and p.value < NO_LAG else p for p in out]
     if seen[INDEX["a1"]]:
         out += [_order(s, c, n) for n in range(1, ORDERS + 1)]
     return tuple(out)
+
+
+def _at_its_bound(s: Solution, lag: Parameter) -> Parameter:
+    """No delay, for no sensor is early: as late as it may be by an interval that knows of no bound."""
+    unbound = replace(s, gram=s.design.gram + np.diag(prior(s.design.size)))
+    half = 1.96 * float(np.sqrt(max(0.0, covariance(unbound)[INDEX["lag"], INDEX["lag"]])))
+    return replace(lag, value=0.0, ci95=(0.0, half))
 
 
 def _of_the_series(s: Solution, damping: float, stiffness: float) -> float:
