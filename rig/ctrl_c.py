@@ -35,6 +35,23 @@ def after_imports() -> Iterator[None]:
         signal.signal(signal.SIGALRM, alarm)
 
 
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """While active, an interrupt waits, and is raised when it is over: for files that belong together. In another
+    thread than the main one nothing changes."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda signum, frame: came.append(signum))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
 def importing(frame: FrameType | None) -> bool:
     """True when `frame` runs because something is being imported."""
     while frame is not None:

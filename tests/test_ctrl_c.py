@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from rig.ctrl_c import after_imports
+from rig.ctrl_c import after_imports, uninterrupted
+from rig.runfile.manifest import write_atomic
 
 SLOW = """
 import os, signal
@@ -99,3 +100,29 @@ def test_in_another_thread_nothing_changes() -> None:
     thread.start()
     thread.join()
     assert said == [signal.default_int_handler]
+
+
+def test_files_that_belong_together_are_all_written_before_an_interrupt_is_raised(tmp_path: Path) -> None:
+    def both() -> None:
+        with uninterrupted():
+            write_atomic(tmp_path / "page", b"new")
+            os.kill(os.getpid(), signal.SIGINT)
+            write_atomic(tmp_path / "figures", b"new")
+
+    with pytest.raises(KeyboardInterrupt):
+        both()
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"page": b"new", "figures": b"new"}
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_an_interrupt_in_the_middle_of_writing_leaves_the_old_file_and_nothing_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def pressed(handle: int) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "page").write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", pressed)
+    with pytest.raises(KeyboardInterrupt):
+        write_atomic(tmp_path / "page", b"new")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"page": b"old"}

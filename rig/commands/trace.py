@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rig.commands.loading import load
 from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file, writing
 from rig.core.errors import Exit
+from rig.ctrl_c import uninterrupted
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.outcome.result import NextRun, Trace
@@ -54,14 +55,17 @@ def run(args: argparse.Namespace) -> int:
         tell(found)
         load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
         from rig.report.trace.campaign import provenance
-        from rig.report.trace.page import write
+        from rig.report.trace.page import put, render
 
-        with writing(target):  # the page first: it takes seconds, and a word to stop meanwhile leaves all as it was
-            page = write(target, found, provenance(args.campaign, software(), utc_now()))
-            written = write_trace(target / "trace.json", found)
-        if args.json:
-            with writing(args.json, "--json"):
-                write_trace(args.json, found)
+        # it takes seconds, and a word to stop meanwhile leaves all as it was; from then on the files are of one trace
+        text = render(found, provenance(args.campaign, software(), utc_now()))
+        with uninterrupted():
+            with writing(target):
+                page = put(target, text)
+                written = write_trace(target / "trace.json", found)
+            if args.json:
+                with writing(args.json, "--json"):
+                    write_trace(args.json, found)
     print(f"written {written}\nreport {page}")
     return int(exit_of(found))
 

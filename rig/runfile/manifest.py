@@ -108,7 +108,8 @@ def update(folder: Path, **changes: Any) -> Manifest:
 
 
 def write_atomic(path: Path, data: bytes) -> None:
-    """Write `data` beside `path`, make it safe on disk, then rename. Raises OSError; then `path` is as it was."""
+    """Write `data` beside `path`, make it safe on disk, then rename. Raises OSError; then, and when it is interrupted,
+    `path` is as it was and nothing lies beside it."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with open(part, "wb") as file:
@@ -116,7 +117,7 @@ def write_atomic(path: Path, data: bytes) -> None:
             file.flush()
             os.fsync(file.fileno())
         part.replace(path)
-    except OSError:
+    except BaseException:
         part.unlink(missing_ok=True)
         raise
     sync_folder(path.parent)

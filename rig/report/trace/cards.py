@@ -49,7 +49,11 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
         ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
     back = _where_it_turns_back(trace, alone) if channel.sensor == "tau_m" else ""
     how = f"RMS of measured less model over {counted(len(trace.held_out), 'held-out run')}"
-    how += f"; floor of their conditions {join(three(floor), channel.unit)}" if floor is not None else ""
+    how += (
+        f"; each run over the floor of its conditions, RMS {join(three(floor), channel.unit)}"
+        if floor is not None
+        else ""
+    )
     how += f", {three(TURNED_BACK)} times that where the motor turns back" if back else ""
     spread = [_interval(trace, channel, which) for which in (("before",) if alone else ("before", "after"))]
     return Card(

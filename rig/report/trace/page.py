@@ -32,7 +32,12 @@ QUIET = 1.15  # RMS over floor before: a channel with less is at its floor and g
 
 def write(folder: Path, trace: Trace, origin: Provenance) -> Path:
     """Write `folder`/report.html and return its path. The file is replaced whole or not at all. Raises OSError."""
-    write_atomic(folder / run_page.NAME, render(trace, origin).encode(errors="replace"))
+    return put(folder, render(trace, origin))
+
+
+def put(folder: Path, text: str) -> Path:
+    """The same of a page that is rendered already."""
+    write_atomic(folder / run_page.NAME, text.encode(errors="replace"))
     return folder / run_page.NAME
 
 

@@ -108,7 +108,7 @@ def test_the_error_before_and_after_stands_beside_its_floor(pages: dict[str, Rea
     words = pages["explained"].words
     assert "8.20 → 0.910 arcsec" in words
     assert "9.10 → 1.01 × the floor" in words
-    assert "floor of their conditions 0.900 arcsec" in words
+    assert "each run over the floor of its conditions, RMS 0.900 arcsec" in words
     assert "2.80 → 2.00 mN·m" in words  # 0.0028 and 0.002 N·m
 
 
