@@ -25,7 +25,7 @@ from rig.core.errors import NotReady
 from rig.core.sample import Torque
 from tests.wire.library_drive import LibraryDrive
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("patient")]
 NODE = 40
 CHANNELS = count()
 PATIENCE = 20.0  # s a busy machine may take for what its threads do in a millisecond

@@ -23,7 +23,7 @@ from rig.core.errors import NotReady
 from rig.core.sample import Torque
 from tests.wire.foreign_node import NO_RTR, NO_SUCH_SUB, OFF, STATE, ForeignNode, Tpdo, Ways
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("patient")]
 NODE = 23
 CHANNELS = count()
 ENCODER = {(0x1000, 0): b"\x96\x01\x08\x00", (0x6501, 0): struct.pack("<I", 4096), (0x6004, 0): bytes(4)}
