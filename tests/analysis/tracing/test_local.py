@@ -173,7 +173,7 @@ def test_a_fitted_run_that_stands_far_above_its_floor_is_said_though_unseen_runs
     assert "load_10nm_1" in found.fitted
     assert (found.verdict.status, found.verdict.coordinate) == ("unknown_effect", "time")
     assert found.verdict.effects == ()
-    assert found.verdict.sentence.startswith("load_10nm_1 alone has ")
+    assert found.verdict.sentence.startswith("load_10nm_1 has ")
     assert "load_10nm_2, taken alike, has not" in found.verdict.sentence
 
 

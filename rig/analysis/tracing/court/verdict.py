@@ -26,6 +26,7 @@ from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import ticking
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, IN_ONE_RUN, MISSING, MOSTLY, PART
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
@@ -109,8 +110,9 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
 
 
 def _hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
-    """What unseen runs leave is no more than their floor, but there is something all the same; None where not."""
-    return _in_one_run(p, s) or _in_lock_tests(p, s, after) or _in_the_floor(p, s, after, floors)
+    """What unseen runs leave is no more than their floor, but there is something all the same; None where not. What
+    foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
+    return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after)
 
 
 def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruling | None:
@@ -131,22 +133,28 @@ def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruli
 def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
     """Unseen runs leave nothing, but a fitted one has far more left than its floor; None where there is none.
 
-    A run like it that has nothing left says that something happened in the one.
+    A run like it that has nothing left says that something happened in the one; a part of itself says nothing.
     """
     over = {k: float(np.sqrt(np.mean(s.residual(k) ** 2))) / p.floors[k] for k in s.keys if k[1] != "R"}
     worst = max(over, key=lambda k: over[k])
     if over[worst] < IN_ONE_RUN * leniency(p.measured, p.eq, worst):
         return None
     run = p.eq.runs[worst[0]]
-    others = [*over, *p.court.floors]
-    twins = [p.eq.runs[i] for i, c in others if c == worst[1] and i != worst[0] and alike(p.eq.runs[i], run)]
-    sentence = (
-        f"{run.name} alone has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
-        + (f", which {twins[0].name}, taken alike, has not" if twins else "")
-        + ": something happened in that run, which no effect of the library explains. Unseen runs leave nothing."
-    )
-    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, sentence)
-    return Ruling(verdict, None, ("time",), along("time"))
+    quiet = [k for k, ratio in over.items() if ratio < MISSING] + [*p.court.floors]
+    others = [p.eq.runs[i] for i, c in quiet if c == worst[1] and whole_run(p.eq.runs[i].name) != whole_run(run.name)]
+    twins = [other for other in others if alike(other, run)]
+    left = f"{run.name} has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
+    if twins:
+        coordinate = "time"
+        what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
+    else:
+        coordinate = next(
+            iter(home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors)), WHERE_IT_TURNS_BACK
+        ).coordinate
+        what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
+    sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
+    verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
+    return Ruling(verdict, None, (coordinate,), along(coordinate))
 
 
 def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:

@@ -208,7 +208,7 @@ def _angle(s: Signals, f: Smoother, has: Has) -> Columns:
 
 def third_rate(run: Recording) -> Array:
     """T⃛ of a run, pieces joined, all rows (n,)."""
-    return np.concatenate([run.smoother(piece.tau_l, 3) for piece in run.pieces])
+    return joined([run.smoother(piece.tau_l, 3) for piece in run.pieces])
 
 
 def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
