@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 
 FORM = (
     "expected NAME=UPPER, NAME=LOWER.. or NAME=LOWER..UPPER, in the figure's unit or with a space and another, for "
@@ -23,24 +25,56 @@ def limit_argument(parser: argparse.ArgumentParser) -> None:
         default=[],
         dest="limits",
         metavar="NAME=LIMIT",
-        help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; "
-        "names as in hdrig trend or result.json; without a unit in the figure's, an angle also in arcsec, arcmin, deg, "
-        "rad or mrad",
+        help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; names: "
+        "peak-to-peak, C_2, K1, hysteresis-loss, friction, or as in result.json; without a unit in the figure's, an "
+        "angle also in arcsec, arcmin, deg, rad or mrad",
     )
 
 
 def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
-    """What --limit says, as a manifest's `limits` has it. Raises UsageError."""
-    from rig.catalogue.figures import names_of
-
+    """What --limit says, as a manifest's `limits` has it. Raises UsageError: for a name that no analysis gives a figure
+    of, a unit that is not one of that figure, a limit below zero of what never is; nothing is moved or written by then.
+    """
     limits: dict[str, Any] = {}
     for assignment in assignments:
         word, equals, text = (part.strip() for part in assignment.partition("="))
         if not (word and equals):
-            raise UsageError(f"--limit {assignment}: {FORM}")
-        for name in names_of(word)[:1]:
-            limits[name] = _bounds(assignment, text)
+            raise UsageError(f"--limit '{assignment}': {FORM}")
+        name = _figure(assignment, word)
+        limits[name] = _bounds(assignment, text)
+        _refuse_senseless(assignment, word, name, limits[name])
     return limits
+
+
+def _figure(assignment: str, word: str) -> str:
+    """The estimate `word` stands for; C_4 is the amplitude of order 4."""
+    from rig.analysis.figure_names import FIGURES, unit_of
+    from rig.catalogue.figures import WORDS, names_of
+
+    name = re.sub(r"^[Cc]_(\d+)$", r"fourier_amplitude_\1", names_of(word)[0])
+    if unit_of(name) is not None:
+        return name
+    said = nearest(word, {*WORDS, *FIGURES})
+    if not said.startswith("did"):  # sixty names are no answer
+        said = f"expected {', '.join(WORDS)}, or the name of a figure as in result.json"
+    raise UsageError(f"--limit '{assignment}': no figure is called '{word}'; {said}")
+
+
+def _refuse_senseless(assignment: str, word: str, name: str, bounds: Mapping[str, Any]) -> None:
+    from rig.analysis.conversion import factor, others
+    from rig.analysis.figure_names import may_be_negative, unit_of
+
+    wanted = unit_of(name) or "1"
+    unit = bounds.get("unit", wanted)
+    numbers = [bounds[key] for key in ("lower", "upper") if key in bounds]
+    said = f"{' to '.join(f'{number:g}' for number in numbers)}{'' if unit == '1' else f' {unit}'}"
+    if not math.isfinite(factor(unit, wanted)):
+        raise UsageError(
+            f"--limit '{assignment}': {said} is no size of {word}, for '{unit}' is no unit of it; expected a number in "
+            f"{'no unit' if wanted == '1' else others(wanted)}"
+        )
+    if min(numbers) < 0 and not may_be_negative(name):
+        raise UsageError(f"--limit '{assignment}': {said}, and {word} is never below zero; expected 0 {wanted} or more")
 
 
 def _bounds(assignment: str, text: str) -> dict[str, Any]:
@@ -48,8 +82,10 @@ def _bounds(assignment: str, text: str) -> dict[str, Any]:
     low, both, high = numbers.partition("..")
     said = {"lower": low, "upper": high} if both else {"upper": numbers}
     bounds: dict[str, Any] = {key: _number(assignment, number) for key, number in said.items() if number}
-    if not bounds or list(bounds.values()) != sorted(bounds.values()):
-        raise UsageError(f"--limit {assignment}: {FORM}")
+    if not bounds:
+        raise UsageError(f"--limit '{assignment}': {FORM}")
+    if list(bounds.values()) != sorted(bounds.values()):
+        raise UsageError(f"--limit '{assignment}': the lower end {low} lies above the upper end {high}; {FORM}")
     return bounds | ({"unit": unit.strip()} if unit else {})
 
 
@@ -59,5 +95,5 @@ def _number(assignment: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise UsageError(f"--limit {assignment}: '{text}' is not a number; {FORM}")
+        raise UsageError(f"--limit '{assignment}': '{text}' is not a number; {FORM}")
     return value

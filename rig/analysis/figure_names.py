@@ -1,0 +1,104 @@
+"""The figures a run may have: name, unit, and which of them may be negative. What a limit can be set on before the run
+is made or read; a test holds this table and the analyses in agreement.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+FIGURES: Final = {  # `{n}` stands for a number; the unit is the one shown, "1" is none
+    "kinematic_error_peak_to_peak": "arcsec",
+    "fourier_amplitude_{n}": "arcsec",
+    "fourier_terms": "1",
+    "residual_rms": "arcsec",
+    "revolutions_forward": "1",
+    "revolutions_reverse": "1",
+    "direction_offset": "arcsec",
+    "trend_slope": "arcsec/deg",
+    "trend_peak_to_peak": "arcsec",
+    "drift": "arcsec/min",
+    "transmission_accuracy": "arcsec",
+    "line_{n}": "arcsec",
+    "line_order_{n}": "arcsec",
+    "flexible_peak_to_peak": "arcsec",
+    "flexible_amplitude_{n}": "arcsec",
+    "alignment_shift": "°",
+    "latch_skew_load": "µs",
+    "latch_skew_torque": "µs",
+    "latch_skew_error": "arcsec",
+    "mean_speed": "rpm",
+    "speed_drift": "rpm",
+    "speed_ripple": "rpm",
+    "speed_scatter": "%",
+    "stuck_share": "%",
+    "hunting_frequency": "Hz",
+    "chosen_speed": "rpm",
+    "speed_limit": "rpm",
+    "speed_limit_predicted": "rpm",
+    "held_frequency": "Hz",
+    "highest_order_predicted": "%",
+    "mean_motor_torque": "N·m",
+    "mean_shaft_torque": "N·m",
+    "shaft_torque_swing": "N·m",
+    "coulomb": "N·m",
+    "viscous": "N·m·s/rad",
+    "fall": "N·m",
+    "stribeck_speed": "rpm",
+    "motor_coulomb": "N·m",
+    "motor_viscous": "N·m·s/rad",
+    "motor_fall": "N·m",
+    "motor_stribeck_speed": "rpm",
+    "load_coulomb": "N·m",
+    "load_viscous": "N·m·s/rad",
+    "sensor_zero": "N·m",
+    "breakaway": "N·m",
+    "friction_drift": "%",
+    "inertia_at_motor": "kg·m²",
+    "coulomb_torque": "N·m",
+    "viscous_friction": "N·m·s/rad",
+    "time_constant": "s",
+    "holding_torque": "N·m",
+    "holding_torque_difference": "N·m",
+    "torsional_stiffness": "N·m/rad",
+    "torsional_stiffness_gear": "N·m/rad",
+    "torsional_stiffness_apparent": "N·m/rad",
+    "torsion_span": "arcmin",
+    "torsion_remainder_rms": "arcmin",
+    "stiffness_K{n}": "N·m/rad",
+    "knot_T{n}": "N·m",
+    "cubic_k1": "N·m/rad",
+    "cubic_k3": "N·m/rad³",
+    "play": "arcmin",
+    "lost_motion": "arcmin",
+    "hysteresis_loss": "arcmin",
+    "hysteresis_energy": "mJ",
+    "loop_hysteretic": "N·m",
+    "loop_viscous": "N·m·s/rad",
+    "creep_per_decade": "%",
+    "wave_generator_angle": "°",
+    **{f"noise_theta_{side}": "arcsec" for side in "ml"},
+    **{f"noise_tau_{side}": "N·m" for side in "ml"},
+    **{f"zero_tau_{side}": "N·m" for side in "ml"},
+    **{f"drift_theta_{side}": "arcsec/min" for side in "ml"},
+    **{f"drift_tau_{side}": "N·m/min" for side in "ml"},
+}
+
+SIGNED: Final = ("drift", "zero_", "trend_slope", "direction_offset", "alignment_shift", "latch_skew_load",
+    "latch_skew_torque", "mean_", "speed_drift", "sensor_zero", "friction_drift", "holding_torque_difference",
+    "cubic_k3", "creep_per_decade")  # fmt: skip
+"""How the names of those begin that may be below zero; of the others a negative limit says nothing."""
+
+
+def unit_of(name: str) -> str | None:
+    """The unit of the figure `name`; None where no analysis has one of that name."""
+    return next((unit for known, unit in FIGURES.items() if re.fullmatch(_pattern(known), name)), None)
+
+
+def may_be_negative(name: str) -> bool:
+    """Whether the figure `name` has a sign."""
+    return name.startswith(SIGNED)
+
+
+def _pattern(known: str) -> str:
+    return re.escape(known).replace(re.escape("{n}"), r"[0-9.]+")
