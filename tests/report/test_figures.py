@@ -2,7 +2,6 @@
 
 import re
 import xml.etree.ElementTree as ET
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from rig.report import figures
 from rig.report.figures import CATALOGUE, Drawing, Frame
-from rig.report.figures.svg import steps
 from rig.report.palette import LIGHT
 from tests.report import made_up
 
@@ -199,35 +197,6 @@ def test_an_envelope_keeps_every_peak() -> None:
     _, least, greatest = columns(np.arange(5001.0), low, high, 640)
     assert len(least) == 640
     assert (least.min(), greatest.max()) == (low.min(), high.max())
-
-
-def test_a_path_as_steps_leads_to_the_same_points() -> None:
-    rng = np.random.default_rng(1)
-    points = np.cumsum(rng.normal(0, 3, (200, 2)), axis=0)
-    path = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in points) + " z M 3.0 4.0 L 5.0 6.0 M 1.0 1.0 L 2.0 2.0"
-    expected: list[Any] = [*points, points[0], (3, 4), (5, 6), (1, 1), (2, 2)]
-    assert np.allclose(walk(steps(path)), expected, atol=0.0501)
-
-
-def walk(path: str) -> made_up.Array:
-    """Every point of a path of m, l and z."""
-    here = start = np.zeros(2)
-    out, command = [], ""
-    tokens = re.findall(r"[mlz]|-?(?:\d+\.?\d*|\.\d+)", path)
-    i = 0
-    while i < len(tokens):
-        if tokens[i] in "mlz":
-            command, i = tokens[i], i + 1
-            if command == "z":
-                here = start
-                out.append(here)
-                continue
-        here = here + np.array([float(tokens[i]), float(tokens[i + 1])])
-        i += 2
-        out.append(here)
-        if command == "m":
-            start, command = here, "l"
-    return np.array(out)
 
 
 def test_a_run_at_speed_is_not_called_the_kinematic_error() -> None:

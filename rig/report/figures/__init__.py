@@ -35,6 +35,7 @@ with without_help():
         torsion,
     )
     from rig.report.figures.canvas import STYLE, Curves, Drawing, Frame
+    from rig.report.figures.renderer import drawn
     from rig.report.figures.svg import dress
 
 __all__ = ["CATALOGUE", "Drawing", "Frame", "png", "styled", "svg"]
@@ -79,13 +80,12 @@ def svg(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, prefix:
     Without `prefix` it is a file of its own in light colours; with one it is part of a page: ids begin with it, colours
     are the page's variables, width is the page's to set.
     """
-    text = io.StringIO()
     with styled():
         figure = drawing.draw(curves, frame or Frame())
         if figure is None:
             return None
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return dress(text.getvalue(), prefix or "", drawing.say(curves), themed=prefix is not None)
+        text = drawn(figure)
+    return dress(text, prefix or "", drawing.say(curves), themed=prefix is not None)
 
 
 def png(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, scale: float = 2.0) -> bytes | None:

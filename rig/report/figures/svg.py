@@ -1,17 +1,14 @@
 """From matplotlib's SVG to one fit for a page: small, text as text, colours by name, ids its own.
 
-Coordinates are rounded to a tenth of a pixel and written as steps, which makes noisy curves a quarter of the size.
+Coordinates are rounded to a tenth of a pixel.
 """
 
 from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from functools import cache
+from functools import lru_cache
 
-import numpy as np
-
-from rig.analysis.result import Array
 from rig.report.palette import NAME
 
 SVG = "http://www.w3.org/2000/svg"
@@ -55,8 +52,8 @@ def _clean(element: ET.Element, prefix: str, referred: set[str], themed: bool) -
         element.set("href", f"#{prefix}{element.attrib.pop(HREF)[1:]}")
     for key, value in list(element.attrib.items()):
         match key:
-            case "d":
-                element.set(key, steps(value))
+            case "d" if value[:1] == "M":  # curves: steps are ready
+                element.set(key, " ".join(NUMBER.sub(_short, value).split()))
             case "style":
                 element.set(key, _style(value, themed))
             case "transform" if NO_TURN.match(value):
@@ -70,6 +67,7 @@ def _clean(element: ET.Element, prefix: str, referred: set[str], themed: bool) -
     element.tail = None
 
 
+@lru_cache(1024)
 def _style(style: str, themed: bool) -> str:
     parts = [(k.strip(), v.strip()) for k, _, v in (part.partition(":") for part in style.split(";")) if k.strip()]
     kept = ";".join(f"{k}:{NUMBER.sub(_short_style, v)}" for k, v in parts if k not in DROPPED)
@@ -82,47 +80,6 @@ def _short(found: re.Match[str]) -> str:
 
 def _short_style(found: re.Match[str]) -> str:
     return f"{float(found[0]):.2f}".rstrip("0").rstrip(".")
-
-
-def steps(path: str) -> str:
-    """A path of M, L and z in absolute floats as relative steps of tenths; paths with curves stay absolute."""
-    if any(c in path for c in "CQ"):
-        return " ".join(NUMBER.sub(_short, path).split())
-    out, here = list[str](), np.zeros(2)
-    for piece in path.split("M")[1:]:
-        points = np.fromstring(piece.replace("L", "").replace("z", ""), sep=" ").reshape(-1, 2)
-        tenths = np.rint(10.0 * points)
-        out.append(_relative(np.diff(tenths, axis=0, prepend=here[None])))
-        closed = "z" in piece
-        out.extend("z" * closed)
-        here = tenths[0 if closed else -1]
-    return "".join(out)
-
-
-def _relative(moved: Array) -> str:
-    """One m and what is drawn from there, each step [0.1 px] (n, 2); steps of nothing after the first are left out."""
-    kept = moved[np.append([True, True], moved[2:].any(axis=1))[: len(moved)]]
-    x, y, *lines = kept.ravel().astype(int).tolist()
-    start = f"m{_tenths(x)}{_joined(y)}"
-    if not lines:
-        return start
-    # the l is not said again; after an m the numbers alone would mean a line too
-    return f"{start}l{_tenths(lines[0])}{''.join(map(_joined, lines[1:]))}"
-
-
-@cache
-def _tenths(value: int) -> str:
-    """Steps are short and few of them differ: each is worked out once."""
-    whole, tenth = divmod(abs(value), 10)
-    text = (str(whole) if whole or not tenth else "") + (f".{tenth}" if tenth else "")
-    return f"-{text}" if value < 0 else text
-
-
-@cache
-def _joined(value: int) -> str:
-    """The same behind another number: a minus parts them, else a blank does."""
-    text = _tenths(value)
-    return text if text[0] == "-" else f" {text}"
 
 
 def _flatten(parent: ET.Element) -> None:
