@@ -35,7 +35,10 @@ def untraced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (["--json", "{}/nowhere/trace.json"], "cannot write {}/nowhere/trace.json: there is no folder {}/nowhere"),
         (["--json", "{}"], "cannot write {}: it is a folder; name another place with --json"),
         (["--out", "{}/file/x"], "Not a directory; name another place with --out"),
-        (["--hold-out", "run-*", "--hold-out", "speed_*"], "--hold-out speed_* fits no run; there are run-0, run-1"),
+        (
+            ["--hold-out", "run-*", "--hold-out", "speed_*"],
+            "--hold-out 'speed_*' fits none of the 2 runs; expected one of run-0, run-1",
+        ),
     ],
 )
 def test_what_cannot_be_done_with_the_answer_is_said_before_the_question(
@@ -107,3 +110,11 @@ def test_case_counts_in_a_pattern() -> None:
     refuse_unmatched([], ["anything"])
     with pytest.raises(UsageError, match="RUN"):
         refuse_unmatched(["run-0"], ["RUN-0"])
+
+
+def test_of_many_runs_the_first_are_named_and_the_rest_are_counted() -> None:
+    names = [f"run-{i:02d}" for i in range(36)]
+    with pytest.raises(UsageError, match=r"none of the 36 runs; expected one of run-00, .*, run-07 and 28 more in"):
+        refuse_unmatched(names, ["xyz"])
+    with pytest.raises(UsageError, match="did you mean 'run-17'"):
+        refuse_unmatched(names, ["run17"])

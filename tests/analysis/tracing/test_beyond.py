@@ -56,6 +56,17 @@ def test_faster_slower_or_more_loaded_ones_are(held: Any) -> None:
     assert found(prepared(fitted, [run(120.0), held])).outside == (4,)
 
 
+def test_a_long_list_of_runs_says_how_many_more_there_are_and_where_they_stand() -> None:
+    fitted = [run(float(rpm)) for rpm in range(10, 60, 10)]
+    said = found(prepared(fitted, [run(400.0)])).sentence()
+    assert "1 of 1 held-out runs (at-400) lie" in said
+    assert "5 fitted runs (at-10, at-20, at-30 and 2 more)" in said
+    assert "All runs stand in the report's list of runs and under `runs` in trace.json" in said
+    few = found(prepared(fitted[:2], [run(400.0)])).sentence()
+    assert "more" not in few
+    assert "trace.json" not in few
+
+
 def test_where_no_fitted_run_turns_freely_every_one_that_does_is_outside() -> None:
     said = found(prepared([run(0.0, 60.0, locked=True)], [run(120.0)])).sentence()
     assert "motor speed none fitted, 120 to 120 rpm held out" in said
@@ -67,9 +78,9 @@ def test_the_sentence_names_runs_numbers_and_what_they_do_not_determine() -> Non
     damping = parameter("B_sp", 1.0, 2.0, "N·m·s/rad")  # of either sign, for filters lag
     said = found(p, drag, stiff, damping).sentence()
     assert said == (
-        "2 of 2 held-out runs lie outside what the 2 fitted runs (at-10, at-11) cover (motor speed 10 to 11 rpm "
-        "fitted, 120 to 400 rpm held out; shaft torque -4.9 to 4.9 N·m fitted, -4.9 to 4.9 N·m held out), and the "
-        "fitted runs do not determine B_l (-2.32 N·m·s/rad, 95 % -3.32 to -1.32), which no gear has below zero."
+        "2 of 2 held-out runs (at-120, at-400) lie outside what the 2 fitted runs (at-10, at-11) cover (motor speed "
+        "10 to 11 rpm fitted, 120 to 400 rpm held out; shaft torque -4.9 to 4.9 N·m fitted, -4.9 to 4.9 N·m held out), "
+        "and the fitted runs do not determine B_l (-2.32 N·m·s/rad, 95 % -3.32 to -1.32), which no gear has below zero."
     )
 
 
@@ -107,6 +118,7 @@ def test_a_clean_campaign_asked_for_speeds_it_was_not_fitted_at_is_no_unknown_ef
     folder = reduced(tmp_path, shared / "cases" / "open-1", RUNS, ())
     made = trace(folder, ["speed_*", "lock*"])
     assert made.verdict.status is Status.AMBIGUOUS
-    assert "3 of 3 held-out runs lie outside what the 4 fitted runs" in made.verdict.sentence
+    assert "3 of 3 held-out runs (" in made.verdict.sentence
+    assert "lie outside what the 4 fitted runs" in made.verdict.sentence
     assert not made.curve
     assert made.ratios_after == made.ratios_before

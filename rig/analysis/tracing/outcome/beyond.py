@@ -44,21 +44,32 @@ class Beyond:
     fitted: tuple[str, ...]
     held_out: int
     outside: tuple[int, ...]
+    names: tuple[str, ...]  # of the same
     covered: Range
     asked: Range
     open: tuple[Parameter, ...]
 
     def sentence(self) -> str:
         """For people."""
-        some = ", ".join(self.fitted[:NAMED]) + (" …" if len(self.fitted) > NAMED else "")
         said = (
-            f"{len(self.outside)} of {self.held_out} held-out runs lie outside what the {len(self.fitted)} fitted runs "
-            f"({some}) cover (motor speed {_both(self.covered.speed, self.asked.speed, 'rpm')}; "
-            f"shaft torque {_both(self.covered.torque, self.asked.torque, 'N·m')})"
+            f"{len(self.outside)} of {self.held_out} held-out runs ({_some(self.names)}) lie outside what the "
+            f"{len(self.fitted)} fitted runs ({_some(self.fitted)}) cover (motor speed "
+            f"{_both(self.covered.speed, self.asked.speed, 'rpm')}; shaft torque "
+            f"{_both(self.covered.torque, self.asked.torque, 'N·m')})"
         )
+        more = any(len(names) > NAMED for names in (self.names, self.fitted))
+        listed = " All runs stand in the report's list of runs and under `runs` in trace.json." if more else ""
         if not self.open:
-            return f"{said}."
-        return f"{said}, and the fitted runs do not determine {in_words(self.open)}, which no gear has below zero."
+            return f"{said}.{listed}"
+        return (
+            f"{said}, and the fitted runs do not determine {in_words(self.open)}, which no gear has below zero.{listed}"
+        )
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of them, and how many more: the page lists every run, and `runs` in trace.json."""
+    more = len(names) - NAMED
+    return ", ".join(names[:NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _both(covered: tuple[float, float], asked: tuple[float, float], unit: str) -> str:
@@ -73,9 +84,9 @@ def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
     outside = tuple(i for i in p.court.runs if _is_outside(p.eq.runs[i], covered))
     if not outside:
         return None
-    names = tuple(run.name for run in fitted)
+    names, far = tuple(run.name for run in fitted), tuple(p.eq.runs[i].name for i in outside)
     told = left_open([q for q in baseline if q.name != "B_sp"])  # which filters that lag make of either sign
-    return Beyond(names, len(held), outside, covered, asked, told)
+    return Beyond(names, len(held), outside, far, covered, asked, told)
 
 
 def reach(runs: Sequence[Recording]) -> Range:

@@ -12,6 +12,7 @@ import numpy as np
 from rig.analysis.tracing.floor.repeats import alike, strokes
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
+from rig.core.nearest import nearest
 from rig.model.effect import Signals
 
 LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
@@ -20,6 +21,7 @@ SPARED = 3  # one stretch of so many is held out
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 TURN = 2 * np.pi
 HELD_PART = "part held out"
+TOLD = 8  # names of runs in a sentence
 TOO_SHORT = "no run is long enough to hold a part of it out: at least two turns or strokes of the motor are needed"
 
 
@@ -62,7 +64,16 @@ def refuse_unmatched(names: Sequence[str], asked: Sequence[str]) -> None:
     """Raises UsageError when one of the patterns `asked` for names no run; says nothing where there are no `names`."""
     for pattern in asked:
         if names and not any(fnmatch.fnmatchcase(name, pattern) for name in names):
-            raise UsageError(f"--hold-out {pattern} fits no run; there are {', '.join(sorted(names))[:300]}")
+            raise UsageError(f"--hold-out '{pattern}' fits none of the {len(names)} runs; {_some_of(pattern, names)}")
+
+
+def _some_of(pattern: str, names: Sequence[str]) -> str:
+    """What was meant, or the first names and how many more the campaign's folder holds."""
+    said = nearest(pattern, names)
+    if said.startswith("did"):
+        return said
+    more = f" and {len(names) - TOLD} more in the campaign's folder" if len(names) > TOLD else ""
+    return f"expected one of {', '.join(sorted(names)[:TOLD])}{more}"
 
 
 def _asked(runs: Sequence[Recording], moving: list[int], asked: Sequence[str]) -> Split:
@@ -70,7 +81,10 @@ def _asked(runs: Sequence[Recording], moving: list[int], asked: Sequence[str]) -
     held = tuple(i for i in moving if any(fnmatch.fnmatchcase(runs[i].name, p) for p in asked))
     fitted = tuple(i for i in moving if i not in held)
     if not fitted or not held:
-        raise UsageError(f"--hold-out {' '.join(asked)} leaves {len(fitted)} runs to fit and {len(held)} to test with")
+        raise UsageError(
+            f"--hold-out {' '.join(asked)} leaves {len(fitted)} of {len(moving)} runs to fit and {len(held)} to test "
+            "with; expected at least one of each"
+        )
     return Split(tuple(runs), fitted, held, "runs named with --hold-out")
 
 
