@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from rig.analysis.tracing.outcome.result import Before
 from rig.commands.trace import tell
 from tests.report.trace import made_up
 
@@ -18,8 +19,17 @@ def test_a_channel_that_stays_above_its_floor_is_said_beside_the_name(capsys: py
 
 
 def test_one_held_out_run_is_one(capsys: pytest.CaptureFixture[str]) -> None:
-    tell(replace(made_up.nothing(), held_out=("a",)))
+    base = made_up.nothing()
+    one = Before(dict([next(iter(base.before.per_run.items()))]), base.before.pooled)
+    tell(replace(base, held_out=("a",), before=one))
     assert "on 1 held-out run: 1.00" in capsys.readouterr().out
+
+
+def test_a_channel_counts_the_runs_that_have_it(capsys: pytest.CaptureFixture[str]) -> None:
+    tell(made_up.explained())
+    said = capsys.readouterr().out
+    assert "kinematic error on 4 held-out runs" in said
+    assert "shaft torque on 3 held-out runs" in said  # the locked one has none
 
 
 def test_runs_that_were_left_out_are_counted_and_named(capsys: pytest.CaptureFixture[str]) -> None:

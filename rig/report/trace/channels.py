@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rig.analysis.angle import ARCSEC
-from rig.analysis.tracing.outcome.result import Errors
+from rig.analysis.tracing.outcome.result import Errors, Trace
 
 
 class Channel(NamedTuple):
@@ -36,3 +36,9 @@ CHANNELS = (
     Channel("M", "tau_m", "Motor torque", "τ_m", "mN·m", 1e3, 1e3),
     Channel("L", "tau_l", "Shaft torque", "τ_l", "N·m", 1.0, 1.0),
 )
+
+
+def held_out_with(trace: Trace, sensor: str) -> int:
+    """How many held-out runs have an error in the channel of `sensor`: a locked output has none in the shaft torque."""
+    channel = next(c for c in CHANNELS if c.sensor == sensor)
+    return sum(channel.error(e) is not None for e in trace.before.per_run.values())

@@ -12,7 +12,9 @@ from markupsafe import Markup
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
+from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.told import listed, symbol
 from rig.analysis.tracing.workers import each
 from rig.report import page as run_page
 from rig.report import words as run_words
@@ -66,15 +68,15 @@ def render(trace: Trace, source: Provenance) -> str:
         "alone": trace.verdict.status is Status.NOTHING,
         "physical": [(*words.meaning(p), said(p)) for p in tables.physical(trace.baseline)],
         "orders": [(*words.meaning(p), said(p)) for p in tables.orders(trace.baseline)],
-        "together": [words.listed([words.PARAMETERS.get(n, (n,))[0] for n in g]) for g in trace.cannot_be_told_apart],
+        "together": [listed([symbol(n) for n in g]) for g in trace.cannot_be_told_apart],
         "floors": tables.floors(trace),
         "told": home.told(curves),
         "lives": [words.place(c) for c in trace.lives_in],
         "suspects": lines,
-        "silent": words.listed(silent),
+        "silent": listed(silent),
         "added": words.added(trace),
         "own": words.of_each_run(trace),
-        "found_first": words.listed([words.named(e.effect) for e in trace.effects if e.effect in OWN]),
+        "found_first": listed([words.named(e.effect) for e in trace.effects if e.effect in OWN]),
         "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
         "moved": physical,
         "moved_orders": orders,
@@ -82,6 +84,8 @@ def render(trace: Trace, source: Provenance) -> str:
         "heads": heads,
         "each": each,
         "free": tables.free_runs(trace),
+        "free_why": free_told(trace)["sentence"],
+        "unmoved": words.unmoved(trace),
         "where": [plot for plot in plots[: len(WHERE)] if plot is not None],
         "before_after": [plot for plot in plots[len(WHERE) :] if plot is not None],
         "next": _next(trace),

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
+from rig.analysis.tracing.outcome.free import together
+from rig.analysis.tracing.outcome.free_told import over_floor
+from rig.analysis.tracing.outcome.honest import ORDER
 from rig.analysis.tracing.outcome.result import Candidate, Status, Trace
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.model.effect import Parameter
@@ -42,12 +46,12 @@ class Suspect(NamedTuple):
 
 def physical(found: Sequence[Parameter]) -> list[Parameter]:
     """Without the orders of the kinematic error."""
-    return [p for p in found if not p.name.startswith(words.ORDER)]
+    return [p for p in found if not p.name.startswith(ORDER)]
 
 
 def orders(found: Sequence[Parameter]) -> list[Parameter]:
     """The orders of the kinematic error alone."""
-    return [p for p in found if p.name.startswith(words.ORDER)]
+    return [p for p in found if p.name.startswith(ORDER)]
 
 
 def moved(trace: Trace) -> tuple[list[Moved], list[Moved]]:
@@ -147,14 +151,34 @@ def each_run(trace: Trace) -> tuple[list[str], list[tuple[str, list[Cell]]]]:
     return heads, rows
 
 
-def free_runs(trace: Trace) -> list[tuple[str, str, str]]:
-    """(run, RMS error of the kinematic error by free simulation before and after, arcsec) of the held-out runs that
-    were simulated, what they come to together last where there are two; [] where none was."""
+class FreeRun(NamedTuple):
+    """A run by free simulation: RMS of the kinematic error in arcsec, floor of the equations, what is after over that,
+    and what the rest of the shaft torque makes by itself."""
+
+    name: str
+    before: str
+    after: str
+    floor: str
+    times: str
+    by_load: str
+
+
+def free_runs(trace: Trace) -> list[FreeRun]:
+    """The held-out runs that were simulated, what they come to together last where there are two; [] where none was."""
     pairs = [(n, e, trace.after.per_run.get(n, e)) for n, e in trace.before.per_run.items()]
     pairs = [pair for pair in pairs if pair[1].free_kinematic_error_rms_arcsec is not None]
     if len(pairs) > 1:
-        pairs.append(("Together", trace.before.pooled, trace.after.pooled))
+        floor = together(b.floor_kinematic_error_arcsec for _, _, b in pairs)
+        pooled = replace(trace.after.pooled, floor_kinematic_error_arcsec=floor)
+        pairs.append(("Together", trace.before.pooled, pooled))
     return [
-        (name, three(a.free_kinematic_error_rms_arcsec), three(b.free_kinematic_error_rms_arcsec))
+        FreeRun(
+            name,
+            three(a.free_kinematic_error_rms_arcsec),
+            three(b.free_kinematic_error_rms_arcsec),
+            three(b.floor_kinematic_error_arcsec),
+            three(over_floor(b)),
+            three(b.free_by_load_rest_rms_arcsec),
+        )
         for name, a, b in pairs
     ]

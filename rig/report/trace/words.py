@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.outcome import told
 from rig.analysis.tracing.outcome.each_run import LOADED
 from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
+from rig.analysis.tracing.outcome.honest import ORDER
 from rig.analysis.tracing.outcome.result import Found, Status, Trace
+from rig.analysis.tracing.outcome.told import PARAMETERS, listed
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE, LIBRARY
@@ -15,6 +18,8 @@ from rig.report.numbers import counted, plain
 from rig.report.trace import sizes as sized
 from rig.report.trace.channels import CHANNELS
 from rig.report.words import Ruling, humanise
+
+HEADED = 6  # parameters of an effect at the head of the page; more are a table
 
 RULINGS = {
     Status.EXPLAINED: Ruling("✓", "Explained", "good"),
@@ -40,23 +45,6 @@ BEYOND = (
     "The fit was asked for more than it was told: in held-out runs outside the range of speed or load of the fitted "
     "ones an error says nothing of the gear. No effect is named and none is ruled out."
 )
-
-PARAMETERS = {  # of the baseline: symbol, what it is
-    "K": ("K", "torsional stiffness"),
-    "B_sp": ("B_sp", "damping of the flexspline"),
-    "J_m": ("J_m", "inertia, motor side"),
-    "B_m": ("B_m", "viscous friction, motor side"),
-    "B_ml": ("B_ml", "viscous friction of the mesh"),
-    "tau_c": ("τ_c", "constant friction, motor side"),
-    "tau_0": ("τ_0", "zero of the motor torque"),
-    "J_l": ("J_l", "inertia, load side"),
-    "B_l": ("B_l", "viscous friction, load side"),
-    "tau_cl": ("τ_cl", "constant friction, load side"),
-    "tau_l0": ("z", "zero of the torque sensor"),
-    "lag": ("δ", "delay of the torque sensor"),
-}
-
-ORDER = "theta_p_order_"
 
 PLACES = {
     "motor_angle": "the motor angle",
@@ -107,24 +95,25 @@ def plainly(text: str) -> str:
     return text
 
 
-def listed(names: Sequence[str]) -> str:
-    """ "a", "a and b", "a, b and c"."""
-    if len(names) < 2:
-        return "".join(names)
-    return f"{', '.join(names[:-1])} and {names[-1]}"
-
-
 def sizes(found: Sequence[Found]) -> list[str]:
-    """One sentence for each effect added: its first parameters with their intervals."""
+    """One sentence for each effect added: its parameters with their intervals, and where the rest of a long list is."""
     out = []
     for effect in found:
+        shown = effect.parameters if len(effect.parameters) <= HEADED + 1 else effect.parameters[:HEADED]
         parts = []
-        for p in effect.parameters[:3]:
+        for p in shown:
             what = gloss(effect.effect, p.name, "")
             parts.append(f"{p.name} = {sized.said(p)}" + (f" ({what})" if what else ""))
+        more = len(effect.parameters) - len(shown)
         if parts:
-            out.append(f"{named(effect.effect)}: {', '.join(parts)}.")
+            rest = f"; {more} more under 4, What was added" if more else ""
+            out.append(f"{named(effect.effect)}: {', '.join(parts)}{rest}.")
     return out
+
+
+def unmoved(trace: Trace) -> str:
+    """Which parameters of the baseline the refit left as they were, and why; "" where all moved."""
+    return told.why_unmoved(trace.baseline, trace.baseline_after, [e.effect for e in trace.effects])
 
 
 def runs_read(trace: Trace) -> str:

@@ -9,8 +9,11 @@ import pytest
 from rig.analysis.tracing.outcome.each_run import AT_LOAD, beside_the_numbers, of_each_run
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
+from rig.analysis.tracing.outcome.told import PARAMETERS
 from rig.model.effect import parameter
+from rig.model.effects import LIBRARY
 from rig.report.trace import page
+from rig.report.trace import words as in_words
 from rig.report.trace.campaign import Provenance, provenance
 from rig.report.trace.cards import cards
 from rig.report.trace.figures import home
@@ -125,6 +128,38 @@ def test_the_size_of_the_effect_has_its_interval_in_the_verdict(pages: dict[str,
     assert "lag = 4.30 ± 0.20 ms (time constant by which the kinematic error follows the torque)" in words
 
 
+def test_no_parameter_of_an_effect_is_dropped_from_the_head_without_a_word_where_it_is() -> None:
+    base = bare(made_up.explained())
+
+    def head(count: int) -> str:
+        some = tuple(parameter(f"x_{i}", float(i), 0.1, "1") for i in range(1, count + 1))
+        return in_words.sizes([replace(base.effects[0], parameters=some)])[0]
+
+    assert head(5).endswith("x_5 = 5.00 ± 0.10.")
+    assert "more" not in head(7)
+    assert head(9).endswith("x_6 = 6.00 ± 0.10; 3 more under 4, What was added.")
+
+
+def test_what_the_refit_could_not_move_is_said_below_the_table(pages: dict[str, Reader]) -> None:
+    still = (*made_up.explained().baseline, parameter("J_l", 0.88, 0.003, "kg·m²"))
+    moved = (*made_up.explained().baseline_after, still[-1])
+    words = read(bare(replace(made_up.explained(), baseline=still, baseline_after=moved))).words
+    assert "J_l stands in the equation of the shaft torque alone, where what was added has no term" in words
+
+
+def test_no_symbol_of_the_baseline_is_one_of_an_effect() -> None:
+    ours = {symbol for name, (symbol, _) in PARAMETERS.items() if name == "lag"}
+    theirs = {text.split(",")[0] for effect in LIBRARY.values() for text in effect.glosses.values()}
+    theirs |= {name for effect in LIBRARY.values() for name in effect.glosses}
+    assert not ours & theirs
+
+
+def test_a_channel_counts_the_runs_that_have_it() -> None:
+    counts = {card.label: card.how for card in cards(made_up.explained())}
+    assert "over 4 held-out runs" in counts["Kinematic error"]
+    assert "over 3 held-out runs" in counts["Shaft torque error"]  # the locked one has none
+
+
 def test_beside_each_parameter_of_an_effect_stands_what_it_is(pages: dict[str, Reader]) -> None:
     words = pages["explained"].words
     assert "A_inf A_∞, share of the largest order that stays under a high load (no unit) 0.461 ± 0.011" in words
@@ -143,8 +178,10 @@ def test_errors_of_the_free_simulation_stand_in_a_table_of_their_own_with_their_
 
     trace = replace(base, curves={}, before=simulated(base.before, 10.0), after=simulated(base.after, 2.7))
     words = read(trace).words
-    assert "RMS in arcsec before → after" in words
-    assert "slow_ke_2 10.0 → 2.70 speed_400rpm_2 20.0 → 5.40 Together 16.0 → 4.32" in words
+    assert "RMS in arcsec before → after floor" in words
+    assert "slow_ke_2 10.0 → 2.70 0.900 3.00 × – speed_400rpm_2 20.0 → 5.40 0.900 6.00 × –" in words
+    assert "Together 16.0 → 4.32 0.900 4.80 × –" in words
+    assert "The free simulation stays at 3 to 6 times the floor. That does not speak against the verdict" in words
     none = read(replace(base, curves={})).words
     assert "By free simulation of the whole model" not in none, "no run was simulated"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, shown
+from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, rung, shown
 from rig.analysis.tracing.outcome.result import Before
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Array
@@ -21,17 +21,20 @@ if TYPE_CHECKING:
 
 TURN: Final = 2 * np.pi
 CLOSE_UP: Final = 2.0  # motor turns
+BACK: Final = 0.01  # motor turns: more than jitter
 FEWEST: Final = 200  # rows after the start is forgotten
 
 
 @dataclass(frozen=True)
 class Free:
-    """One run: motor angle (n,) rad, kinematic error measured and simulated (n,) arcsec, each less its mean."""
+    """One run: motor angle (n,) rad, kinematic error measured and simulated (n,) arcsec, each less its mean; RMS before
+    and after, arcsec, of what the rest of the shaft torque's equation makes by itself, None where there is none."""
 
     theta_m: Array
     measured: Array
     before: Array
     after: Array
+    by_load: tuple[float | None, float | None] = (None, None)
 
     @property
     def errors(self) -> tuple[float, float]:
@@ -40,13 +43,16 @@ class Free:
         return float(np.std(left[0])), float(np.std(left[1]))
 
 
-def free(p: Prepared, before: Solution, after: Solution) -> dict[str, Free]:
+def free(
+    p: Prepared, before: Solution, after: Solution, left: tuple[Mapping[Key, Array], Mapping[Key, Array]] = ({}, {})
+) -> dict[str, Free]:
     """Of the fastest held-out run, where the gear's own dynamics are most of it, and the most loaded one, by name; {}
-    where no held-out run turns freely with both angles, or motion and effects do not settle."""
+    where no held-out run turns freely with both angles, or motion and effects do not settle. `left` are the held-out
+    residuals of the equations before and after."""
     models = model_of(before), model_of(after)
     out: dict[str, Free] = {}
     for key in _chosen(p):
-        found = _simulated(p, key, models)
+        found = _simulated(p, key, models, left)
         if found is not None:
             out[p.eq.runs[key[0]].name] = found
     return out
@@ -61,7 +67,9 @@ def _chosen(p: Prepared) -> list[Key]:
     return list(dict.fromkeys(k for k in (fastest, loaded) if k is not None))
 
 
-def _simulated(p: Prepared, key: Key, models: tuple[Model, Model]) -> Free | None:
+def _simulated(
+    p: Prepared, key: Key, models: tuple[Model, Model], left: tuple[Mapping[Key, Array], Mapping[Key, Array]] = ({}, {})
+) -> Free | None:
     run, rows = p.eq.runs[key[0]], p.eq.rows[key]
     made = [replayed(run, model) for model in models]
     if any(m is None for m in made):
@@ -75,7 +83,21 @@ def _simulated(p: Prepared, key: Key, models: tuple[Model, Model]) -> Free | Non
     measured, theta = rows.y[: here.size][here], rows.theta_m[: here.size][here]
     columns = [m[keep] for m in made if m is not None]
     before, after, seen = (ARCSEC * _own_out(p, key, x, keep, here) for x in (*columns, measured))
-    return Free(theta, seen, before, after + _vibration(p, run, keep, seen - after))
+    by_load = _by_load(p, key, left[0], models[0], keep), _by_load(p, key, left[1], models[1], keep)
+    return Free(theta, seen, before, after + _vibration(p, run, keep, seen - after), by_load)
+
+
+def _by_load(p: Prepared, key: Key, left: Mapping[Key, Array], model: Model, keep: Array) -> float | None:
+    """RMS in arcsec, over the rows `keep`, of what the rest of the load's equation makes of θ̃: torque that shakes the
+    load and that the simulation, unlike the equations, reads nowhere. None where the shaft torque is not measured."""
+    of_load = (key[0], "L")
+    if of_load not in left:
+        return None
+    smoother, there = p.eq.runs[key[0]].smoother, p.eq.rows[of_load].keep
+    torque = np.zeros(there.size)
+    torque[there] = left[of_load]
+    made = rung(torque[: keep.size], smoother.dt * smoother.step, model)
+    return ARCSEC * float(np.std(made[keep]))
 
 
 def _vibration(p: Prepared, run: Recording, keep: Array, left: Array) -> Array:
@@ -98,9 +120,26 @@ def _own_out(p: Prepared, key: Key, x: Array, keep: Array, here: Array) -> Array
 def with_free(errors: Before, found: Mapping[str, Free], which: int) -> Before:
     """The errors of `errors` with those of the free simulation beside them: `which` 0 before, 1 after."""
     of = {name: f.errors[which] for name, f in found.items()}
-    runs = {name: replace(e, free_kinematic_error_rms_arcsec=of.get(name)) for name, e in errors.per_run.items()}
-    both = float(np.sqrt(np.mean(np.square([*of.values()])))) if of else None
-    return Before(runs, replace(errors.pooled, free_kinematic_error_rms_arcsec=both))
+    by_load = {name: f.by_load[which] for name, f in found.items()}
+    runs = {
+        name: replace(e, free_kinematic_error_rms_arcsec=of.get(name), free_by_load_rest_rms_arcsec=by_load.get(name))
+        for name, e in errors.per_run.items()
+    }
+    return Before(
+        runs,
+        replace(
+            errors.pooled,
+            free_kinematic_error_rms_arcsec=together(of.values()),
+            free_by_load_rest_rms_arcsec=together(by_load.values()),
+        ),
+    )
+
+
+def together(sizes: Iterable[float | None]) -> float | None:
+    """RMS of some RMS, runs alike; None where one is not known, or there is none."""
+    known = list(sizes)
+    some = [size for size in known if size is not None]
+    return float(np.sqrt(np.mean(np.square(some)))) if some and len(some) == len(known) else None
 
 
 def curves_of(found: Mapping[str, Free]) -> dict[str, Array]:
@@ -108,9 +147,20 @@ def curves_of(found: Mapping[str, Free]) -> dict[str, Array]:
     out: dict[str, Array] = {}
     for name, f in found.items():
         turns = np.abs(f.theta_m - f.theta_m[0]) / TURN
-        near = turns <= CLOSE_UP
+        near = slice(0, _one_way(turns, CLOSE_UP))
         stem = f"free.{name}"
         out |= {f"{stem}.turns": turns[near], f"{stem}.measured": f.measured[near]}
         out |= {f"{stem}.before": f.before[near], f"{stem}.after": f.after[near]}
         out[f"free_rms.{name}"] = np.array(f.errors)
     return out
+
+
+def _one_way(turns: Array, most: float) -> int:
+    """Rows until `most` turns are made, or the motor turns back: a line over its own way back cannot be read."""
+    far = np.maximum.accumulate(turns)
+    over = np.flatnonzero((turns > most) | (turns < far - BACK))
+    if not over.size:
+        return turns.size
+    last = int(over[0])
+    # where it turns back it unwinds on the spot: that is no curve over the angle
+    return last if turns[last] > most else int(np.argmax(turns >= far[last] - BACK))

@@ -9,9 +9,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Before, Trace
+from rig.analysis.tracing.outcome.told import meaning, unmoved, why_unmoved
 from rig.model.effect import Parameter
 from rig.model.effects import LIBRARY
+from rig.runfile.manifest import write_atomic
 
 SCHEMA = "hdrig.trace/1"
 
@@ -33,6 +36,7 @@ def document(trace: Trace) -> dict[str, Any]:
         "baseline": {
             "parameters": _parameters(trace.baseline),
             "after_refit": _parameters(trace.baseline_after),
+            "not_moved": _not_moved(trace),
             "cannot_be_told_apart": trace.cannot_be_told_apart,
         },
         "residual": {
@@ -50,6 +54,7 @@ def document(trace: Trace) -> dict[str, Any]:
         },
         "before": _errors(trace.before),
         "after": _errors(trace.after),
+        "free_simulation": free_told(trace),
         "next_run": asdict(trace.next_run) if trace.next_run else None,
         "notes": trace.notes,
         "cannot": trace.cannot,
@@ -58,18 +63,33 @@ def document(trace: Trace) -> dict[str, Any]:
 
 
 def write_trace(path: Path, trace: Trace) -> Path:
-    """Write trace.json."""
-    path.write_text(json.dumps(document(trace), ensure_ascii=False, indent=1) + "\n")
+    """Write trace.json. A file is replaced whole or not at all; what stands for something else, /dev/stdout or a pipe,
+    is written to. Raises OSError."""
+    text = (json.dumps(document(trace), ensure_ascii=False, indent=1) + "\n").encode(errors="replace")
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        path.write_bytes(text)
+    else:
+        write_atomic(path, text)
     return path
 
 
 def _parameters(found: Sequence[Parameter], effect: str = "") -> dict[str, Any]:
-    """By name; those of an effect with what they are."""
-    out: dict[str, Any] = {p.name: {"value": p.value, "ci95": p.ci95, "unit": p.unit} for p in found}
-    if effect in LIBRARY:
-        for name, entry in out.items():
-            entry["meaning"] = LIBRARY[effect].gloss(name)
-    return out
+    """By name, with what they are; without `effect` those of the baseline."""
+    known = LIBRARY.get(effect)
+    gloss = known.gloss if known else meaning
+    return {
+        p.name: {"value": p.value, "ci95": p.ci95, "unit": p.unit}
+        | ({"meaning": gloss(p.name)} if known or not effect else {})
+        for p in found
+    }
+
+
+def _not_moved(trace: Trace) -> dict[str, Any]:
+    effects = [f.effect for f in trace.effects]
+    return {
+        "parameters": unmoved(trace.baseline, trace.baseline_after),
+        "because": why_unmoved(trace.baseline, trace.baseline_after, effects),
+    }
 
 
 def _errors(errors: Before) -> dict[str, Any]:

@@ -159,6 +159,13 @@ def _moved(s: Signals, model: Model, led: _Led, wind_up: Array, load: Array) -> 
     )
 
 
+def rung(torque: Array, dt: float, model: Model) -> Array:
+    """θ̃ (n,) that a torque (n,) on the load every `dt` s makes by itself, while the motor is led: rad, the gear's
+    resonance in it, whose amplification no reading takes back."""
+    g = model.gear
+    return -_filtered([1.0], [g.J_l, g.B_sp + model.B_l, g.K], dt, torque)
+
+
 def _filtered(top: Sequence[float], bottom: Sequence[float], h: float, x: Array) -> Array:
     """`x` (m,) every h s, straight between, through (top_1·s + top_0)/(J·s² + d·s + K), begun in balance with x[0];
     exact."""

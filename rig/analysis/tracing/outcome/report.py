@@ -116,7 +116,7 @@ def _shown(
     p: Prepared, empty: Solution, s: Solution, before: Mapping[Key, Array], final: Mapping[Key, Array]
 ) -> tuple[dict[str, Free], dict[str, Array]]:
     """The free simulation, and all curves: half of what a report costs."""
-    simulated = free(p, empty, s)
+    simulated = free(p, empty, s, (before, final))
     return simulated, curves(p, before, final) | pictures(p, before, final) | curves_of(simulated)
 
 

@@ -65,6 +65,7 @@ class Errors:
     floor_tau_m: float | None = None
     floor_tau_l: float | None = None
     free_kinematic_error_rms_arcsec: float | None = None  # of a simulation led by the motor's motion alone
+    free_by_load_rest_rms_arcsec: float | None = None  # what the rest of the shaft torque makes of that by itself
 
 
 @dataclass(frozen=True)

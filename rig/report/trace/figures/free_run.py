@@ -29,12 +29,13 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     shown = runs(curves)
     if not shown:
         return None
+    furthest = max(float(curves[f"free.{run}.turns"].max(initial=0.0)) for run in shown)  # the panels share an axis
     figure, panels = sheet(frame, [frame.pick(150, 130)] * len(shown), keys=1)
     for i, (panel, run) in enumerate(zip(panels, shown, strict=True)):
         turns, lines = _lines(curves, run)
         for y, style in zip(lines, (MEASURED, BEFORE, AFTER), strict=True):
             panel.plot(turns, y, **style)
-        panel.set_xlim(0, max(float(turns[-1]), 1e-6))
+        panel.set_xlim(0, max(furthest, 1e-6))
         panel.yaxis.set_major_locator(MaxNLocator(5))
         title(panel, run, "arcsec", keys=int(i == 0))
     names = ("measured", "simulated before", "simulated after")
@@ -49,7 +50,11 @@ def say(curves: Curves) -> str:
     for run in runs(curves):
         before, after = (plain(float(x), 2) for x in np.asarray(curves[f"free_rms.{run}"], dtype=np.float64))
         parts.append(f"{run}: RMS {before} arcsec off before, {after} after")
-    return "Kinematic error by free simulation over two motor turns. " + "; ".join(parts) + "."
+    return (
+        "Kinematic error by free simulation over two motor turns, or until the motor turns back. "
+        + "; ".join(parts)
+        + "."
+    )
 
 
 DRAWING = Drawing(
