@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,14 +57,20 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--out {args.out}: expected a name that ends in .svg or .html")
     if not math.isfinite(args.load):
         raise UsageError(f"--load {args.load:g}: expected a torque in N·m")
+    for rpm in args.speed or ():
+        if not math.isfinite(rpm) or rpm == 0:
+            raise UsageError(f"--speed {rpm:g} rpm: expected a mean speed of the motor in rpm, either way, not 0")
+    for tau in args.torque or ():
+        if not math.isfinite(tau):
+            raise UsageError(f"--torque {tau:g}: expected a torque of the motor in N·m")
     file = open_gear(args.gear)
     gear = file.gear()
     if args.start:
         return starts(file, args)
     if args.torque:
-        waves = [steady_state(gear, tau, args.load) for tau in args.torque]
+        waves = [_found(steady_state, gear, tau, args.load, f"{tau:g} N·m") for tau in args.torque]
     else:
-        waves = [at_speed(gear, rpm * RPM, args.load) for rpm in args.speed or SPEEDS]
+        waves = [_found(at_speed, gear, rpm * RPM, args.load, f"{rpm:g} rpm") for rpm in args.speed or SPEEDS]
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
     print(describe(file, waves, args.load))
     for sentence in beyond(file, [wave.mean_speed / RPM for wave in waves], args.load):
@@ -73,6 +79,18 @@ def run(args: argparse.Namespace) -> int:
         draw(args.out, waves[0], f"{args.gear}")
         print(f"figure {args.out}")
     return int(Exit.PASS)
+
+
+def _found(
+    solve: Callable[[Gear, float, float], Waveform], gear: Gear, wanted: float, load: float, asked: str
+) -> Waveform:
+    """The steady state. Raises NoSteadyState in the units of whoever `asked`."""
+    from rig.model.simulate import NoSteadyState
+
+    try:
+        return solve(gear, wanted, load)
+    except NoSteadyState as why:
+        raise NoSteadyState(f"at {asked} under a load of {load:g} N·m: {why}") from None
 
 
 def starts(file: GearFile, args: argparse.Namespace) -> int:

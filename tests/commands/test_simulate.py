@@ -24,6 +24,25 @@ def test_a_torque_that_is_no_number_is_refused_before_anything_is_said(
     assert "in N·m" in said.err
 
 
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (["--speed", "0"], "--speed 0 rpm: expected a mean speed of the motor in rpm, either way, not 0"),
+        (["--speed", "120", "nan"], "--speed nan rpm: expected"),
+        (["--torque", "inf"], "--torque inf: expected a torque of the motor in N·m"),
+        (["--speed", "0.001"], "at 0.001 rpm under a load of 0 N·m: the motor would come to rest"),
+    ],
+)
+def test_a_speed_that_is_none_is_refused_in_the_unit_it_was_asked_in(
+    asked: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["simulate", "twin", *asked]) != 0
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert words in said.err
+    assert "rad/s" not in said.err
+
+
 def covering(speed_rpm: tuple[float, float], load: tuple[float, float]) -> GearFile:
     return replace(gear(), covered=Covered(speed_rpm, load))
 
