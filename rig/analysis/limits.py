@@ -66,7 +66,8 @@ def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]
     e = by_name.get(name)
     given = {word: limit[key] for word, key in SIDES.items() if limit.get(key) is not None}
     if e is None:
-        why = f"This run has no figure '{name}' to judge against its limit; {nearest(name, by_name).rstrip('?')}."
+        have = nearest(name, by_name).rstrip("?") if by_name else "it has no figure at all"
+        why = f"This run has no figure '{name}' to judge against its limit; {have}."
         return _unjudged(name, why, f"{name} {_words(given, str(limit.get('unit') or '1'))}")
     if not given:
         return _unjudged(name, f"The limit of {e.label} is no number: it was not judged.", f"{e.label} by no number")

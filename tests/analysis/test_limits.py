@@ -65,6 +65,10 @@ def test_what_is_not_settled_names_the_largest_contribution_and_how_narrow_the_i
     assert "inertia" not in said
 
 
+def test_a_run_without_any_figure_is_said_to_have_none() -> None:
+    assert "against its limit; it has no figure at all." in judge([], {"swing": 94.0}).unsettled
+
+
 def test_without_known_contributions_it_says_how_the_interval_is_made() -> None:
     bare = Estimate("swing", "Swing", 93.0, "arcsec", (91.4, 94.6), "From five turns.")
     assert "From five turns." in judge([bare], {"swing": 94.0}).unsettled

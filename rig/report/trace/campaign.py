@@ -65,10 +65,11 @@ class Provenance:
         """Every run, fitted, held out or neither."""
         part = dict.fromkeys(trace.held_out, "held out") | dict.fromkeys(trace.fitted, "fitted")
         part |= dict.fromkeys(trace.left_out, "left out")
-        started = {name: str(m.get("started_utc") or "") for name, m in self.manifests.items()}
-        order = sorted(self.manifests, key=lambda n: (started[n], n))
-        order += [name for name in part if name not in self.manifests]
-        return [_row(name, part.get(name, "not used"), self.manifests.get(name, {})) for name in order]
+        of = {
+            name: self.manifests.get(whole_run(name), {}) for name in (*self.manifests, *part)
+        }  # a part is of its run
+        order = sorted(of, key=lambda n: (not of[n], str(of[n].get("started_utc") or ""), n))
+        return [_row(name, part.get(name, "not used"), of[name]) for name in order]
 
 
 def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) -> Provenance:

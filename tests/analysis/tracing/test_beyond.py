@@ -59,7 +59,7 @@ def test_faster_slower_or_more_loaded_ones_are(held: Any) -> None:
 def test_a_long_list_of_runs_says_how_many_more_there_are_and_where_they_stand() -> None:
     fitted = [run(float(rpm)) for rpm in range(10, 60, 10)]
     said = found(prepared(fitted, [run(400.0)])).sentence()
-    assert "1 of 1 held-out runs (at-400) lie" in said
+    assert "1 of 1 held-out runs (at-400) lies" in said
     assert "5 fitted runs (at-10, at-20, at-30 and 2 more)" in said
     assert "All runs stand in the report's list of runs and under `runs` in trace.json" in said
     few = found(prepared(fitted[:2], [run(400.0)])).sentence()

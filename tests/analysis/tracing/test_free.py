@@ -63,6 +63,10 @@ def test_above_the_floor_it_is_said_what_of_it_the_shaft_torque_makes_and_why_th
     assert said["sentence"].endswith("most of what is above the floor.")
 
 
+def test_noise_that_would_make_more_than_is_seen_is_not_called_a_part_of_it() -> None:
+    assert free_told(simulated(2.7, 3.1))["sentence"].endswith("which is no less than what is seen.")
+
+
 def test_what_noise_does_not_make_is_not_put_down_to_it() -> None:
     said = free_told(simulated(9.0, 2.4))["sentence"]
     assert "What is more than that are errors of the model" in said

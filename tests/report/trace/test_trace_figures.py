@@ -7,7 +7,7 @@ from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS
 from rig.report.figures import Frame, svg
 from rig.report.figures.canvas import Drawing
 from rig.report.trace.channels import CHANNELS
-from rig.report.trace.figures import CATALOGUE, before_after, home, where
+from rig.report.trace.figures import CATALOGUE, before_after, each_run, home, where
 from rig.report.trace.page import drawn
 from tests.report.trace import made_up
 
@@ -80,3 +80,29 @@ def test_a_scale_of_torque_or_speed_has_ticks_to_read_it_by(low: float, high: fl
         if panel.get_xlabel() in ("Torque, N·m", "Speed, rpm"):
             left, right = panel.get_xlim()
             assert sum(left <= tick <= right for tick in panel.get_xticks()) >= 2, (panel.get_xlabel(), left, right)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-6.0, 3.0), (-150.0, 150.0), (9.0, 310.0), (0.2, 5.6), (-2.0, 0.5)])
+def test_numbers_below_a_small_panel_do_not_lie_upon_each_other(low: float, high: float) -> None:
+    ticks = where._beyond_the_knee(low, high, 1.0)
+    assert len(ticks) >= 2
+    places = np.arcsinh(ticks) / (np.arcsinh(high) - np.arcsinh(low))
+    assert np.diff(places).min() >= where.APART
+
+
+def test_long_names_of_runs_are_cut_in_their_middle_and_stay_apart() -> None:
+    runs = [f"1121-2310-constant-torque-TWIN-40-50-{tail} (part held out)" for tail in ("662f", "d2b2")]
+    called = each_run.labels(runs, 27)
+    assert called == ["1121-2310-constant…-50-662f", "1121-2310-constant…-50-d2b2"]
+    assert each_run.labels(["slow_ke_2"], 27) == ["slow_ke_2"]
+    both = ["slow", "slow (part held out)"]  # a run of each name: what tells them apart stays
+    assert each_run.labels(both, 27) == both
+
+
+def test_one_run_alone_is_called_neither_slow_nor_fast() -> None:
+    curves = {k: v for k, v in CURVES.items() if k.split(".")[0] != "close" or "speed_400rpm_2" in k}
+    figure = before_after.draw(curves, Frame(760.0), CHANNELS[0])
+    assert figure is not None
+    titles = [text.get_text() for panel in figure.axes for text in panel.texts]
+    assert any(text.startswith("speed_400rpm_2, 404 rpm") for text in titles), titles
+    assert not any(text.startswith("Slow") for text in titles)

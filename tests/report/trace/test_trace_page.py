@@ -329,3 +329,19 @@ def test_a_run_that_was_left_out_is_called_so_in_the_list_of_runs() -> None:
         "torn": "left out",
         "slow_ke_1": "fitted",
     }
+
+
+def test_a_part_of_a_run_stands_beside_it_with_its_procedure_and_conditions() -> None:
+    manifests = {
+        name: {"procedure": "kinematic_error", "started_utc": f"2026-11-21T09:0{i}:00Z", "conditions": {"tau_ext": 5.0}}
+        for i, name in enumerate(("first", "second"))
+    }
+    trace = replace(made_up.explained(), fitted=("first", "second"), held_out=("first (part held out)",))
+    rows = Provenance(manifests).rows(trace)
+    assert [(row.name, row.part) for row in rows] == [
+        ("first", "fitted"),
+        ("first (part held out)", "held out"),
+        ("second", "fitted"),
+    ]
+    assert len({(row.procedure, row.conditions) for row in rows}) == 1
+    assert "Unknown" not in {row.procedure for row in rows}

@@ -52,7 +52,8 @@ class Beyond:
     def sentence(self) -> str:
         """For people."""
         said = (
-            f"{len(self.outside)} of {self.held_out} held-out runs ({_some(self.names)}) lie outside what the "
+            f"{len(self.outside)} of {self.held_out} held-out runs ({_some(self.names)}) "
+            f"{'lies' if len(self.outside) == 1 else 'lie'} outside what the "
             f"{len(self.fitted)} fitted runs ({_some(self.fitted)}) cover (motor speed "
             f"{_both(self.covered.speed, self.asked.speed, 'rpm')}; shaft torque "
             f"{_both(self.covered.torque, self.asked.torque, 'N·m')})"

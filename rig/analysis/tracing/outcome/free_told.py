@@ -56,6 +56,8 @@ def _sentence(trace: Trace, loud: list[Errors], hertz: float | None) -> str:
     made = [e.free_by_load_rest_rms_arcsec or 0.0 for e in known]
     torques = [1e3 * (e.tau_l_rms or 0.0) for e in known]
     said += f": the {_span(torques)} mN·m RMS that the shaft torque’s equation leaves make {_span(made)} arcsec there"
+    if all((e.free_by_load_rest_rms_arcsec or 0.0) >= (e.free_kinematic_error_rms_arcsec or 0.0) for e in known):
+        return f"{said} by themselves, noise of the sensor included, which is no less than what is seen."
     if all(_most_of_it(e) for e in known):
         return f"{said} by themselves, most of what is above the floor."
     return (

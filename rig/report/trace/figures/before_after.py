@@ -59,7 +59,8 @@ def draw(curves: Curves, frame: Frame, channel: Channel) -> Figure | None:
         for panel in (above, below):
             panel.set_xlim(0, 2)
             panel.xaxis.set_major_locator(MultipleLocator(frame.pick(0.25, 0.5)))
-        title(above, f"{kind.capitalize()}: {run}, {_condition(curves, run, frame)}", channel.unit, keys=int(i == 0))
+        stands_for = f"{kind.capitalize()}: " if len(runs) > 1 else ""  # one run alone is neither slow nor fast
+        title(above, f"{stands_for}{run}, {_condition(curves, run, frame)}", channel.unit, keys=int(i == 0))
         title(below, "Measured less model", channel.unit)
     names = ("measured", "model before", "model after")
     key(panels[0], [handle(s, n) for s, n in zip((MEASURED, BEFORE, AFTER), names, strict=True)], columns=3)

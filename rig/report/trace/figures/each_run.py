@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.report.figures.canvas import PX, Array, Curves, Drawing, Frame, decade, key, panel_at
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
@@ -15,6 +18,8 @@ from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
 
 STEP, HEAD, FOOT, GAP = 22.0, 52.0, 40.0, 26.0
 PREFIX = "each_run."
+LETTER = 6.4  # px, a letter of a label
+TAIL = 8  # letters at the end of a name that is cut: there it differs from the others
 
 
 def names(curves: Curves) -> list[str]:
@@ -29,7 +34,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     shown = [(i, c) for i, c in enumerate(CHANNELS) if table.size and np.isfinite(table[:, i, :2]).any()]
     if not runs or not shown:
         return None
-    left = min(frame.pick(190, 132), 12 + 7.2 * max(map(len, runs)))
+    called = labels(runs, int((frame.pick(190, 132) - 12) / LETTER))
+    left = min(frame.pick(190, 132), 12 + 7.2 * max(map(len, called)))
     across = 1 if frame.narrow else len(shown)
     deep = -(-len(shown) // across)
     height = STEP * len(runs)
@@ -42,7 +48,7 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
         panel = panel_at(figure, frame, box)
         _bars(panel, table[:, i])
         panel.yaxis.set_major_locator(FixedLocator(list(range(len(runs)))))
-        panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: runs[len(runs) - 1 - round(y)]))
+        panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: called[len(called) - 1 - round(y)]))
         panel.tick_params(axis="y", labelleft=column == 0, labelcolor=LIGHT["ink"], labelsize=11)
         at = (2 - left if column == 0 else 0, 30 if k == 0 else 10)
         panel.annotate(
@@ -57,6 +63,13 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
             if legend is not None:
                 legend.set_bbox_to_anchor((-left / width, 1.0), transform=panel.transAxes)
     return figure
+
+
+def labels(runs: Sequence[str], most: int) -> list[str]:
+    """Names of at most so many letters; what is too long loses its middle, and first what is said of all of them."""
+    parts = [whole_run(run) for run in runs]
+    names = parts if len(set(parts)) == len(runs) else list(runs)
+    return [n if len(n) <= most else f"{n[: most - TAIL - 1]}…{n[-TAIL:]}" for n in names]
 
 
 def _bars(panel: Axes, values: Array) -> None:

@@ -18,8 +18,9 @@ from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
 
 RATIOS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 DECADES = (-100.0, -10.0, 0.0, 10.0, 100.0, 1000.0)
-FINER = tuple(m * 10.0**d for d in (-1, 0, 1, 2, 3) for m in (1, 2, 5))
+FINER = tuple(sign * m * 10.0**d for d in (-1, 0, 1, 2, 3) for m in (1, 2, 5) for sign in (-1, 1))
 FEWEST = 2  # ticks from which a scale can be read
+APART = 0.22  # of a panel's width between two ticks: their numbers are as wide
 HEAD, BETWEEN, FOOT, LEFT, GAP = 50.0, 34.0, 44.0, 46.0, 12.0
 
 
@@ -113,6 +114,8 @@ def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None
         for values, style, marker in ((before, BEFORE, "o"), (after, AFTER, "s")):
             there = np.isfinite(values)
             panel.plot(x[there], values[there], marker=marker, ms=2.6, **{**style, "lw": 1.1})
+    else:
+        panel.annotate("not varied", (0.5, 0.25), None, "axes fraction", ha="center", color=LIGHT["muted"], fontsize=10)
     _ticks(panel, q)
     foot(panel, q.name)
     panel.margins(x=0.08)
@@ -121,7 +124,7 @@ def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None
 def _ticks(panel: Axes, q: Coordinate) -> None:
     if q.knee is not None:
         low, high = panel.get_xlim()
-        panel.xaxis.set_major_locator(FixedLocator(_beyond_the_knee(low, high)))
+        panel.xaxis.set_major_locator(FixedLocator(_beyond_the_knee(low, high, q.knee)))
         panel.xaxis.set_minor_locator(NullLocator())
     elif q.ticks is not None:
         panel.xaxis.set_major_locator(FixedLocator(list(q.ticks)))
@@ -133,10 +136,16 @@ def _ticks(panel: Axes, q: Coordinate) -> None:
     panel.tick_params(axis="x", labelsize=10.5, color=LIGHT["axis"])
 
 
-def _beyond_the_knee(low: float, high: float) -> list[float]:
-    """Decades, or 1, 2, 5 where fewer than two of those are in sight."""
-    decades, finer = ([v for v in steps if low <= v <= high] for steps in (DECADES, FINER))
-    return decades if len(decades) >= FEWEST else finer
+def _beyond_the_knee(low: float, high: float, knee: float) -> list[float]:
+    """Decades, or 1, 2, 5 where fewer than two of those are in sight; zero and the largest first, none so near another
+    that their numbers overlap."""
+    decades, finer = ([v for v in steps if low <= v <= high] for steps in (DECADES, (0.0, *FINER)))
+    whole = float(np.arcsinh(high / knee) - np.arcsinh(low / knee))
+    kept: list[float] = []
+    for v in sorted(decades if len(decades) >= FEWEST else finer, key=lambda v: (v != 0, -abs(v))):
+        if all(abs(np.arcsinh(v / knee) - np.arcsinh(k / knee)) >= APART * whole for k in kept):
+            kept.append(v)
+    return sorted(kept)
 
 
 def say(curves: Curves) -> str:
