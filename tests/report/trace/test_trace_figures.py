@@ -7,7 +7,7 @@ from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS
 from rig.report.figures import Frame, svg
 from rig.report.figures.canvas import Drawing
 from rig.report.trace.channels import CHANNELS
-from rig.report.trace.figures import CATALOGUE, before_after, each_run, home, where
+from rig.report.trace.figures import CATALOGUE, before_after, home, style, where
 from rig.report.trace.page import drawn
 from tests.report.trace import made_up
 
@@ -92,11 +92,19 @@ def test_numbers_below_a_small_panel_do_not_lie_upon_each_other(low: float, high
 
 def test_long_names_of_runs_are_cut_in_their_middle_and_stay_apart() -> None:
     runs = [f"1121-2310-constant-torque-TWIN-40-50-{tail} (part held out)" for tail in ("662f", "d2b2")]
-    called = each_run.labels(runs, 27)
+    called = style.labels(runs, 27)
     assert called == ["1121-2310-constant…-50-662f", "1121-2310-constant…-50-d2b2"]
-    assert each_run.labels(["slow_ke_2"], 27) == ["slow_ke_2"]
+    assert style.labels(["slow_ke_2"], 27) == ["slow_ke_2"]
     both = ["slow", "slow (part held out)"]  # a run of each name: what tells them apart stays
-    assert each_run.labels(both, 27) == both
+    assert style.labels(both, 27) == both
+
+
+def test_a_long_name_in_a_title_leaves_room_for_the_unit() -> None:
+    long = "1121-2310-constant-torque-TWIN-40-50-662f (part held out)"
+    wide, narrow = (style.titled(long, frame) for frame in (Frame(760.0), NARROW))
+    assert wide == "1121-2310-constant-torque-TWIN-40-50-662f"
+    assert narrow == "1121-2310-c…-50-662f"
+    assert style.titled("load_40nm_2", NARROW) == "load_40nm_2"
 
 
 def test_one_run_alone_is_called_neither_slow_nor_fast() -> None:

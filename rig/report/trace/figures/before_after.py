@@ -16,7 +16,7 @@ from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, 
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
 from rig.report.trace.channels import CHANNELS, Channel
-from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle
+from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle, titled
 
 THREE = ("slow", "fast", "loaded")
 
@@ -60,9 +60,11 @@ def draw(curves: Curves, frame: Frame, channel: Channel) -> Figure | None:
             panel.set_xlim(0, 2)
             panel.xaxis.set_major_locator(MultipleLocator(frame.pick(0.25, 0.5)))
         stands_for = f"{kind.capitalize()}: " if len(runs) > 1 else ""  # one run alone is neither slow nor fast
-        title(above, f"{stands_for}{run}, {_condition(curves, run, frame)}", channel.unit, keys=int(i == 0))
+        title(
+            above, f"{stands_for}{titled(run, frame)}, {_condition(curves, run, frame)}", channel.unit, keys=int(i == 0)
+        )
         title(below, "Measured less model", channel.unit)
-    names = ("measured", "model before", "model after")
+    names = ("measured", "before", "after") if frame.narrow else ("measured", "model before", "model after")
     key(panels[0], [handle(s, n) for s, n in zip((MEASURED, BEFORE, AFTER), names, strict=True)], columns=3)
     foot(panels[-1], "Motor turns")
     return figure

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
 
-from rig.analysis.tracing.runs.holdout import whole_run
 from rig.report.figures.canvas import PX, Array, Curves, Drawing, Frame, decade, key, panel_at
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
 from rig.report.trace.channels import CHANNELS
-from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
+from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, LETTER, handle, labels
 
 STEP, HEAD, FOOT, GAP = 22.0, 52.0, 40.0, 26.0
 PREFIX = "each_run."
-LETTER = 6.4  # px, a letter of a label
-TAIL = 8  # letters at the end of a name that is cut: there it differs from the others
 
 
 def names(curves: Curves) -> list[str]:
@@ -63,13 +58,6 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
             if legend is not None:
                 legend.set_bbox_to_anchor((-left / width, 1.0), transform=panel.transAxes)
     return figure
-
-
-def labels(runs: Sequence[str], most: int) -> list[str]:
-    """Names of at most so many letters; what is too long loses its middle, and first what is said of all of them."""
-    parts = [whole_run(run) for run in runs]
-    names = parts if len(set(parts)) == len(runs) else list(runs)
-    return [n if len(n) <= most else f"{n[: most - TAIL - 1]}…{n[-TAIL:]}" for n in names]
 
 
 def _bars(panel: Axes, values: Array) -> None:

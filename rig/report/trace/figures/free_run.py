@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from rig.report.figures.arrays import axis, line
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, sheet, title
 from rig.report.numbers import plain
-from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle
+from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle, titled
 
 
 def runs(curves: Curves) -> list[str]:
@@ -37,8 +37,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
             panel.plot(turns, y, **style)
         panel.set_xlim(0, max(furthest, 1e-6))
         panel.yaxis.set_major_locator(MaxNLocator(5))
-        title(panel, run, "arcsec", keys=int(i == 0))
-    names = ("measured", "simulated before", "simulated after")
+        title(panel, titled(run, frame), "arcsec", keys=int(i == 0))
+    names = ("measured", "before", "after") if frame.narrow else ("measured", "simulated before", "simulated after")
     key(panels[0], [handle(s, n) for s, n in zip((MEASURED, BEFORE, AFTER), names, strict=True)], columns=3)
     foot(panels[-1], "Motor turns")
     return figure

@@ -10,7 +10,7 @@ from rig.report.figures.arrays import line, span
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
-from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle
+from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle, titled
 
 MOST = 700  # points of a loop: a loop is smooth, and there are four of them
 
@@ -58,11 +58,11 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
             if ends is not None:
                 room = 0.06 * (ends[1] - ends[0] or 1.0)
                 panel.set_ylim(ends[0] - room, ends[1] + room)
-        title(above, f"Wind-up, {stem.removeprefix('loop.')}", "arcsec", keys=int(i == 0))
+        title(above, f"Wind-up, {titled(stem.removeprefix('loop.'), frame)}", "arcsec", keys=int(i == 0))
         title(below, "Measured less model", "arcsec")
         foot(below, "Torque through the gear, N·m")
         below.tick_params(axis="x", labelbottom=True)
-    names = ("measured", "model before", "model after")
+    names = ("measured", "before", "after") if frame.narrow else ("measured", "model before", "model after")
     key(panels[0], [handle(s, n) for s, n in zip((MEASURED, BEFORE, AFTER), names, strict=True)], columns=3)
     return figure
 
