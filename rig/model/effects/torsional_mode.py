@@ -134,7 +134,18 @@ class TorsionalMode(Effect):
         return {Port.KINEMATIC_ERROR: twist, Port.MOTOR_TORQUE: torque}
 
     def _through(self, s: Signals, about: float) -> Array:
-        """T times the lever at the wave generator's own angle, N·m."""
+        """T times the lever at the wave generator's own angle, N·m. Frequency and damping change nothing of it, and are
+        tried many at a time: the last is kept.
+        """
+        last: dict[float, Array] = s.once(self.name, dict)
+        through = last.get(about)
+        if through is None:
+            through = self._turned(s, about)
+            last.clear()
+            last[about] = through
+        return through
+
+    def _turned(self, s: Signals, about: float) -> Array:
         straight = s.torque * (1.0 / s.ratio - s.series_slope)
         if not about:
             return straight

@@ -118,6 +118,24 @@ def test_a_soft_coupling_swings_as_its_own_equation_of_motion_says() -> None:
     )  # lever of the twist at rest
 
 
+def test_the_torque_through_a_soft_coupling_is_made_once_for_all_its_frequencies(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made, of, effect, s = list[float](), TorsionalMode._turned, TorsionalMode(), motion()
+
+    def turned(self: TorsionalMode, signals: Signals, about: float) -> Array:
+        made.append(about)
+        return of(self, signals, about)
+
+    monkeypatch.setattr(TorsionalMode, "_turned", turned)
+    shapes = [(SOFT, hz, 0.1, about) for about in (0.02, 0.03, 0.0, 0.02) for hz in (9.0, 12.0, 20.0)]
+    kept = [effect.columns(s, shape) for shape in shapes]
+    assert made == [0.02, 0.03, 0.0, 0.02]
+    for shape, ports in zip(shapes, kept, strict=True):
+        for port, columns in effect.columns(motion(), shape).items():
+            np.testing.assert_array_equal(ports[port], columns)
+
+
 def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
     s = motion()
     column = LoadDependentFriction().columns(s, (0.0, 1.0))[Port.MOTOR_TORQUE][:, 0]

@@ -7,6 +7,7 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
+from rig.analysis.tracing.rest.joined import _elsewhere
 
 KEY = (0, "L")
 
@@ -28,3 +29,12 @@ def test_products_are_those_of_bare_columns(rng: np.random.Generator, local: flo
     np.testing.assert_allclose(gram, bare.T @ bare, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(right, bare.T @ eq.bare(KEY, r.y), rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(eq.baseline(KEY).whole(), bare, rtol=1e-12, atol=1e-9)
+
+
+def test_what_other_blocks_know_is_the_sum_of_what_their_bare_columns_do(rng: np.random.Generator) -> None:
+    keys = [(0, "L"), (1, "L")]
+    rows = dict(zip(keys, (block(rng, 0), block(rng, 2)), strict=True))
+    eq = Equations((), rows, Noise({"L": 0.1}, {"L": 2.0}, {"L": np.inf}))
+    bare = [eq.bare(key, rows[key].z) for key in keys]
+    known = _elsewhere(eq, keys)[:4, :4]
+    np.testing.assert_allclose(known, sum(50.0 * z.T @ z for z in bare), rtol=1e-9, atol=1e-4)

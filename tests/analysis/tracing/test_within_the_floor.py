@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rig.analysis.tracing.court.next_run import Alone, _as_good
 from rig.analysis.tracing.outcome.result import Status
-from rig.analysis.tracing.rest.in_the_floor import _waves
+from rig.analysis.tracing.rest import in_the_floor
+from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves
 from rig.analysis.tracing.rest.joined import Rest
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 
@@ -117,3 +119,17 @@ def test_a_campaign_of_seconds_or_of_days_has_no_waves_of_its_clock(apart: float
     at = {"time": time, "direction": np.ones(2000)}
     none = np.zeros((2000, 0))
     assert _waves(Rest(np.ones(2000), run, at, 0.02, none, none[:0]), lambda r: np.ones(r.e.size)) is None
+
+
+@pytest.mark.parametrize(("rms", "joined"), [(1.0, 0), (1.5, 1)])
+def test_runs_are_joined_only_where_unseen_ones_wander(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, rms: float, joined: int
+) -> None:
+    asked = list[str]()
+    floors = {(0, "M"): 1.0, (1, "M"): 1.0}
+    monkeypatch.setattr(in_the_floor, "_within_runs", lambda *_: floors)
+    monkeypatch.setattr(in_the_floor, "rest", lambda *of: asked.append(of[-1]))
+    e = {key: rng.normal(0.0, rms, 5000) for key in floors}
+    nothing: Any = None  # the equations, of which nothing is asked
+    assert _in_channel(nothing, e, e, floors, "M") is None
+    assert len(asked) == joined

@@ -50,7 +50,9 @@ class Trace(Row):
     costs 9 ns, of ours 1; resonances waited for divisions; what effects keep with signals, what Arrow had read the runs
     into and heaps of threads stayed until the end, a sixth of a gigabyte. Columns were made one by one and put
     together, what a state leads to along rows that nobody asked for, products of the same rows for every fit anew; one
-    process waited for the other at the end of the bank, and while the verdict listened for a clock. Left: the search
+    process waited for the other at the end of the bank, and while the verdict listened for a clock; all runs were
+    joined before it was asked whether unseen ones wander at all, and a coupling's torque was made anew for each of its
+    frequencies. Left: the search
     itself, whose two threads take turns at the interpreter more than they share the work, and most of a second of
     imports.
     """

@@ -63,11 +63,13 @@ def _in_channel(
 ) -> Home | None:
     still = _within_runs(eq, fitted, floors, channel)
     keys = [key for key in unseen if key[1] == channel]
-    train = rest(eq, fitted, still, channel) if still else None
-    if train is None or np.unique(train.run).size < FEWEST or not keys:
+    if not still or not keys:
         return None
     before, n = square(unseen, still, keys)
-    if before < n * WANDERS**2:
+    if before < n * WANDERS**2:  # most campaigns: nothing has to be joined for them
+        return None
+    train = rest(eq, fitted, still, channel)
+    if train is None or np.unique(train.run).size < FEWEST:
         return None
 
     def foretold(home: Home) -> float:

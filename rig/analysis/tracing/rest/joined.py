@@ -57,7 +57,7 @@ class Rest:
     @property
     def by_itself(self) -> Rest:
         """The same with nothing known from the other channels."""
-        return replace(self, known=ALL_OF_IT * self.z.T @ self.z / max(len(self.z), 1))
+        return replace(self, known=ALL_OF_IT * (self.z.T @ self.z) / max(len(self.z), 1))
 
     def part(self, rows: Index) -> Rest:
         """Some rows of it, side by side in memory."""
@@ -103,15 +103,15 @@ def _beside(eq: Equations, keys: Sequence[Key], floors: Mapping[Key, float], cha
     z = np.concatenate([_baseline(eq, k)[:, free] / floors[k] for k in keys])
     runs = {run for run, _ in keys}
     known = _elsewhere(eq, [key for key in eq.of(range(len(eq.runs))) if key[1] != channel and key[0] in runs])
-    return z, (known[np.ix_(free, free)] * eq.noise.kappa[channel] + ALL_OF_IT * z.T @ z) / len(z)
+    return z, (known[np.ix_(free, free)] * eq.noise.kappa[channel] + ALL_OF_IT * (z.T @ z)) / len(z)
 
 
 def _elsewhere(eq: Equations, keys: Sequence[Key]) -> Array:
     """What those blocks know of all the baseline's coefficients, (b, b)."""
     out = np.zeros((len(BASELINE), len(BASELINE)))
     for key in keys:
-        at, z = list(eq.rows[key].at), eq.bare(key, eq.rows[key].z)
-        out[np.ix_(at, at)] += eq.noise.weight(key[1]) * (z.T @ z)
+        at, (across, _) = list(eq.rows[key].at), eq.products(key)
+        out[np.ix_(at, at)] += eq.noise.weight(key[1]) * across
     return out
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ class Recording(Once):
         """s of recorded motion."""
         return float(sum(piece.t.size * piece.dt for piece in self.pieces))
 
-    @property
+    @cached_property
     def turning(self) -> float:
         """Mean |speed| of the motor, rad/s."""
         return float(np.mean([np.mean(np.abs(piece.omega_m)) for piece in self.pieces]))
