@@ -1,13 +1,15 @@
-"""The figures a run may have: name, unit, and which of them may be negative. What a limit can be set on before the run
-is made or read; a test holds this table and the analyses in agreement.
+"""The figures a run may have: name, unit, procedures that give them, and which may be negative. What a limit can be set
+on before the run is made or read; a test holds this table and the analyses in agreement.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Final
 
-FIGURES: Final = {  # `{n}` stands for a number; the unit is the one shown, "1" is none
+# `{n}` stands for a number; the unit is the one shown, "1" is none
+TURNING: Final = {
     "kinematic_error_peak_to_peak": "arcsec",
     "fourier_amplitude_{n}": "arcsec",
     "fourier_terms": "1",
@@ -41,6 +43,8 @@ FIGURES: Final = {  # `{n}` stands for a number; the unit is the one shown, "1" 
     "mean_motor_torque": "N·m",
     "mean_shaft_torque": "N·m",
     "shaft_torque_swing": "N·m",
+}
+FRICTION: Final = {
     "coulomb": "N·m",
     "viscous": "N·m·s/rad",
     "fall": "N·m",
@@ -54,12 +58,16 @@ FIGURES: Final = {  # `{n}` stands for a number; the unit is the one shown, "1" 
     "sensor_zero": "N·m",
     "breakaway": "N·m",
     "friction_drift": "%",
+}
+COAST_DOWN: Final = {
     "inertia_at_motor": "kg·m²",
     "coulomb_torque": "N·m",
     "viscous_friction": "N·m·s/rad",
     "time_constant": "s",
     "holding_torque": "N·m",
     "holding_torque_difference": "N·m",
+}
+STIFFNESS: Final = {
     "torsional_stiffness": "N·m/rad",
     "torsional_stiffness_gear": "N·m/rad",
     "torsional_stiffness_apparent": "N·m/rad",
@@ -77,12 +85,26 @@ FIGURES: Final = {  # `{n}` stands for a number; the unit is the one shown, "1" 
     "loop_viscous": "N·m·s/rad",
     "creep_per_decade": "%",
     "wave_generator_angle": "°",
+}
+STANDSTILL: Final = {
     **{f"noise_theta_{side}": "arcsec" for side in "ml"},
     **{f"noise_tau_{side}": "N·m" for side in "ml"},
     **{f"zero_tau_{side}": "N·m" for side in "ml"},
     **{f"drift_theta_{side}": "arcsec/min" for side in "ml"},
     **{f"drift_tau_{side}": "N·m/min" for side in "ml"},
 }
+
+FIGURES: Final = {**TURNING, **FRICTION, **COAST_DOWN, **STIFFNESS, **STANDSTILL}
+
+GIVEN_BY: Final = (
+    (TURNING, ("kinematic_error", "full_turn", "speed_convergence", "constant_torque", "constant_speed", "sentinel",
+        "load_sweep", "assembly_sweep")),
+    (FRICTION, ("friction",)),
+    (COAST_DOWN, ("coast_down",)),
+    (STIFFNESS, ("stiffness_lock",)),
+    (STANDSTILL, ("standstill",)),
+)  # fmt: skip
+"""Procedures that are run for the sake of these figures: without them such a run has failed its purpose."""
 
 SIGNED: Final = ("drift", "zero_", "trend_slope", "direction_offset", "alignment_shift", "latch_skew_load",
     "latch_skew_torque", "mean_", "speed_drift", "sensor_zero", "friction_drift", "holding_torque_difference",
@@ -93,6 +115,15 @@ SIGNED: Final = ("drift", "zero_", "trend_slope", "direction_offset", "alignment
 def unit_of(name: str) -> str | None:
     """The unit of the figure `name`; None where no analysis has one of that name."""
     return next((unit for known, unit in FIGURES.items() if re.fullmatch(_pattern(known), name)), None)
+
+
+def _in(names: Mapping[str, str], name: str) -> bool:
+    return any(re.fullmatch(_pattern(known), name) for known in names)
+
+
+def is_run_for(procedure: str, name: str) -> bool:
+    """Whether a run of this procedure is made for the figure `name` among others."""
+    return any(procedure in procedures and _in(names, name) for names, procedures in GIVEN_BY)
 
 
 def may_be_negative(name: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rig.runfile.run import Run
 
 PAGE = "rig.report.page"
+CHECKS, CAMPAIGN = "checks", "campaign.json"  # folder and file of a campaign
 NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -43,17 +45,45 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Figures and report of every run."""
     load("rig.analysis.analyse", PAGE)
-    folders = expand(args.runs)
+    folders = without_checks(expand(args.runs), args.runs)
     places = dict(zip(folders, targets(folders, args.out), strict=True))
     reference = reference_named(args.reference) if args.reference else None
     limits = limits_of(args.limits)
 
     def analyse_one(folder: Path) -> Exit:
-        result, simulated = analyse_folder(folder, places[folder], reference, limits)
+        mine = limits if len(folders) == 1 else limits_for(folder, limits)
+        result, simulated = analyse_folder(folder, places[folder], reference, mine)
         print_result(result, places[folder], folder, simulated)
+        for name in [n for n in limits if n not in mine]:
+            print(f"  not judged by {name}, for which such a run is not made")
         return exit_of(result)
 
     return for_each(folders, analyse_one)
+
+
+def without_checks(folders: list[Path], named: list[Path]) -> list[Path]:
+    """Runs without the checks a campaign makes between them, which measure no figure; `named` ones, and checks alone,
+    stay. Says on stderr how many were left out."""
+    left = [f for f in folders if f in named or not (f.parent.name == CHECKS and (f.parents[1] / CAMPAIGN).exists())]
+    count = len(folders) - len(left)
+    if not left or not count:
+        return folders
+    print(
+        f"left out: {count} check{'' if count == 1 else 's'} between the runs; name one to analyse it", file=sys.stderr
+    )
+    return left
+
+
+def limits_for(folder: Path, limits: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Of the limits put on many runs those on figures this one is made for: a lock test is not judged by a kinematic
+    error it does not measure, a run for one that lacks it is."""
+    if not limits:
+        return limits
+    from rig.analysis.figure_names import is_run_for
+    from rig.runfile.manifest import read
+
+    procedure = str(read(folder).get("procedure", ""))
+    return {name: limit for name, limit in limits.items() if is_run_for(procedure, name)}
 
 
 def targets(folders: list[Path], out: Path | None) -> list[Path]:

@@ -27,7 +27,7 @@ def limit_argument(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=LIMIT",
         help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; names: "
         "peak-to-peak, C_2, K1, hysteresis-loss, friction, or as in result.json; without a unit in the figure's, an "
-        "angle also in arcsec, arcmin, deg, rad or mrad",
+        "angle also in arcsec, arcmin, deg, rad or mrad; of several runs it judges those made for the figure",
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import rig.analysis
-from rig.analysis.figure_names import FIGURES, may_be_negative, unit_of
+from rig.analysis.figure_names import FIGURES, GIVEN_BY, is_run_for, may_be_negative, unit_of
 
 ROOT = Path(rig.analysis.__file__).parent
 NOT_JUDGED = {"sweep_result.py"}  # figures of many runs together, which --limit is refused for
@@ -52,6 +52,16 @@ def test_a_name_that_no_analysis_gives_has_no_unit() -> None:
     assert unit_of("kinematic_error_peak_to_peek") is None
     assert unit_of("fourier_amplitude_") is None
     assert unit_of("fourier_amplitude_15") == "arcsec"
+
+
+def test_a_run_is_made_for_the_figures_of_its_procedure_alone() -> None:
+    assert is_run_for("sentinel", "fourier_amplitude_4")
+    assert is_run_for("stiffness_lock", "stiffness_K1")
+    assert not is_run_for("stiffness_lock", "kinematic_error_peak_to_peak")
+    assert not is_run_for("other", "kinematic_error_peak_to_peak")
+    known = {name for names, _ in GIVEN_BY for name in names}
+    assert known == set(FIGURES)
+    assert sum(len(names) for names, _ in GIVEN_BY) == len(FIGURES)  # none is told twice
 
 
 @pytest.mark.parametrize("name", ["drift", "zero_tau_l", "trend_slope", "cubic_k3", "mean_speed"])

@@ -106,3 +106,23 @@ def test_a_run_judged_again_says_what_the_verdict_was_and_by_which_limit(
     assert [f["verdict"] for f in kept["former"]] == ["MEASURED", "PASS"]
     assert kept["limits"] == {"kinematic_error_peak_to_peak": f"{name} 60 arcsec"}
     assert f"Judged before: no limit set, then PASS by {name} 2 arcmin" in (tmp_path / "run/report.html").read_text()
+
+
+@pytest.mark.slow
+def test_of_many_runs_a_limit_judges_those_made_for_its_figure_and_checks_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for place, procedure in (("a", "kinematic_error"), ("b", "other"), ("checks/c", "other")):
+        manifest = made_run(tmp_path / "camp" / place) / "manifest.json"
+        manifest.write_text(json.dumps(json.loads(manifest.read_text()) | {"procedure": procedure}))
+    (tmp_path / "camp" / "campaign.json").write_text("{}")
+    limit = ["--limit", "peak-to-peak=120 arcsec", "--out", str(tmp_path / "out")]
+    assert main(["analyse", str(tmp_path / "camp"), *limit]) == 0
+    said = capsys.readouterr()
+    assert "left out: 1 check between the runs; name one to analyse it" in said.err
+    assert said.out.count("PASS") == 1
+    assert said.out.count("not judged by kinematic_error_peak_to_peak, for which such a run is not made") == 1
+    assert main(["analyse", str(tmp_path / "camp" / "b"), *limit]) == 0  # by itself it is asked, and has the figure
+    assert "PASS" in capsys.readouterr().out
+    assert main(["analyse", str(tmp_path / "camp" / "checks" / "c"), "--out", str(tmp_path / "one")]) == 0
+    assert "left out" not in capsys.readouterr().err
