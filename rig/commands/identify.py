@@ -25,7 +25,8 @@ TERMS = 15  # orders of the paper's series
 MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
 RPM = 30 / math.pi  # in a rad/s
 ARCSEC = 206264.80624709636  # in a radian
-SHOWN = {"rad": (ARCSEC / 60.0, "arcmin"), "J": (1e3, "mJ")}  # SI to what people read
+DEG = 180.0 / math.pi  # in a radian
+SHOWN = {"rad": (ARCSEC / 60.0, "arcmin"), "J": (1e3, "mJ"), "s": (1e6, "µs")}  # SI to what people read
 UNITS_BESIDE = {
     "B_sum": "N·m·s/rad",
     "omega_n": "rad/s",
@@ -170,9 +171,11 @@ def parameter_line(name: str, p: Parameter, unit: str) -> str:
     from rig.analysis.identify.undetermined import NOTHING
     from rig.report.numbers import estimate
 
-    value = "unknown" if p.note == NOTHING else estimate(p.value, p.interval, unit)
+    scale, shown = SHOWN.get(unit, (1.0, unit))
+    interval = (scale * p.interval[0], scale * p.interval[1])
+    value = "unknown" if p.note == NOTHING else estimate(scale * p.value, interval, shown)
     origin = p.origin if p.origin != "measured" else f"measured, {counted(p.runs)}" if p.runs else "measured"
-    note = f"; {p.note}" if p.note else ""
+    note = f"; {p.note}" if p.note and p.note not in WORDS[name] else ""  # said once
     return f"  {name:8s} {value:36s} {WORDS[name]} ({origin}{note})"
 
 
@@ -183,18 +186,17 @@ def counted(runs: tuple[str, ...]) -> str:
 
 def series_lines(series: MeasuredSeries) -> list[str]:
     """C_n and ψ_n of the orders that stand out."""
-    from rig.analysis.identify.identified import order_amplitudes
+    from rig.analysis.identify.identified import order_amplitudes, order_phases
     from rig.report.numbers import quantity
 
     if series.origin != "measured":
         return ["  θ̃_p      not determined: none of these runs shows the kinematic error"]
     lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]
-    for n, size, u in order_amplitudes(series):
-        small = "" if size > 2.45 * u else "  (not told from zero)"
-        phase = float(series.series.phase[n - 1]) * 180.0 / math.pi
-        lines.append(
-            f"    C_{n:<3d} {quantity(size * ARCSEC, 1.96 * u * ARCSEC, 'arcsec'):28s} at {phase:+7.1f}°{small}"
-        )
+    for (n, size, u), (psi, u_psi) in zip(order_amplitudes(series), order_phases(series), strict=True):
+        amplitude = quantity(size * ARCSEC, 1.96 * u * ARCSEC, "arcsec")
+        told = size > 2.45 * u  # below, the phase may be any
+        phase = f"at {quantity(psi * DEG, 1.96 * u_psi * DEG, '°')}" if told else "(not told from zero)"
+        lines.append(f"    C_{n:<3d} {amplitude:28s} {phase}")
     return lines
 
 
@@ -204,11 +206,14 @@ def comparison(rows: list[Prediction]) -> list[str]:
 
     if not rows:
         return []
-    lines = ["  θ̃ at speed, peak to peak, arcsec:      measured               predicted   pure θ̃_p   rms between"]
+    width = max(len(p.run) for p in rows)  # whole names: cut ones are alike
+    head = f"  {'θ̃ at speed, peak to peak, arcsec':{width + 3}s}"  # its tilde takes no room of its own
+    lines = [f"{head}  motor speed       measured  predicted  pure θ̃_p  rms between"]
     for p in rows:
         measured = estimate(p.measured, p.interval)
         lines.append(
-            f"    {p.run:28.28s} {p.speed_rpm:+7.1f} rpm {measured:>18s} {p.predicted:9.1f} {p.pure:9.1f} {p.rms:9.2f}"
+            f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {p.predicted:10.1f} {p.pure:9.1f} "
+            f"{p.rms:12.2f}"
         )
     return lines
 

@@ -243,6 +243,18 @@ def order_amplitudes(series: MeasuredSeries) -> list[tuple[int, float, float]]:
     return out
 
 
+def order_phases(series: MeasuredSeries) -> list[tuple[float, float]]:
+    """(ψ_n, 1 σ) of the same orders, rad: what the covariance has across the phasor, over its length."""
+    s, V, k = series.series, series.covariance, len(series.series.a)
+    out = []
+    for n in range(k):
+        size = float(np.hypot(s.a[n], s.b[n])) or 1e-300
+        across = np.array([-s.b[n], s.a[n]]) / size
+        part = V[np.ix_([n, n + k], [n, n + k])]
+        out.append((float(s.phase[n]), math.sqrt(max(float(across @ part @ across), 0.0)) / size))
+    return out
+
+
 def _always(found: Mapping[str, Parameter]) -> list[str]:
     """What no such campaign can tell apart, each pair named; pairs of which nothing was measured are left out."""
     said = [
