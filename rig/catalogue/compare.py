@@ -9,11 +9,11 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from rig.catalogue.figures import Figure, figures
+from rig.catalogue.figures import Figure, common_label, figures
 from rig.catalogue.lacking import lacks, refuse_nothing, shared, without_figures
 from rig.catalogue.repeats import COUNTS, Repeats
 from rig.catalogue.row import UNREADABLE, Row, finite
-from rig.catalogue.sameness import mounting, point
+from rig.catalogue.sameness import beside, mounting, point
 from rig.catalogue.scan import row, rows
 from rig.catalogue.scatter import SHARE, Scatter, between
 from rig.core.errors import UsageError
@@ -88,7 +88,9 @@ def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
     a path that is none, a result that is damaged, or when no other run has any figure of the first.
     """
     if len(paths) < 2:
-        raise UsageError("comparing needs at least two runs")
+        raise UsageError(
+            f"compare was given {len(paths)} run folder: expected two or more, the others against the first"
+        )
     found = tuple(_run(path) for path in paths)
     known = [figures(one.path) for one in found]
     refuse_nothing(found, known)
@@ -117,7 +119,7 @@ def _line(name: str, found: Sequence[Row], known: Sequence[Mapping[str, Figure]]
     values = tuple(one.get(name) for one in known)
     shown = next(v for v in values if v is not None)
     differences = [_between(name, found[0], values[0], r, v, repeats) for r, v in zip(found, values, strict=True)]
-    return Line(name, shown.label, shown.unit, values, (None, *differences[1:]))
+    return Line(name, common_label(v for v in values if v is not None), shown.unit, values, (None, *differences[1:]))
 
 
 def _between(name: str, a: Row, x: Figure | None, b: Row, y: Figure | None, repeats: Repeats) -> Difference | None:
@@ -181,12 +183,12 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
 
 
 def _unlike(a: Row, b: Row) -> str:
-    """Procedure and conditions that differ, as "speed_rpm 9.6 and 300"."""
+    """Procedure and conditions that differ, as "speed 9.6 rpm and 300 rpm"."""
     pairs = {"procedure": (a.procedure, b.procedure)}
     for key in [*a.conditions, *(k for k in b.conditions if k not in a.conditions)]:
         if key not in ("note", "assembly"):
             pairs[key] = (a.conditions.get(key, "not said"), b.conditions.get(key, "not said"))
-    return ", ".join(f"{key} {x} and {y}" for key, (x, y) in pairs.items() if x != y) or "their kind"
+    return ", ".join(beside(key, x, y) for key, (x, y) in pairs.items() if x != y) or "their kind"
 
 
 def _figure(f: Figure | None) -> dict[str, Any] | None:

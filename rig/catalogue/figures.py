@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,6 +45,12 @@ class Figure:
     def half(self) -> float:
         """Half of the interval's width; NaN without one."""
         return (self.high - self.low) / 2
+
+
+def common_label(found: Iterable[Figure]) -> str:
+    """What one figure of several runs is called: without the speed it was measured at, where they differ in it."""
+    labels = list(dict.fromkeys(figure.label for figure in found))
+    return labels[0] if len(labels) == 1 else re.sub(r" at [\d.]+ rpm", "", labels[0])
 
 
 def names_of(word: str) -> tuple[str, ...]:

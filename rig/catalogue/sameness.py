@@ -69,6 +69,17 @@ def _named(key: str, value: float) -> str:
     return f"{key.replace('_', ' ')} {value:g}"
 
 
+def beside(key: str, a: object, b: object) -> str:
+    """One condition of two runs: "speed 9.6 rpm and 300 rpm"; a value that is no number stands as it is."""
+    name, _, end = key.rpartition("_")
+    unit = UNITS.get(end, "") if name else ""
+    if key.startswith("tau_"):
+        name, unit = key, "N·m"
+    shown = key if key.startswith("tau_") else (name if unit else key).replace("_", " ")
+    said = [str(x) if (n := number(x)) is None else f"{n:g} {unit}".strip() for x in (a, b)]
+    return f"{shown} {' and '.join(said)}"
+
+
 def _rounded(value: Any) -> Any:
     """Numbers to six digits: 0.1 + 0.2 and 0.3 are one speed."""
     match value:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rig.catalogue.figures import Figure, figures, names_of, refuse_unknown
+from rig.catalogue.figures import Figure, common_label, figures, names_of, refuse_unknown
 from rig.catalogue.filter import Filter
 from rig.catalogue.repeats import figure_of
 from rig.catalogue.row import Row, finite
@@ -156,7 +156,8 @@ def _series(at: Point, members: Sequence[tuple[Row, Figure]], numbers: Mapping[t
         since = [(row, figure)] if spot.changed else [*since, (row, figure)] if k else since
     last = members[-1][1]
     title = f"{at.gear or 'gear without serial number'}, {words(at)}"
-    return Series(at.gear, at.procedure, at.simulated, title, last.label, last.unit, tuple(spots), spread)
+    label = common_label(figure for _, figure in members)
+    return Series(at.gear, at.procedure, at.simulated, title, label, last.unit, tuple(spots), spread)
 
 
 def _judged(row: Row, figure: Figure, assembly: int, before: Sequence[Figure], spread: Scatter) -> Spot:

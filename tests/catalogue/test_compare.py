@@ -11,6 +11,8 @@ import pytest
 
 from rig.catalogue import compare, trend
 from rig.catalogue.compare import Mark
+from rig.catalogue.figures import Figure, common_label
+from rig.catalogue.sameness import beside
 from rig.catalogue.scatter import between, scatter
 from rig.cli import main
 from rig.core.errors import UsageError
@@ -64,7 +66,7 @@ def test_runs_at_other_conditions_or_of_another_origin_are_no_repeats_and_it_is_
     assert d is not None
     assert d.mark is Mark.UNKNOWN
     assert "is of gear SN2" in found.remarks[0]
-    assert "speed_rpm 9.6 and 300.0" in found.remarks[1]
+    assert "speed 9.6 rpm and 300 rpm" in found.remarks[1]
 
 
 def test_two_repeats_do_not_judge_themselves(tmp_path: Path) -> None:
@@ -213,3 +215,24 @@ def test_a_damaged_result_is_named(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "result.json is not JSON" in capsys.readouterr().err
     (series,) = trend(tmp_path, "peak-to-peak").series
     assert len(series.spots) == 1
+
+
+def test_a_condition_is_told_with_its_unit_and_what_is_no_number_as_it_stands() -> None:
+    assert beside("speed_rpm", 9.6, 300.0) == "speed 9.6 rpm and 300 rpm"
+    assert beside("tau_ext", 0.0, -5.0) == "tau_ext 0 N·m and -5 N·m"
+    assert beside("settle_s", 3.0, "not said") == "settle 3 s and not said"
+    assert beside("output_locked", False, True) == "output locked False and True"
+    assert beside("odd", 10**400, "x").startswith("odd ")
+
+
+def test_a_figure_measured_at_unlike_speeds_is_not_called_by_one_of_them() -> None:
+    def at(rpm: str) -> Figure:
+        return Figure("x", f"θ̃ at {rpm} rpm, peak to peak", 1.0, "arcsec", 0.9, 1.1)
+
+    assert common_label([at("121.2"), at("307.1")]) == "θ̃, peak to peak"
+    assert common_label([at("121.2"), at("121.2")]) == "θ̃ at 121.2 rpm, peak to peak"
+
+
+def test_one_run_alone_is_not_compared(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="given 1 run folder: expected two or more"):
+        compare([tmp_path])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from rig.catalogue import compare, trend
-from rig.report.comparison import page, trend_page
+from rig.report.comparison import course, page, trend_page
 from rig.report.comparison.waveforms import drawing, joined
 from rig.report.figures import Frame, svg
 from tests.catalogue.folders import run
@@ -55,3 +55,26 @@ def test_waveforms_are_drawn_of_errors_or_of_loops_and_never_of_nothing() -> Non
     assert "Shaft torque" in str(svg(shown, joined([loop, loop]), Frame()))
     assert svg(shown, joined([None, None]), Frame()) is None
     assert "span of each: run 1 79.99, run 2 79.99" in shown.say(joined([error, error]))
+
+
+def test_runs_are_seen_beside_a_band_that_few_repeats_make_very_wide(tmp_path: Path) -> None:
+    for k, value in enumerate((90.0, 91.0)):
+        run(tmp_path, DAYS[0], k, value)
+    (series,) = trend(tmp_path, "peak-to-peak").series
+    curves = course.curves_of(series)
+    assert np.nanmax(curves["limit"]) > 20.0  # arcsec
+    figure = course.drawing(series).draw(curves, Frame(760.0))
+    assert figure is not None
+    low, high = figure.axes[0].get_ylim()
+    assert high - low < 10.0
+    assert low < 89.7
+    assert high > 91.3
+    assert [figure.axes[0].xaxis.get_major_formatter()(k) for k in figure.axes[0].get_xticks()] == [DAYS[0]] * 2
+
+
+def test_one_run_alone_has_its_date_below_it(tmp_path: Path) -> None:
+    run(tmp_path, DAYS[0], 0, 90.0)
+    (series,) = trend(tmp_path, "peak-to-peak").series
+    figure = course.drawing(series).draw(course.curves_of(series), Frame(760.0))
+    assert figure is not None
+    assert list(figure.axes[0].get_xticks()) == [1]

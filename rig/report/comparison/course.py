@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from rig.catalogue.trend import Series
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, sheet, title
 from rig.report.numbers import plain
 from rig.report.palette import LIGHT
 
+BAND, EDGE = 1.0, 0.08  # of the span of the runs: what is shown of the band beyond them, and room beside
+
 NOTE = (
     "Each point is a run with its 95 % interval, in order of time; a thin line stands where the rig was assembled anew "
     "or another day began. The band is where a run of an unchanged gear stays in 99 of 100 cases, about the mean "
-    "of the runs since the last change. A diamond is a run beyond it."
+    "of the runs since the last change. A diamond is a run beyond it. A band that fills the panel is wider than that."
 )
 
 
@@ -28,7 +30,9 @@ def drawing(series: Series) -> Drawing:
         panel, x = panels[0], np.arange(1, len(days) + 1, dtype=float)
         value, low, high = curves["value"], curves["low"], curves["high"]
         level, limit = curves["level"], curves["limit"]
-        panel.fill_between(x, level - limit, level + limit, color=LIGHT["bar-soft"], alpha=0.35, lw=0, step="mid")
+        ends = np.column_stack([x - 0.5, x + 0.5]).ravel()  # so that a band of one run has a width
+        below, above = (np.repeat(edge, 2) for edge in (level - limit, level + limit))
+        panel.fill_between(ends, below, above, color=LIGHT["bar-soft"], alpha=0.35, lw=0)
         for k in np.flatnonzero(np.diff(curves["assembly"])):
             panel.axvline(k + 1.5, color=LIGHT["axis"], lw=0.8)
         panel.vlines(x, low, high, color=LIGHT["bar"], lw=1.4)
@@ -36,7 +40,10 @@ def drawing(series: Series) -> Drawing:
         panel.plot(x[~changed], value[~changed], "o", ms=4.5, color=LIGHT["bar"])
         panel.plot(x[changed], value[changed], "D", ms=7.5, color=LIGHT["bad"])
         panel.set_xlim(0.5, len(days) + 0.5)
-        panel.xaxis.set_major_locator(MaxNLocator(int(frame.pick(7, 3)), integer=True))
+        panel.set_ylim(*_shown(curves))
+        panel.xaxis.set_major_locator(
+            FixedLocator(list(range(1, len(days) + 1, -(-len(days) // int(frame.pick(7, 3))))))
+        )
         panel.xaxis.set_major_formatter(FuncFormatter(lambda k, _: days[int(k) - 1] if 1 <= k <= len(days) else ""))
         title(panel, series.label, series.unit)
         foot(panel, "Runs in order of time, by their day")
@@ -48,6 +55,18 @@ def drawing(series: Series) -> Drawing:
         return f"{series.label}, {plain(value.min(), 4)} to {plain(value.max(), 4)} {series.unit}: {series.sentence}."
 
     return Drawing("course", series.title, NOTE, draw, say)
+
+
+def _shown(curves: Curves) -> tuple[float, float]:
+    """Ends of the axis: all runs with their intervals, and of the band what lies within BAND times their span; from two
+    or three repeats it is so wide that no run could be seen in it."""
+    ends = np.concatenate([curves[name] for name in ("value", "low", "high")])
+    ends = ends[np.isfinite(ends)]
+    low, high = (float(ends.min()), float(ends.max())) if ends.size else (0.0, 1.0)
+    span = (high - low) or abs(high) or 1.0
+    band = np.concatenate([curves["level"] - curves["limit"], curves["level"] + curves["limit"]])
+    band = np.clip(band[np.isfinite(band)], low - BAND * span, high + BAND * span)
+    return min([low, *band]) - EDGE * span, max([high, *band]) + EDGE * span
 
 
 def curves_of(series: Series) -> dict[str, Array]:
