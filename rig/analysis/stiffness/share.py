@@ -30,8 +30,9 @@ class Share:
 def share_of(points: Points, scale: Scale, shape: Shape) -> Share:
     """Fitted where the run covers enough of the motor turn to tell the error from a cubic spring, else 1 ± 0.25."""
     whole = fit(Cubic(), points, scale, shape)
-    best = _best(points, whole, _best(points, whole, 1.0))
-    if not 0.1 < best < 1.9:
+    near = _best(points, whole, 1.0)
+    best = _best(points, whole, near) if np.isfinite(near) else near
+    if not 0.1 < best < 1.9:  # nor where no share is the best one
         return Share(1.0, UNDER_LOAD, False)
     zone = zones(points) // 2
     left = np.array([_best(points.pick(zone != k), whole, best) for k in np.unique(zone)])
@@ -41,7 +42,8 @@ def share_of(points: Points, scale: Scale, shape: Shape) -> Share:
 
 
 def _best(points: Points, start: Curve, near: float) -> float:
-    """The share that leaves the least scatter about a cubic spring with its loop: vertex of a parabola through three.
+    """The share that leaves the least scatter about a cubic spring with its loop: vertex of a parabola through three;
+    NaN where it has none.
 
     What is left is linear in the share, so its square is a parabola but for the few parameters that are not linear.
     """
