@@ -29,7 +29,7 @@ class LoadDependentFriction(Effect):
     source: ClassVar[str] = "tuttle1992"
     shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
-    usual: ClassVar[Mapping[str, float]] = MappingProxyType({"exponent": 1.0})
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"exponent": (1.0,)})
     AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
     UNSURE: Final = 0.25  # of the larger μ_L, how negative noise may make the other
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2

@@ -29,7 +29,7 @@ class QuadraticDrag(Effect):
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("by_way", "exponent")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
-    usual: ClassVar[Mapping[str, float]] = MappingProxyType({"exponent": 2.0})
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"exponent": (2.0,)})
     EXPONENTS: Final = (1.6, 2.0, 2.6)
     AT: Final = 10.0  # rad/s
 

@@ -93,7 +93,7 @@ def effects(
     s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array] = covariance
 ) -> dict[str, tuple[Parameter, ...]]:
     """Parameters of every effect in the model; the shape's uncertainty is in all intervals, which are as wide as
-    `spread` says. That of an exponent which is the textbook's is in its own interval alone: the others are those of
+    `spread` says. That of an exponent which is a textbook's is in its own interval alone: the others are those of
     the textbook's law."""
     d, slopes = s.design, []
     for i, term in enumerate(s.design.terms):
@@ -110,7 +110,7 @@ def effects(
 
 
 def _is_usual(term: Term, j: int) -> bool:
-    return term.effect.usual.get(term.effect.shape_names[j]) == term.shape[j]
+    return term.shape[j] in term.effect.usual.get(term.effect.shape_names[j], ())
 
 
 def _widened(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ ROUNDS = 4
 
 
 def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:
-    """The design with `term` in the shape that fits best, and its solution. An exponent is the textbook's unless the
+    """The design with `term` in the shape that fits best, and its solution. An exponent is a textbook's unless the
     runs tell another one plainly: torques nobody measured move the motor a little, and bend what friction seems to do
     with its speed."""
     free = [i for i, loose in enumerate(term.effect.loose) if loose]
@@ -27,9 +28,12 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     usual = term.effect.usual
     if not usual:
         return best
-    shape = tuple(usual.get(name, v) for name, v in zip(term.effect.shape_names, best[0].terms[-1].shape, strict=True))
-    held = [i for i in free if term.effect.shape_names[i] not in usual]
-    plain = _refined(d, replace(term, shape=shape), runs, covered, held)
+    names, shape = term.effect.shape_names, best[0].terms[-1].shape
+    laws = [dict(zip(usual, law, strict=True)) for law in itertools.product(*usual.values())]
+    begun = [tuple(law.get(name, v) for name, v in zip(names, shape, strict=True)) for law in laws]
+    held = [i for i in free if names[i] not in usual]
+    made = [_refined(d, replace(term, shape=x), runs, covered, held) for x in begun]
+    plain = max(made, key=lambda one: one[1].gain)
     rows = sum(y.size / d.eq.noise.kappa[channel] for (_, channel), y in d.y.items())
     least = max(2 * EVIDENCE, OTHER_LAW * min(plain[1].gain - fit(d).gain, rows))
     return plain if best[1].gain - plain[1].gain < least else best
