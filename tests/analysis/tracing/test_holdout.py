@@ -20,7 +20,13 @@ def run(speed: float, start: float) -> Any:
     piece = SimpleNamespace(theta_m=speed * t, omega_m=np.full(t.size, speed), tau_ext=np.zeros(t.size), t=t, dt=0.004)
     said = f"kinematic_error [('speed', {speed})]"
     return SimpleNamespace(
-        name=f"{speed}_{start}", procedure="kinematic_error", said=said, has=frozenset(), pieces=(piece,), start=start
+        locked=False,
+        name=f"{speed}_{start}",
+        procedure="kinematic_error",
+        said=said,
+        has=frozenset(),
+        pieces=(piece,),
+        start=start,
     )
 
 

@@ -31,6 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.runs.counts import FREE, LOCKED, one_a_stay, resting
+from rig.analysis.tracing.runs.first_stroke import has_turned
 from rig.analysis.tracing.runs.recording import COARSE, UNKNOWN, Recording, settled
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Array, Known, Port, Signals
@@ -184,12 +185,14 @@ def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
 
 
 def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
-    """Rows in which the motor's angle is known to better than a count; with a locked output one of every stay too."""
+    """Rows in which the motor's angle is known to better than a count; with a locked output one of every
+    stay too, from the first reversal on."""
     f = run.smoother
     rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
     if not run.locked:
         return np.asarray(f(rest.astype(float)) < 1e-9, dtype=np.bool_)
-    return one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
+    stays = one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
+    return np.asarray(stays & has_turned(piece)[f.centres(piece.t.size)])
 
 
 Columns = tuple[Array, dict[str, Array]]

@@ -56,9 +56,12 @@ def alike(a: Recording, b: Recording) -> bool:
 
 
 def travel(run: Recording) -> tuple[float, float]:
-    """Range of the motor angle over the time it took, and mean |speed|; rad/s. Length of a run does not matter."""
-    speed = float(np.mean([np.mean(np.abs(p.omega_m)) for p in run.pieces]))
+    """Range of the motor angle over the time it took, and mean |speed|; rad/s. Length of a run does not matter. Of a
+    locked run the range alone, twice: its mean |speed| is that of the counts it trembles on, and of stick and slip."""
     low, high = min(float(p.theta_m.min()) for p in run.pieces), max(float(p.theta_m.max()) for p in run.pieces)
+    if run.locked:
+        return high - low, high - low
+    speed = float(np.mean([np.mean(np.abs(p.omega_m)) for p in run.pieces]))
     turning = abs(float(np.mean([np.mean(p.omega_m) for p in run.pieces]))) > 0.5 * speed
     return speed, speed if turning else high - low
 
