@@ -59,6 +59,15 @@ def test_a_worth_is_fair_within_a_fifth() -> None:
     assert not replace(plain, apart=0.25).fairly
 
 
+def test_a_name_beside_a_loud_rest_takes_what_it_should() -> None:
+    edge = Worth("torsional_mode", 0.81, 1.97, 1.39, 1.1, (), unsteady=0.15, apart=0.15)
+    assert edge.named
+    assert not replace(edge, true=1.21).named
+    assert not replace(edge, unsteady=0.21).named
+    assert replace(edge, true=1.21, left=1.2).named
+    assert replace(edge, true=1.21, share=0.95).named
+
+
 def test_a_worth_is_plain_however_many_floors_its_law_leaves() -> None:
     plain = Worth("presliding_friction", 0.89, 46.0, 8.6, 0.99, (), unsteady=0.06, apart=0.06)
     assert plain.plain

@@ -32,6 +32,24 @@ def test_a_jump_where_the_motor_turns_back_is_none(rng: np.random.Generator) -> 
     assert _jumps(e, np.abs(np.arange(4000) - 2500) > 43, 7.0, ANY) == []
 
 
+def onward_at(theta: np.ndarray) -> np.ndarray:
+    """Which rows of one run at these motor angles, 4 ms apart, may show a jump."""
+    row = SimpleNamespace(theta_m=theta, t=0.004 * np.arange(theta.size))
+    eq: Any = SimpleNamespace(rows={(0, "A"): row})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(steps, "clock", lambda eq, key: row.t)
+        return np.asarray(steps._onward(eq, (0, "A")))
+
+
+def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() -> None:
+    t = 0.004 * np.arange(4000)
+    faster = onward_at(np.where(t < 8.0, 30.0 * t, 240.0 + 40.0 * (t - 8.0)))
+    assert not faster[1995:2005].any()
+    assert faster[500:1900].all()
+    assert faster[2100:3500].all()
+    assert onward_at(30.0 * t + 0.05 * np.sin(60.0 * t))[100:3900].all()
+
+
 def test_noise_drift_and_waves_have_no_jumps(rng: np.random.Generator) -> None:
     n = np.arange(4000)
     for e in (0 * n, 1e-8 * n, 2e-5 * np.sin(n / 60)):

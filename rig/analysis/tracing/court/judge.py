@@ -24,6 +24,7 @@ from rig.analysis.tracing.thresholds import (
     HARMFUL,
     LOOSELY,
     MISSING,
+    MOSTLY,
     NAMED,
     PLAINLY,
     QUIET,
@@ -107,6 +108,9 @@ class Worth:
         real = self.size > SMALLEST and REAL < self.true < UNREAL and self.harm < HARMFUL
         loose = LOOSELY if self._explains_all else 1.0
         real = real and self.unsteady < loose * UNSTEADY and self.apart < loose * APART
+        # a law that leaves a loud rest may be another's: it must then at least take what it should, in one size
+        loud = self.left > EXPLAINED and self.share < MOSTLY
+        real = real and (self.fairly or not loud)
         return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
 
     @property

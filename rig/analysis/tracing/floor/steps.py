@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +23,8 @@ SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a tur
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
 IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
 AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-out part more
+SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
+AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
 EDGE = 3  # rows over which the low-pass spreads a step
 
@@ -126,16 +129,28 @@ def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]
 
 
 def _onward(eq: Equations, key: Key) -> Array:
-    """True for rows with a window on both sides in which the motor neither turned back nor rested, (n,).
+    """True for rows with a window on both sides in which the motor neither turned back nor rested, and goes on at one
+    speed, (n,).
 
-    At a reversal everything with memory or play goes over to its other branch: that looks like a step and is none.
+    At a reversal everything with memory or play goes over to its other branch, and some of it where the load is
+    accelerated: that looks like a step and is none.
     """
     theta, t = eq.rows[key].theta_m, clock(eq, key)
     way = np.sign(np.diff(theta, prepend=theta[0]))
     turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(_rested(theta, t))])
     reach = WINDOW + EDGE
     first, last = np.maximum(np.arange(t.size) - reach, 0), np.minimum(np.arange(t.size) + reach, t.size - 1)
-    return np.asarray(turned[first] == turned[last])
+    return np.asarray((turned[first] == turned[last]) & _at_one_speed(theta, t, reach))
+
+
+def _at_one_speed(theta: Array, t: Array, reach: int) -> Array:
+    """Rows (n,) around which the mean speed is the same in half windows as far as one and a half times `reach` rows."""
+    rows = np.arange(t.size)
+    edges = [np.clip(rows + share * reach // 2, 0, t.size - 1) for share in range(-3, 4)]
+    gone = [theta[b] - theta[a] for a, b in itertools.pairwise(edges)]
+    took = [np.maximum(t[b] - t[a], 1e-12) for a, b in itertools.pairwise(edges)]
+    speed = np.abs(np.array(gone) / np.array(took))
+    return np.asarray(np.ptp(speed, axis=0) <= SAME_SPEED * speed.max(0))
 
 
 def _rested(theta: Array, t: Array) -> Array:
@@ -182,16 +197,23 @@ def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) 
 
 
 def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -> bool:
-    """Whether the jumps are lost counts: there are some, and repeats do not jump at the same angle as a tooth would,
-    nor all runs at one angle of a shaft as a scale with a fault would."""
+    """Whether the jumps are lost counts: there are some, and repeats do not jump at the same angle as a tooth would
+    or at the same moment of what they do, nor all runs at one angle of a shaft as a scale with a fault would."""
     count = sum(len(r) for r in steps.rows.values())
     if count == 0 or any(_at_one_angle(eq, steps, per_turn) for per_turn in (1.0, eq.runs[0].ratio)):
         return False
     same = 0
     for a, b in pairs:
-        x, y = (eq.rows[i, "A"].theta_m[list(steps.rows.get(i, ()))] for i in (a, b))
-        same += int(sum(np.min(np.abs(y - v)) < STEP_ALIKE for v in x)) if y.size else 0
+        (x, t), (y, u) = (_at(eq, i, steps.rows.get(i, ())) for i in (a, b))
+        near = (np.abs(x[:, None] - y) < STEP_ALIKE) | (np.abs(t[:, None] - u) < AT_ONCE)
+        same += int(near.any(1).sum())
     return same * 4 < count
+
+
+def _at(eq: Equations, run: int, rows: Sequence[int]) -> tuple[Array, Array]:
+    """Motor angles [rad] and times since the start of the run [s] of some rows of A."""
+    t = clock(eq, (run, "A"))
+    return eq.rows[run, "A"].theta_m[list(rows)], t[list(rows)] - t[:1].sum()
 
 
 def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:
