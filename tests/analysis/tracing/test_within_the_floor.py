@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.court import verdict as court
 from rig.analysis.tracing.court.next_run import Alone, _as_good
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.rest import in_the_floor
+from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves
 from rig.analysis.tracing.rest.joined import Rest
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
@@ -133,3 +137,21 @@ def test_runs_are_joined_only_where_unseen_ones_wander(
     nothing: Any = None  # the equations, of which nothing is asked
     assert _in_channel(nothing, e, e, floors, "M") is None
     assert len(asked) == joined
+
+
+@pytest.mark.parametrize("loudest", WHOLE)
+def test_every_channel_is_listened_to_whoever_does_it(monkeypatch: pytest.MonkeyPatch, loudest: str) -> None:
+    """Two processes share the channels."""
+
+    def ticking(eq: object, fitted: object, unseen: object, channels: Sequence[str]) -> Home | None:
+        found = [Home("time_periodic", c, 0.9 if c == loudest else 0.5, frequency_hz=0.5) for c in channels]
+        return max(found, key=lambda home: home.share)
+
+    monkeypatch.setattr(court, "ticking", ticking)
+    monkeypatch.setattr(court, "in_the_floor", lambda *_: None)
+    monkeypatch.setattr(court, "repeats", lambda *_: [])
+    nothing: Any = SimpleNamespace(runs=(), fitted=(), floors={}, keys=())
+    p: Any = SimpleNamespace(eq=nothing, split=nothing, court=nothing)
+    ruling = court._in_the_floor(p, nothing, {}, {})
+    assert ruling is not None
+    assert court.IN_WORDS[loudest] in ruling.verdict.sentence

@@ -12,7 +12,7 @@ from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import along, deciding
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.court.suspects import IN_WORDS
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
@@ -24,7 +24,7 @@ from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.locks import lock_tests_differ
-from rig.analysis.tracing.rest.ticking import ticking
+from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, IN_ONE_RUN, MISSING, MOSTLY, PART
@@ -162,10 +162,12 @@ def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: 
     left = {key: s.residual(key) for key in s.keys}
     floors = {**floors, **p.court.floors}
     of_what = "what unseen runs have beyond what neighbouring turns differ by"
-    with meanwhile(lambda: ticking(p.eq, left, after)) as ticks:  # most campaigns ask for both
+    *most, last = WHOLE  # a channel takes as long as all that is asked first
+    with meanwhile(lambda: ticking(p.eq, left, after, most)) as ticks:  # most campaigns ask for both
         home = in_the_floor(p.eq, left, after, floors)
         if home is None:
-            home = ticks() or hidden_order(p.eq, left, after, floors)
+            here = ticking(p.eq, left, after, [last])
+            home = largest([ticks(), here]) or hidden_order(p.eq, left, after, floors)
             of_what = "what unseen runs leave there"
     if home is None:
         return None

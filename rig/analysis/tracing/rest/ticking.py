@@ -6,7 +6,7 @@ phase, which no angle holds together, and by runs of other speeds, which show it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -39,10 +39,16 @@ Sense = Callable[[Array], Array]
 SENSES: Final[Sequence[Sense]] = (lambda angle: np.ones(angle.size), lambda angle: np.sign(np.gradient(angle)))
 
 
-def ticking(eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array]) -> Home | None:
+def ticking(
+    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channels: Sequence[str] = WHOLE
+) -> Home | None:
     """The loudest such line of the fitted residuals, with its share of the unseen ones; None where there is none."""
-    found = [home for channel in WHOLE for home in _in_channel(eq, fitted, unseen, channel)]
-    return max(found, key=lambda home: home.share, default=None)
+    return largest(home for channel in channels for home in _in_channel(eq, fitted, unseen, channel))
+
+
+def largest(found: Iterable[Home | None]) -> Home | None:
+    """The one with the largest share."""
+    return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
 
 
 def _in_channel(eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channel: str) -> list[Home]:
