@@ -18,6 +18,7 @@ from rig.model.effects.missed_counts import LOAD, MOTOR
 
 LOST = EACH_RUN["missed_counts"]
 WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
+FAR = 4 * WINDOW  # rows as far as which what was lost has not come back
 APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
@@ -171,7 +172,7 @@ def _filled(way: Array) -> Array:
 
 
 def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) -> list[tuple[int, float]]:
-    """Row and size of every jump: the means of the windows on both sides differ, and nearly all of it at once.
+    """Row and size of every jump: the means of the windows on both sides differ, nearly all of it at once and for good.
 
     `least` in usual differences of such windows, size `between` two bounds [rad]; only where the motor goes `onward`.
     """
@@ -190,10 +191,17 @@ def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) 
         row = int(at[top])
         near = e[row + EDGE : row + 4 * EDGE].mean() - e[row - 4 * EDGE : row - EDGE].mean()
         sharp = abs(near - jump[top]) < 0.5 * abs(jump[top])
-        if sharp and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
+        stays = (_mean(total, row + WINDOW, row + FAR) - _mean(total, row - FAR, row - WINDOW)) / jump[top] > 0.5
+        if sharp and stays and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
             out.append((row, float(jump[top])))
         strength[max(0, top - WINDOW) : top + WINDOW] = 0.0
     return out
+
+
+def _mean(total: Array, first: int, last: int) -> float:
+    """Of rows first..last, as far as there are such, from sums (n + 1,) of all before."""
+    lo, hi = max(first, 0), min(last, total.size - 1)
+    return float((total[hi] - total[lo]) / max(hi - lo, 1))
 
 
 def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -> bool:
