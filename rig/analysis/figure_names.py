@@ -43,6 +43,9 @@ TURNING: Final = {
     "mean_motor_torque": "N·m",
     "mean_shaft_torque": "N·m",
     "shaft_torque_swing": "N·m",
+    "torsion_remainder_rms": "arcmin",
+    "torsion_span": "arcmin",
+    "torsional_stiffness_apparent": "N·m/rad",
 }
 FRICTION: Final = {
     "coulomb": "N·m",
@@ -70,9 +73,6 @@ COAST_DOWN: Final = {
 STIFFNESS: Final = {
     "torsional_stiffness": "N·m/rad",
     "torsional_stiffness_gear": "N·m/rad",
-    "torsional_stiffness_apparent": "N·m/rad",
-    "torsion_span": "arcmin",
-    "torsion_remainder_rms": "arcmin",
     "stiffness_K{n}": "N·m/rad",
     "knot_T{n}": "N·m",
     "cubic_k1": "N·m/rad",
@@ -124,6 +124,11 @@ def _in(names: Mapping[str, str], name: str) -> bool:
 def is_run_for(procedure: str, name: str) -> bool:
     """Whether a run of this procedure is made for the figure `name` among others."""
     return any(procedure in procedures and _in(names, name) for names, procedures in GIVEN_BY)
+
+
+def figures_of(procedure: str) -> tuple[str, ...]:
+    """Names of the figures a run of this procedure is made for; () of one that has none of its own."""
+    return tuple(name for names, procedures in GIVEN_BY if procedure in procedures for name in names)
 
 
 def may_be_negative(name: str) -> bool:

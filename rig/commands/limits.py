@@ -16,6 +16,8 @@ FORM = (
     "example 'peak-to-peak=60 arcsec' or 'K1=7000..'"
 )
 
+TOLD = 8  # names in a sentence
+
 
 def limit_argument(parser: argparse.ArgumentParser) -> None:
     """--limit, as often as there are limits."""
@@ -46,6 +48,21 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
     return limits
 
 
+def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run that is yet to be made is not made for a figure it is to be judged by."""
+    if not limits:
+        return
+    from rig.analysis.figure_names import figures_of, is_run_for
+
+    given = figures_of(procedure)
+    for name in limits:
+        if given and not is_run_for(procedure, name):
+            raise UsageError(
+                f"--limit: a {procedure.replace('_', '-')} run gives no figure {name}; expected one of "
+                f"{', '.join(given[:TOLD])}{f' and {len(given) - TOLD} more' if len(given) > TOLD else ''}"
+            )
+
+
 def _figure(assignment: str, word: str) -> str:
     """The estimate `word` stands for; C_4 is the amplitude of order 4."""
     from rig.analysis.figure_names import FIGURES, unit_of
@@ -74,7 +91,8 @@ def _refuse_senseless(assignment: str, word: str, name: str, bounds: Mapping[str
             f"{'no unit' if wanted == '1' else others(wanted)}"
         )
     if min(numbers) < 0 and not may_be_negative(name):
-        raise UsageError(f"--limit '{assignment}': {said}, and {word} is never below zero; expected 0 {wanted} or more")
+        least = "0" if wanted == "1" else f"0 {wanted}"
+        raise UsageError(f"--limit '{assignment}': {said}, and {word} is never below zero; expected {least} or more")
 
 
 def _bounds(assignment: str, text: str) -> dict[str, Any]:

@@ -59,6 +59,7 @@ def test_a_run_is_made_for_the_figures_of_its_procedure_alone() -> None:
     assert is_run_for("stiffness_lock", "stiffness_K1")
     assert not is_run_for("stiffness_lock", "kinematic_error_peak_to_peak")
     assert not is_run_for("other", "kinematic_error_peak_to_peak")
+    assert is_run_for("full_turn", "torsion_span")
     known = {name for names, _ in GIVEN_BY for name in names}
     assert known == set(FIGURES)
     assert sum(len(names) for names, _ in GIVEN_BY) == len(FIGURES)  # none is told twice

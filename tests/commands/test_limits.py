@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.limits import limits_of
+from rig.commands.limits import limits_of, refuse_not_given
 from rig.core.errors import UsageError
 from tests.commands.made_run import made_run
 
@@ -40,6 +40,7 @@ def test_what_is_no_limit_is_refused_with_the_form_expected(said: str) -> None:
         ("revolutions_forward=5.. m", "expected a number in no unit"),
         ("peak-to-peak=-5", "-5 arcsec, and peak-to-peak is never below zero; expected 0 arcsec or more"),
         ("C_2=-1..", "-1 arcsec, and C_2 is never below zero"),
+        ("revolutions_forward=-1..", "-1, and revolutions_forward is never below zero; expected 0 or more"),
     ],
 )
 def test_a_limit_no_run_can_be_judged_by_is_refused_before_anything_is_read_or_written(
@@ -126,3 +127,36 @@ def test_of_many_runs_a_limit_judges_those_made_for_its_figure_and_checks_are_le
     assert "PASS" in capsys.readouterr().out
     assert main(["analyse", str(tmp_path / "camp" / "checks" / "c"), "--out", str(tmp_path / "one")]) == 0
     assert "left out" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("procedure", "limit", "words"),
+    [
+        (
+            "friction",
+            "peak-to-peak=60",
+            "a friction run gives no figure kinematic_error_peak_to_peak; expected one of co",
+        ),
+        (
+            "coast-down",
+            "friction=0.5",
+            "a coast-down run gives no figure coulomb; expected one of inertia_at_motor, cou",
+        ),
+        ("kinematic-error", "K1=7000..", "a kinematic-error run gives no figure stiffness_K1; expected one of kinemat"),
+    ],
+)
+def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
+    tmp_path: Path, procedure: str, limit: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", procedure, "--out", str(tmp_path / "out"), "--limit", limit]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("procedure", "limit"),
+    [("kinematic_error", "C_4=10"), ("stiffness_lock", "hysteresis-loss=1"), ("friction", "friction=0.5"),
+        ("skew", "peak-to-peak=60")],
+)  # fmt: skip
+def test_a_run_may_be_judged_by_what_it_measures_or_might(procedure: str, limit: str) -> None:
+    refuse_not_given(procedure, limits_of([limit]))
