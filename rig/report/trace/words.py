@@ -165,7 +165,8 @@ def added(trace: Trace) -> str:
         case Status.AMBIGUOUS:
             rivals = listed([named(r).lower() for r in v.rivals])
             return f"For the errors below {names or 'the first candidate'} was added; {rivals} would do as well."
-    return f"{humanise(names)}. Baseline and effect were then fitted again together."
+    effects = "effect" if len(trace.effects) == 1 else "effects"
+    return f"{humanise(names)}. Baseline and {effects} were then fitted again together."
 
 
 def of_each_run(trace: Trace) -> str:

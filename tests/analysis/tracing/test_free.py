@@ -74,7 +74,9 @@ def test_what_noise_does_not_make_is_not_put_down_to_it() -> None:
 
 
 def test_without_a_torque_sensor_no_share_is_claimed() -> None:
-    assert "no torque sensor says" in free_told(simulated(2.7, None, None))["sentence"]
+    said = free_told(simulated(2.7, None, None))["sentence"]
+    assert "no torque sensor says" in said
+    assert "read the shaft torque" not in said
 
 
 def test_a_verdict_that_something_is_missing_is_not_defended() -> None:

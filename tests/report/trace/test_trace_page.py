@@ -140,6 +140,13 @@ def test_no_parameter_of_an_effect_is_dropped_from_the_head_without_a_word_where
     assert head(9).endswith("x_6 = 6.00 ± 0.10; 3 more under 4, What was added.")
 
 
+def test_two_effects_are_effects() -> None:
+    base = made_up.explained()
+    two = replace(base, effects=(*base.effects, Found("quadratic_drag", (parameter("drag", 0.1, 0.01, "N·m"),), 0.9)))
+    assert "Baseline and effect were" in in_words.added(base)
+    assert "Baseline and effects were" in in_words.added(two)
+
+
 def test_what_the_refit_could_not_move_is_said_below_the_table(pages: dict[str, Reader]) -> None:
     still = (*made_up.explained().baseline, parameter("J_l", 0.88, 0.003, "kg·m²"))
     moved = (*made_up.explained().baseline_after, still[-1])

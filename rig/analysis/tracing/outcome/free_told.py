@@ -46,13 +46,17 @@ def _sentence(trace: Trace, loud: list[Errors], hertz: float | None) -> str:
     said = f"The free simulation stays at {_span(ratios)} times the floor."
     if trace.verdict.status in (Status.EXPLAINED, Status.NOTHING):
         said += " That does not speak against the verdict, which is by the equations."
-    said += (
-        " They read the shaft torque, and with it what shakes the load; the simulation reads nothing of the load, and "
-        f"what it is not told rings on in the gear’s resonance{f' at {hertz:.3g} Hz' if hertz else ''}"
-    )
+    rings = f"what it is not told rings on in the gear’s resonance{f' at {hertz:.3g} Hz' if hertz else ''}"
     known = [e for e in loud if e.free_by_load_rest_rms_arcsec is not None and e.tau_l_rms is not None]
     if len(known) < len(loud):
-        return f"{said}; how much of it is noise of the gear, no torque sensor says."
+        return (
+            f"{said} The equations are given what was measured of the load; the simulation is not, and {rings}. How "
+            "much of it is noise of the gear, no torque sensor says."
+        )
+    said += (
+        " The equations read the shaft torque, and with it what shakes the load; the simulation reads nothing of the "
+        f"load, and {rings}"
+    )
     made = [e.free_by_load_rest_rms_arcsec or 0.0 for e in known]
     torques = [1e3 * (e.tau_l_rms or 0.0) for e in known]
     said += f": the {_span(torques)} mN·m RMS that the shaft torque’s equation leaves make {_span(made)} arcsec there"

@@ -16,11 +16,10 @@ from rig.report.palette import LIGHT
 BEFORE: dict[str, Any] = {"color": LIGHT["reverse"], "lw": 1.3, "ls": (0, (5, 2))}
 AFTER: dict[str, Any] = {"color": LIGHT["forward"], "lw": 1.3, "ls": "-"}
 MEASURED: dict[str, Any] = {"color": LIGHT["axis"], "lw": 3.6, "ls": "-", "alpha": 0.6}
+FLOOR: dict[str, Any] = {"color": LIGHT["level"], "lw": 1.4, "ls": (0, (2, 2))}
 LETTER = 6.4  # px, a letter of a label
 TAIL = 8  # letters at the end of a name that is cut: there it differs from the others
 TITLE = (56, 20)  # letters of a run's name in a title that says more, on a wide and a narrow page
-
-FLOOR: dict[str, Any] = {"color": LIGHT["level"], "lw": 1.4, "ls": (0, (2, 2))}
 
 
 def handle(style: dict[str, Any], label: str) -> Line2D:
