@@ -11,6 +11,7 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which reading is late
 READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
+STEADY, ON_AND_ON, EACH_RUN = 0.0, 1.0, 2.0  # of the third: whether it grows, and since when
 SOON = 1e-4  # s: a shift by less is its rate
 
 
@@ -19,7 +20,8 @@ class ChannelTimeSkew(Effect):
 
     From the reading θ: −[θ(t + δ) − θ(t)] = −δ·(ω + δ·α/2 + δ²·j/6) with speed, acceleration and jerk as read; the
     motor's jerk is left out, most of it is noise. In A a late motor angle is an early load angle; what tells them apart
-    is which inertia's torque comes late. Where two clocks run apart, δ grows along the campaign: δ + δ'·t.
+    is which inertia's torque comes late. Where two clocks run apart, δ grows along the campaign, δ + δ'·t, or, where
+    they are set anew for every run, along each run.
     """
 
     name: ClassVar[str] = "channel_time_skew"
@@ -31,6 +33,9 @@ class ChannelTimeSkew(Effect):
         "drift_theta_l": "δ', by how much the load angle's lateness grows per second",
         "drift_theta_m": "δ', by how much the motor angle's lateness grows per second",
         "drift_tau_l": "δ', by how much the shaft torque's lateness grows per second",
+        "drift_in_run_theta_l": "δ', by how much the load angle's lateness grows per second of each run",
+        "drift_in_run_theta_m": "δ', by how much the motor angle's lateness grows per second of each run",
+        "drift_in_run_tau_l": "δ', by how much the shaft torque's lateness grows per second of each run",
     }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
@@ -43,14 +48,15 @@ class ChannelTimeSkew(Effect):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Expansion points, for the sensors there are."""
         sides = [side for side, reading in READING.items() if reading in reach.has]
-        steady = [(side, step, 0.0) for side in sides for step in self.STEPS]
-        return (*steady, *((side, 0.0, 1.0) for side in sides))
+        steady = [(side, step, STEADY) for side in sides for step in self.STEPS]
+        return (*steady, *((side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG."""
         side, delta, drifts = shape
         port, late = self._late(signals, side, delta)
-        return {port: -np.stack([late, late * signals.t / self.LONG], 1) if drifts else -late[:, None]}
+        since = _start(signals) if drifts == EACH_RUN else 0.0
+        return {port: -np.stack([late, late * (signals.t - since) / self.LONG], 1) if drifts else -late[:, None]}
 
     def _late(self, s: Signals, side: float, delta: float) -> tuple[Port, Array]:
         """What a reading changes by in δ, over δ."""
@@ -74,6 +80,7 @@ class ChannelTimeSkew(Effect):
         skew = parameter(f"skew_{name}", fit.coefficients[0], fit.half_width(unit[0]), "s")
         if not fit.shape[2]:
             return (skew,)
+        name = f"in_run_{name}" if fit.shape[2] == EACH_RUN else name
         rate = parameter(f"drift_{name}", fit.coefficients[1] / self.LONG, fit.half_width(unit[1]) / self.LONG, "s/s")
         return skew, rate
 
@@ -85,3 +92,8 @@ class ChannelTimeSkew(Effect):
         """The skew as found, within a quarter of a period of what the low-pass passes; one that drifts is small."""
         about = 0.0 if shape[2] else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
         return (shape[0], about, shape[2])
+
+
+def _start(signals: Signals) -> float:
+    """When the run began, s."""
+    return float((signals if signals.cut is None else signals.cut.whole).t[0])

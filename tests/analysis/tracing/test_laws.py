@@ -13,10 +13,10 @@ from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
+from rig.model.effects.channel_time_skew import EACH_RUN, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
-from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
@@ -347,6 +347,16 @@ def test_clocks_that_run_apart_make_the_skew_grow_with_the_time() -> None:
         np.testing.assert_allclose(drifting[:, 0], steady[:, 0])
         np.testing.assert_allclose(drifting[:, 1], steady[:, 0] * late.t / 1000.0)
     assert effect.about((LOAD_LATE, 0.0, 1.0), np.array([1e-3, 1e-3])) == (LOAD_LATE, 0.0, 1.0)
+
+
+def test_clocks_that_are_set_anew_for_every_run_make_the_skew_grow_along_each() -> None:
+    effect, s = ChannelTimeSkew(), motion()
+    late = dataclasses.replace(s, t=s.t + 500.0)
+    for signals in (late, late.part(slice(40, None))):
+        (steady,) = effect.columns(signals, (LOAD_LATE, 0.0, 0.0)).values()
+        (drifting,) = effect.columns(signals, (LOAD_LATE, 0.0, EACH_RUN)).values()
+        np.testing.assert_allclose(drifting[:, 0], steady[:, 0])
+        np.testing.assert_allclose(drifting[:, 1], steady[:, 0] * (signals.t - late.t[0]) / 1000.0)
 
 
 def test_no_torque_sensor_is_late_where_there_is_none() -> None:
