@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -22,6 +23,7 @@ class Run:
     """Just what the search looks at."""
 
     locked = False
+    pieces = (SimpleNamespace(gear=SimpleNamespace(K=7160.0, J_l=0.8)),)  # 15.1 Hz
 
     def __init__(self, turning: float) -> None:
         self.turning = turning
@@ -54,6 +56,12 @@ def test_a_steady_line_is_found_at_its_frequency_and_taken_away() -> None:
     assert found.frequency_hz == pytest.approx(3.7, abs=0.05)
     left = np.concatenate([e[k] - found.columns[k][:, 0] for k in e])
     assert np.std(left) == pytest.approx(0.05, rel=0.05)
+
+
+def test_what_wanders_about_the_gear_s_own_resonance_is_no_line_and_what_stands_there_is_one() -> None:
+    wander = 2 * np.pi * (14.0 * T + 14.0 * 0.1 / (2 * np.pi * 0.01) * np.sin(2 * np.pi * 0.01 * T))
+    assert look(residuals(lambda w: 0.1 * np.sin((1 + w / 420) * wander))) is None
+    assert look(residuals(lambda w: 0.1 * np.sin(2 * np.pi * 14.0 * T + w))) is not None
 
 
 def test_a_wandering_line_is_found_and_taken_away() -> None:

@@ -26,6 +26,19 @@ def test_a_jump_is_found_at_its_row_with_its_size(rng: np.random.Generator) -> N
     assert found[1] == pytest.approx(3e-5, rel=0.2)
 
 
+def test_what_comes_back_within_a_second_is_not_lost(rng: np.random.Generator) -> None:
+    e = 4e-6 * rng.standard_normal(4000)
+    e[2500:2550] += 3e-5
+    assert _jumps(e, np.ones(4000, bool), 7.0, ANY) == []
+
+
+def test_two_losses_in_quick_succession_are_two(rng: np.random.Generator) -> None:
+    e = 4e-6 * rng.standard_normal(4000)
+    e[2600:] += 3e-5
+    e[2700:] += 3e-5
+    assert sorted(at for at, _ in _jumps(e, np.ones(4000, bool), 7.0, ANY)) == pytest.approx([2600, 2700], abs=4)
+
+
 def test_a_jump_where_the_motor_turns_back_is_none(rng: np.random.Generator) -> None:
     e = 4e-6 * rng.standard_normal(4000)
     e[2500:] += 3e-5

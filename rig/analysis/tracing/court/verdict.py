@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
 
+FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
 WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
 """What stands only where the motor turns back remembers the way since then."""
 
@@ -237,9 +238,15 @@ def _share(before: float, after: float) -> float:
 
 
 def _of_the_rest(best: Home, total: float) -> str:
+    where = best.coordinate.replace("_", " ")
+    if best.share < FORETELLS_NOTHING:
+        return (
+            f"What is left is {total:.1f} times the floor and follows no effect of the library; no coordinate that was "
+            f"tried foretells it, {where} comes nearest."
+        )
     return (
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
-        f"{best.coordinate.replace('_', ' ')} ({min(best.share, 1.0):.0%} of it)"
+        f"{where} ({min(best.share, 1.0):.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
         + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
         + "."

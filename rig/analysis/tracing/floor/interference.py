@@ -26,6 +26,7 @@ LEAP = 0.1  # relative: half a window on, a line that wanders by a fifth in a mi
 AROUND = 3.0  # times a frequency, and a third of it: its neighbourhood
 FEWEST = 3  # windows of a run, each half over the next
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
+RINGING = 1.5  # times the gear's own resonance, and as much below: what wanders there is the gear, of a wrong inertia
 SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
 
 
@@ -91,12 +92,20 @@ def _in_channel(
     if apart > LINE_WIDE or speed.max() < LINE_FREE * apart * speed.min():
         return None
     usual = float(np.median(hz))
+    if apart > STEADY and abs(np.log(usual / _resonance(eq))) < np.log(RINGING):
+        return None
     lines = {k: _line(eq, k, r, usual) for k, r in {**e, **unseen}.items() if k[1] == channel}
     loud = [(float(lines[k] @ lines[k]), float(e[k] @ e[k])) for k in keys]
     share = sum(a for a, _ in loud) / max(sum(b for _, b in loud), 1e-300)
     if share < LOUD_LINE:
         return None
     return Interference(channel, usual, apart, share, {k: x[:, None] for k, x in lines.items()})
+
+
+def _resonance(eq: Equations) -> float:
+    """Of the load on the spring, Hz, from what is known of the gear by now."""
+    gear = eq.runs[0].pieces[0].gear
+    return float(np.sqrt(gear.K / gear.J_l)) / (2 * np.pi)
 
 
 def even_grid(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:

@@ -93,7 +93,19 @@ FINE: Sequence[tuple[str, Callable[[Rest], Index]]] = (
     ("load", lambda r: _steps(r.at["load"], FINER * LEVELS)),
 )
 """The same once more: a dent in a race is narrow, and so are the waves of a sensor's scale."""
-LATE: Sequence[tuple[str, Callable[[Rest], Index]]] = (("memory", _since_turned), ("memory", _slid))
+
+
+def _waves_since_turned(r: Rest) -> Index:
+    """The motor's angle, by the way since it last turned back."""
+    way = since_turned(r.at["motor_angle"], r.at["direction"], r.run)
+    return both(turned(r.at["motor_angle"], BINS), _levels(np.abs(way), PERIODS))
+
+
+LATE: Sequence[tuple[str, Callable[[Rest], Index]]] = (
+    ("memory", _since_turned),
+    ("memory", _slid),
+    ("memory", _waves_since_turned),
+)
 """Asked last: where the motor turned back at one place, or never, it is an angle gone and the time."""
 JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "time": (
@@ -104,6 +116,7 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "temperature": (
         lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),
         lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
+        lambda r: both(turned(r.at["load_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
     ),
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
@@ -113,6 +126,7 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "load": (
         lambda r: _steps(r.at["load"]),
         lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),
+        lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["load"], PERIODS)),
     ),
     "memory": (*_memories("load"), *_memories("motor_torque"), *_leaks("speed")),
 }

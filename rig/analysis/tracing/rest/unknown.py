@@ -61,6 +61,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out += _at_once(h, channel, alone)
     if channel == "A":
         out = _told_by_the_way(out, alone)
+    if not np.isfinite(r.at["temperature"]).any():
+        out = [found for found in out if found.coordinate != "temperature"]
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
 
 
