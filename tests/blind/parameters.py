@@ -41,7 +41,8 @@ SAME: dict[Key, dict[str, Callable[[Numbers, Numbers], float]]] = {
     ("flexspline_frame_error", "order_2p04"): {"order_2.04_amplitude": lambda p, r: p["amplitude_2.04_rad"]},
     ("tooth_mesh_error", "order_102"): {"order_102_amplitude": lambda p, r: p["amplitude_102_rad"]},
     ("support_compliance", "sprung"): {"frequency": lambda p, r: p["frequency_hz"]},
-    ("torsional_mode", "disc"): {"frequency": lambda p, r: p["frequency_hz"]},
+    # the truth's is that of both halves free, the trace's that of the spring and the inertia that hangs on it
+    ("torsional_mode", "disc"): {"frequency": lambda p, r: p["frequency_hz"] * (1 - p["share_of_J_l"]) ** 0.5},
     ("external_vibration", "sine"): {"frequency": lambda p, r: p["frequency_hz"]},
 }
 

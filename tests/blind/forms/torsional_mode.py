@@ -49,5 +49,5 @@ def sensor_shaft(builder: Builder, rng: np.random.Generator, strength: float) ->
 FORMS = (
     Form("torsional_mode", "disc", disc, textbook=True),
     Form("torsional_mode", "coupling", coupling, weakest=0.2, strongest=4.0),
-    Form("torsional_mode", "sensor_shaft", sensor_shaft),
+    Form("torsional_mode", "sensor_shaft", sensor_shaft, weakest=0.5),  # weaker is a sensor softer than any
 )
