@@ -15,6 +15,8 @@ from rig.analysis.tracing.thresholds import FLOOR_LEAST, UNCORRELATED
 from rig.model.effect import Array
 
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
+SLIPS = 0.2  # the same of the speed of a locked run: a motor that sticks and slips goes back and forth now and then
+READINGS = 100  # of the angle of a locked run: a few for every stroke
 WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
 HOLE = 10.0  # usual distances between rows: further apart, there is nothing between them
 SOON = 3.0  # times the usual gap between repeats: later ones may have drifted
@@ -49,21 +51,27 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
 
 def alike(a: Recording, b: Recording) -> bool:
     """Same words, and the same motion."""
-    if a.said != b.said or a.has != b.has:
+    if a.said != b.said or a.has != b.has or a.locked != b.locked:
         return False
-    x, y = travel(a), travel(b)
-    return all(abs(u - v) <= CLOSE * max(abs(u), abs(v), 1e-9) for u, v in zip(x, y, strict=True))
+    close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
+    ways = zip(travel(a), travel(b), close, strict=True)
+    return all(abs(u - v) <= least * max(abs(u), abs(v), 1e-9) for u, v, least in ways)
 
 
 def travel(run: Recording) -> tuple[float, float]:
     """Range of the motor angle over the time it took, and mean |speed|; rad/s. Length of a run does not matter. Of a
-    locked run the range alone, twice: its mean |speed| is that of the counts it trembles on, and of stick and slip."""
+    locked run the range, and the mean speed read now and then: what the motor trembles on its counts is no way gone."""
     low, high = min(float(p.theta_m.min()) for p in run.pieces), max(float(p.theta_m.max()) for p in run.pieces)
     if run.locked:
-        return high - low, high - low
+        return high - low, sum(_gone(p.theta_m) for p in run.pieces) / sum(p.t.size * p.dt for p in run.pieces)
     speed = float(np.mean([np.mean(np.abs(p.omega_m)) for p in run.pieces]))
     turning = abs(float(np.mean([np.mean(p.omega_m) for p in run.pieces]))) > 0.5 * speed
     return speed, speed if turning else high - low
+
+
+def _gone(theta: Array) -> float:
+    """Way of an angle (n,) between READINGS of it, rad."""
+    return float(np.abs(np.diff(theta[:: max(1, theta.size // READINGS)])).sum())
 
 
 def strokes(theta: Array) -> list[slice]:

@@ -1,0 +1,35 @@
+"""Which runs are repeats: the same motion, whatever a motor trembles on and however it sticks and slips."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.tracing.floor.repeats import alike
+
+DT, STEP = 0.004, 0.014  # s; rad, how far a motor that sticks goes at once
+
+
+def lock_test(reach: float, seconds: float, seed: int) -> Any:
+    """Two cycles of ±`reach` rad in steps, read in counts that tremble; each run slips at other instants."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, DT)
+    smooth = reach * np.interp(8 * t / seconds % 4, [0, 1, 3, 4], [0.0, 1.0, -1.0, 0.0])
+    slips = STEP * np.round((smooth + 0.003 * np.sin(t + rng.uniform(0, 6))) / STEP)
+    theta = slips + 1e-4 * rng.integers(0, 2, t.size)
+    piece = SimpleNamespace(theta_m=theta, omega_m=np.gradient(theta, DT), t=t, dt=DT)
+    return SimpleNamespace(said="stiffness_lock", has=frozenset(), locked=True, pieces=(piece,))
+
+
+def test_lock_tests_that_slip_at_other_instants_are_repeats() -> None:
+    first = lock_test(0.07, 50.0, 1)
+    assert all(alike(first, lock_test(0.07, 50.0, seed)) for seed in range(2, 12))
+
+
+def test_lock_tests_at_another_rate_or_to_another_torque_are_none() -> None:
+    first = lock_test(0.07, 50.0, 1)
+    assert not alike(first, lock_test(0.07, 100.0, 2))
+    assert not alike(first, lock_test(0.07, 25.0, 2))
+    assert not alike(first, lock_test(0.14, 50.0, 2))
