@@ -25,6 +25,8 @@ from rig.model.gear import Gear
 from rig.model.simulate import Start, at_speed, under_torque
 from rig.runfile.run import Run
 
+pytestmark = pytest.mark.xdist_group("identify")  # what the module makes is made once, not for every worker
+
 Array = npt.NDArray[np.float64]
 RPM = np.pi / 30
 ARCSEC = 180 / np.pi * 3600

@@ -17,6 +17,8 @@ from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile, declared
 from rig.session import Session
 
+pytestmark = pytest.mark.xdist_group("compensate")  # what the module makes is made once, not for every worker
+
 
 def gear() -> GearFile:
     return declared(twin_parameters(read("twin").file).gear, simulated=True)

@@ -10,6 +10,8 @@ import pytest
 from rig.commands.sweep_report import assembly_sweep_of, load_sweep_of, runs_of
 from tests.analysis.test_assembly_band import swept
 
+pytestmark = pytest.mark.xdist_group("sweep report")  # what the module makes is made once, not for every worker
+
 
 def made(folder: Path) -> Path:
     """A campaign folder as far as a sweep's report reads it."""

@@ -25,6 +25,8 @@ from rig.procedures.standstill import Standstill
 from tests.analysis.recorded import Rig, Taken
 from tests.analysis.synthetic import ARCSEC, TURN
 
+pytestmark = pytest.mark.xdist_group("free output")  # what the module makes is made once, not for every worker
+
 SHORT = ["--with", "cycles=1", "--with", "amplitude_deg=720", "--with", "frequency=0.02"]  # 9.6 rpm, 51 s
 
 

@@ -70,7 +70,7 @@ def test_simulate_says_which_torque_starts_the_gear_from_rest(capsys: pytest.Cap
     [
         (["simulate", "none"], "no bench called 'none'"),
         (["simulate", "twin", "--torque", "0.2"], "do not keep the gear turning"),
-        (["simulate", "twin", "--speed", "0"], "is no turning gear"),
+        (["simulate", "twin", "--speed", "0"], "--speed 0 rpm: expected a mean speed of the motor in rpm"),
         (["simulate", "twin", "--out", "fig.png"], "ends in .svg or .html"),
         (["simulate", "twin", "--start", "0.6", "--out", "fig.svg"], "not with --start"),
         (["simulate", "twin", "--start", "nan"], "expected torques in N·m"),

@@ -15,6 +15,8 @@ from rig.bench import read, twin_parameters
 from rig.cli import main
 from rig.runfile.verify import verify
 
+pytestmark = pytest.mark.xdist_group("slow run")  # what the module makes is made once, not for every worker
+
 SHORT = ["--with", "cycles=1", "--with", "amplitude_deg=720", "--with", "frequency=0.02"]  # 9.6 rpm, 51 s
 
 

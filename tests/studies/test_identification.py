@@ -14,6 +14,7 @@ from tests.studies.identification import Outcome, one, table
 
 PLAN = (SLOW, STAIRS, StiffnessLock(cycles=1, rate=3.0, rates=(1.0,)), at(200.0), at(300.0), at(400.0), at(-300.0))
 RIGS = 4
+pytestmark = pytest.mark.xdist_group("identification")  # the rigs are made once, not once for every worker
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,8 @@ from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.catalogue import exhibits
 from rig.analysis.reproduction.gather import Ahead, Entry, entries, gather
 
+pytestmark = pytest.mark.xdist_group("gather")  # what the module makes is made once, not for every worker
+
 SOME = ("slow_ke_1", "speed_300rpm_1", "lock_20_1")
 
 

@@ -14,6 +14,8 @@ from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import Prepared, prepare
 
+pytestmark = pytest.mark.xdist_group("encoder lines")  # what the module makes is made once, not for every worker
+
 LINES = 2750  # divides no power of two
 
 

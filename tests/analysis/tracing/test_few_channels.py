@@ -16,6 +16,8 @@ from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.trace import prepare, trace
 from rig.core.errors import UsageError
 
+pytestmark = pytest.mark.xdist_group("few channels")  # what the module makes is made once, not for every worker
+
 FEW = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "speed_120rpm_1", "speed_300rpm_1", "speed_300rpm_2", "lock_60_1")
 KEYS = ("schema", "runs", "noise_floor", "baseline", "residual", "candidates", "verdict", "effects", "before", "after")
 

@@ -14,7 +14,7 @@ from tests.analysis.tracing.test_few_channels import reduced
 
 RUNS = [f"{name}_{k}" for name in ("slow_ke", "speed_120rpm", "speed_300rpm", "speed_400rpm") for k in (1, 2)]
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("next run")]
 
 
 @pytest.fixture(scope="module")

@@ -20,6 +20,8 @@ from rig.report.trace.figures import home
 from tests.report.test_page import HOSTILE, Reader
 from tests.report.trace import made_up
 
+pytestmark = pytest.mark.xdist_group("trace page")  # what the module makes is made once, not for every worker
+
 
 def bare(trace: Trace) -> Trace:
     """Without what figures are drawn from: the words alone, which takes no time."""

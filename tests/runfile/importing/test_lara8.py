@@ -11,6 +11,8 @@ from rig.core.errors import UsageError
 from rig.runfile.importing import import_file
 from rig.runfile.run import Run
 
+pytestmark = pytest.mark.xdist_group("lara8")  # what the module makes is made once, not for every worker
+
 EXTRACT = Path(__file__).parents[2] / "data" / "lara8" / "validate_joint3.csv"
 ARCMIN = 180 * 60 / np.pi
 
