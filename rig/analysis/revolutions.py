@@ -118,6 +118,7 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
     room = np.empty((fast.stop, BLOCK))  # for the columns of every block: fresh memory would cost as much as they do
 
     def sums(lo: int, hi: int) -> Sums:
+        """Of rows lo..hi, block by block."""
         total = Sums(np.zeros((fast.stop, fast.stop)), np.zeros(fast.stop), 0.0, 0)
         for a in range(lo, hi, BLOCK):
             b = min(a + BLOCK, hi)

@@ -21,7 +21,7 @@ from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.turning import add_turning
 from rig.analysis.window import part
-from rig.model.linear import natural_frequency
+from rig.model.linear import held_frequency, natural_frequency
 
 TOLERANCE = 0.02  # of the waveform's rms, where the run does not say
 ORDER2 = 0.01  # of C_2: how little it may change to the next slower speed
@@ -180,7 +180,7 @@ def _prediction(
     if gear is None:
         found.cannot.append("J_m, J_l or K is not declared: theory's speed cannot be said.")
         return
-    held, free = float(np.sqrt(gear.K / gear.J_l)), natural_frequency(gear)
+    held, free = held_frequency(gear.K, gear.J_l), natural_frequency(gear)
     low, high = (speed_at(law.pure, omega, tolerance) * RPM for omega in (held, free))
     found.estimates.append(
         Estimate(

@@ -14,6 +14,11 @@ def effective_inertia(gear: Gear) -> float:
     return gear.J_l * reflected / (gear.J_l + reflected)
 
 
+def held_frequency(K: float, J_l: float) -> float:
+    """Of the load on the spring K [N·m/rad] while the motor is held or led, √(K/J_l) [rad/s]."""
+    return float(np.sqrt(K / J_l))
+
+
 def natural_frequency(gear: Gear) -> float:
     """ω_n = √(K / J_e), rad/s, both ends free."""
     return float(np.sqrt(gear.K / effective_inertia(gear)))

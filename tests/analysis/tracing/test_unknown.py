@@ -102,22 +102,27 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     assert found[0].share > 0.5
 
 
-def test_a_kinematic_error_that_follows_a_thermometer_lives_in_the_temperature_though_time_goes_on_as_well() -> None:
-    rng = np.random.default_rng(8)
-    at = coordinates(rng)
-    at["temperature"] = 25.0 + 6.0 * (1.0 - np.exp(-at["time"] / 90.0)) + rng.normal(0, 0.02, at["time"].size)
-    e = 0.8 * (at["temperature"] - 28.0) * np.cos(2 * at["motor_angle"]) + rng.normal(0, 1, at["time"].size)
-    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
-    assert found[0].coordinate == "temperature", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
+def said(at: At, e: np.ndarray) -> str:
+    """The coordinate of a rest (n,) over its floor."""
+    return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))[0].coordinate
 
 
-def test_lobes_of_a_scale_that_grow_with_a_thermometer_live_in_the_temperature() -> None:
+@pytest.mark.parametrize(
+    ("warmth", "waves"),
+    [
+        (lambda t: 6.0 * (1.0 - np.exp(-t / 90.0)) - 3.0, lambda at: np.cos(2 * at["motor_angle"])),
+        (lambda t: 6.0 * np.sin(t / 40.0), lambda at: np.cos(3 * at["load_angle"])),
+    ],
+    ids=["kinematic error, though time goes on as well", "lobes of a scale"],
+)
+def test_waves_that_follow_a_thermometer_live_in_the_temperature(
+    warmth: Callable[[np.ndarray], np.ndarray], waves: Callable[[At], np.ndarray]
+) -> None:
     rng = np.random.default_rng(8)
     at = coordinates(rng)
-    at["temperature"] = 25.0 + 6.0 * np.sin(at["time"] / 40.0) + rng.normal(0, 0.02, at["time"].size)
-    e = 0.8 * (at["temperature"] - 25.0) * np.cos(3 * at["load_angle"]) + rng.normal(0, 1, at["time"].size)
-    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
-    assert found[0].coordinate == "temperature", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
+    above = warmth(at["time"]) + rng.normal(0, 0.02, at["time"].size)
+    at["temperature"] = 28.0 + above
+    assert said(at, 0.8 * above * waves(at) + rng.normal(0, 1, above.size)) == "temperature"
 
 
 def test_waves_that_are_smaller_for_a_while_after_each_reversal_live_in_memory() -> None:
@@ -127,11 +132,9 @@ def test_waves_that_are_smaller_for_a_while_after_each_reversal_live_in_memory()
     at["speed"] = at["direction"] * np.abs(at["speed"])
     at["motor_angle"] = np.concatenate([np.cumsum(x) * DT for x in np.split(at["speed"], RUNS)])
     at["load_angle"] = at["motor_angle"] / 50
-    run = np.repeat(np.arange(RUNS), ROWS)
-    worn = np.exp(-since_turned(at["motor_angle"], at["direction"], run) / 30.0)
-    e = 6.0 * (worn - worn.mean()) * np.cos(2 * at["motor_angle"]) + rng.normal(0, 1, run.size)
-    found = plainest(homes(Rest(e, run, at, DT, *NO_BASELINE), "A"))
-    assert found[0].coordinate == "memory", [(h.coordinate, round(h.share, 2)) for h in found[:4]]
+    worn = np.exp(-since_turned(at["motor_angle"], at["direction"], np.repeat(np.arange(RUNS), ROWS)) / 30.0)
+    e = 6.0 * (worn - worn.mean()) * np.cos(2 * at["motor_angle"])
+    assert said(at, e + rng.normal(0, 1, e.size)) == "memory"
 
 
 def test_order_and_frequency_are_said_with_it() -> None:

@@ -149,9 +149,8 @@ def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
         coordinate = "time"
         what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
     else:
-        coordinate = next(
-            iter(home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors)), WHERE_IT_TURNS_BACK
-        ).coordinate
+        where = home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors) or [WHERE_IT_TURNS_BACK]
+        coordinate = where[0].coordinate
         what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
     sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
     verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)

@@ -185,8 +185,8 @@ def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
 
 
 def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
-    """Rows in which the motor's angle is known to better than a count; with a locked output one of every
-    stay too, from the first reversal on."""
+    """Rows in which the motor's angle is known to better than a count; with a locked output one of every stay
+    too, and none before the first reversal."""
     f = run.smoother
     rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
     if not run.locked:

@@ -18,6 +18,7 @@ from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
 from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
+from rig.model.linear import held_frequency
 
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside
@@ -105,7 +106,7 @@ def _in_channel(
 def _resonance(eq: Equations) -> float:
     """Of the load on the spring, Hz, from what is known of the gear by now."""
     gear = eq.runs[0].pieces[0].gear
-    return float(np.sqrt(gear.K / gear.J_l)) / (2 * np.pi)
+    return held_frequency(gear.K, gear.J_l) / (2 * np.pi)
 
 
 def even_grid(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:

@@ -221,7 +221,7 @@ def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -
 def _at(eq: Equations, run: int, rows: Sequence[int]) -> tuple[Array, Array]:
     """Motor angles [rad] and times since the start of the run [s] of some rows of A."""
     t = clock(eq, (run, "A"))
-    return eq.rows[run, "A"].theta_m[list(rows)], t[list(rows)] - t[:1].sum()
+    return eq.rows[run, "A"].theta_m[list(rows)], t[list(rows)] - (t[0] if t.size else 0.0)
 
 
 def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from rig.analysis.tracing.outcome.result import Errors, Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
+from rig.model.linear import held_frequency
 
 MOST: Final = 0.5  # of the excess over the floor, as squares
 
@@ -34,11 +35,11 @@ def free_told(trace: Trace) -> dict[str, Any]:
 
 
 def _resonance(trace: Trace) -> float | None:
-    """√(K/J_l)/2π: the motor is led, so that its inertia is none of it."""
+    """Hz; the motor is led, so that its inertia is none of it."""
     p = {q.name: q.value for q in trace.baseline_after}
     if p.get("K", 0.0) <= 0 or p.get("J_l", 0.0) <= 0:
         return None
-    return math.sqrt(p["K"] / p["J_l"]) / (2 * math.pi)
+    return held_frequency(p["K"], p["J_l"]) / (2 * math.pi)
 
 
 def _sentence(trace: Trace, loud: list[Errors], hertz: float | None) -> str:

@@ -26,6 +26,7 @@ def in_bins(index: Callable[[Rest], Index]) -> Reading:
     """One value a bin."""
 
     def read(r: Rest, rows: Rows) -> Array:
+        """Bins of `rows` (n,), for all."""
         at = index(r)
         found = binned(r, at, rows)
         return np.nan_to_num(found.guess(at) + r.z @ found.beside.shift)
@@ -37,6 +38,7 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
     """Least squares on columns (n, k); what is not finite foretells nothing."""
 
     def read(r: Rest, rows: Rows) -> Array:
+        """Coefficients of `rows` (n,), for all."""
         z = columns(r)
         good = np.asarray(np.isfinite(z).all(1))
         z = np.hstack([np.where(good[:, None], z, 0.0), r.z])
