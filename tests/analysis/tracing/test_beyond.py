@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.verdict import Ruling
+from rig.analysis.tracing.court.ruling import Ruling
 from rig.analysis.tracing.outcome.beyond import Beyond, beyond, undecided
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.home import Home

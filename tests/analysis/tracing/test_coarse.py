@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.runs.recording import COARSE, SLOWEST, _noise, _quiet, smallest_step
+from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, noise_of, quiet, smallest_step
 from rig.analysis.tracing.thresholds import BANDWIDTH
 
 COUNTS = 2000
@@ -27,19 +27,19 @@ def test_a_reading_that_stands_still_has_no_step() -> None:
 
 @pytest.mark.parametrize("speed", [0.5, 45.0])
 def test_a_slow_coarse_encoder_is_as_noisy_as_its_rounding(speed: float) -> None:
-    assert _noise("theta_m", read(speed), DECLARED) == pytest.approx(COUNT / 12**0.5, rel=1e-6)
+    assert noise_of("theta_m", read(speed), DECLARED) == pytest.approx(COUNT / 12**0.5, rel=1e-6)
 
 
 def test_an_encoder_finer_than_declared_has_the_noise_it_shows() -> None:
     fine = read(1.0, COUNT / 1000)
-    assert _noise("theta_m", fine, DECLARED) < COUNT / 500
+    assert noise_of("theta_m", fine, DECLARED) < COUNT / 500
 
 
 def test_the_low_pass_is_lower_for_a_coarse_encoder_alone() -> None:
-    assert _quiet(read(1.0), DECLARED) == pytest.approx(BANDWIDTH / 5)
-    assert _quiet(read(1.0, 2 * np.pi / 42), {"motor_counts_per_rev": 42}) == SLOWEST  # Hall sensors
+    assert quiet(read(1.0), DECLARED) == pytest.approx(BANDWIDTH / 5)
+    assert quiet(read(1.0, 2 * np.pi / 42), {"motor_counts_per_rev": 42}) == SLOWEST  # Hall sensors
     fine = 8192
     assert 2 * np.pi / fine < COARSE
-    assert _quiet(read(1.0, 2 * np.pi / fine), {"motor_counts_per_rev": fine}) == BANDWIDTH
-    assert _quiet(read(1.0), {}) == BANDWIDTH
-    assert _quiet(None, DECLARED) == BANDWIDTH
+    assert quiet(read(1.0, 2 * np.pi / fine), {"motor_counts_per_rev": fine}) == BANDWIDTH
+    assert quiet(read(1.0), {}) == BANDWIDTH
+    assert quiet(None, DECLARED) == BANDWIDTH

@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from rig.analysis.tracing.runs.recording import settled
+from rig.analysis.tracing.runs.sliding import settled
 from rig.analysis.tracing.thresholds import LOOSE, SETTLING
 from tests.contract.test_effects import motion
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court import verdict as court
+from rig.analysis.tracing.court import hidden as court
 from rig.analysis.tracing.court.next_run import Alone, _as_good
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.outcome.result import Status

@@ -17,7 +17,8 @@ from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS, is_measured, r
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, solve
 from rig.analysis.tracing.outcome.replay import _led, _moved, model_of
-from rig.analysis.tracing.runs.recording import Recording, direction
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.sliding import direction
 from rig.model.effect import MEASURED, Array, Signals
 
 RPM: Final = np.pi / 30

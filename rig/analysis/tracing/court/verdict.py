@@ -3,53 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-import numpy as np
-
+from rig.analysis.tracing.court.hidden import hidden
 from rig.analysis.tracing.court.judge import Worth
 from rig.analysis.tracing.court.next_run import along, deciding
+from rig.analysis.tracing.court.ruling import Ruling
+from rig.analysis.tracing.court.sentences import in_words, lacks, of_the_rest
 from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
-from rig.analysis.tracing.court.suspects import IN_WORDS
-from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
+from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.floor.local import IN_SHORT
-from rig.analysis.tracing.floor.noise import leniency
-from rig.analysis.tracing.floor.repeats import alike, repeats
-from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
-from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.in_the_floor import in_the_floor
-from rig.analysis.tracing.rest.locks import lock_tests_differ
-from rig.analysis.tracing.rest.ticking import largest, ticking
+from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.runs.holdout import whole_run
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, IN_ONE_RUN, MISSING, MOSTLY, PART
-from rig.analysis.tracing.workers import meanwhile
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
 from rig.model.effect import Array
-from rig.model.effects import CATALOGUE, LIBRARY
+from rig.model.effects import LIBRARY
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
-
-
-FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
-WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
-"""What stands only where the motor turns back remembers the way since then."""
-
-
-@dataclass(frozen=True)
-class Ruling:
-    """The verdict, and what follows from it."""
-
-    verdict: Verdict
-    home: Home | None
-    lives_in: tuple[str, ...]
-    next_run: NextRun | None
-    cannot: tuple[str, ...] = ()
 
 
 def decide(
@@ -75,8 +50,8 @@ def decide(
         return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
-        hidden = None if names else _hidden(p, s, after, floors)
-        return hidden or _settled(p, names, found, *_falls(p, before, after))
+        inside = None if names else hidden(p, s, after, floors)
+        return inside or _settled(p, names, found, *_falls(p, before, after))
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
@@ -90,9 +65,9 @@ def decide(
     told = line is None and (known or total <= EXPLAINED)
     best, taken = where[0], _share(*_most(p, before, after))
     stand = _standing(best.coordinate, shared, worths, plain, told) if taken > PART else ()
-    sentence = line.sentence() if line is not None else _of_the_rest(best, total)
+    sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
-        sentence = f"{_lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
+        sentence = f"{lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
     verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Ruling(verdict, best, _lives(where), along(best.coordinate))
 
@@ -108,87 +83,6 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where
-
-
-def _hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
-    """What unseen runs leave is no more than their floor, but there is something all the same; None where not. What
-    foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
-    return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after)
-
-
-def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruling | None:
-    left = {key: s.residual(key) for key in s.keys}
-    found = lock_tests_differ(p.eq, p.measured, {**left, **after})
-    if found is None:
-        return None
-    home, times = found
-    what = f"comes and goes {_how_often(home)}" if home.frequency_hz else f"follows the {home.coordinate}"
-    sentence = (
-        f"Lock tests differ by {times:.1f} times what runs that turn freely do: the stiffness is not the same twice, "
-        f"and {what} ({min(home.share, 1.0):.0%} of it); it is in the floor, and no effect of the library explains it."
-    )
-    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
-    return Ruling(verdict, None, (home.coordinate,), along(home.coordinate))
-
-
-def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
-    """Unseen runs leave nothing, but a fitted one has far more left than its floor; None where there is none.
-
-    A run like it that has nothing left says that something happened in the one; a part of itself says nothing.
-    """
-    over = {k: float(np.sqrt(np.mean(s.residual(k) ** 2))) / p.floors[k] for k in s.keys if k[1] != "R"}
-    worst = max(over, key=lambda k: over[k])
-    if over[worst] < IN_ONE_RUN * leniency(p.measured, p.eq, worst):
-        return None
-    run = p.eq.runs[worst[0]]
-    quiet = [k for k, ratio in over.items() if ratio < MISSING] + [*p.court.floors]
-    others = [p.eq.runs[i] for i, c in quiet if c == worst[1] and whole_run(p.eq.runs[i].name) != whole_run(run.name)]
-    twins = [other for other in others if alike(other, run)]
-    left = f"{run.name} has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
-    if twins:
-        coordinate = "time"
-        what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
-    else:
-        where = home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors) or [WHERE_IT_TURNS_BACK]
-        coordinate = where[0].coordinate
-        what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
-    sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
-    verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
-    return Ruling(verdict, None, (coordinate,), along(coordinate))
-
-
-def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
-    """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
-    left = {key: s.residual(key) for key in s.keys}
-    floors = {**floors, **p.court.floors}
-    of_what = "what unseen runs have beyond what neighbouring turns differ by"
-    *most, last = WHOLE  # a channel takes as long as all that is asked first
-    with meanwhile(lambda: ticking(p.eq, left, after, most)) as ticks:  # most campaigns ask for both
-        home = in_the_floor(p.eq, left, after, floors)
-        if home is None:
-            here = ticking(p.eq, left, after, [last])
-            home = largest([ticks(), here]) or hidden_order(p.eq, left, after, floors)
-            of_what = "what unseen runs leave there"
-    if home is None:
-        return None
-    what = "the angle the output has gone"
-    if home.frequency_hz:
-        what = f"something that comes and goes {_how_often(home)}"
-    elif home.order:
-        what = f"something that comes back {home.order:.3f} times a turn of the motor"
-    differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
-    sentence = (
-        f"{differing} differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
-        "it is in the floor, and no effect of the library explains it."
-    )
-    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
-    return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
-
-
-def _how_often(home: Home) -> str:
-    """In words; seconds where it takes some."""
-    hz = home.frequency_hz or 0.0
-    return f"every {1 / hz:.3g} s of the campaign's clock" if hz < 1 else f"{hz:.2f} times a second, whatever the speed"
 
 
 def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
@@ -236,38 +130,6 @@ def _share(before: float, after: float) -> float:
     return (before**2 - after**2) / max(before**2 - 1.0, 1e-9)
 
 
-def _of_the_rest(best: Home, total: float) -> str:
-    where = best.coordinate.replace("_", " ")
-    if best.share < FORETELLS_NOTHING:
-        return (
-            f"What is left is {total:.1f} times the floor and follows no effect of the library; no coordinate that was "
-            f"tried foretells it, {where} comes nearest."
-        )
-    return (
-        f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
-        f"{where} ({min(best.share, 1.0):.0%} of it)"
-        + (f", order {best.order:.2f}" if best.order else "")
-        + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
-        + "."
-    )
-
-
-def _lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
-    them = "them" if len(names) > 1 else "it"
-    return (
-        f"The model lacks {_in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
-        f"to {after:.2f} times the floor."
-    )
-
-
-def _in_words(names: Sequence[str]) -> str:
-    return _listed([f"{name.replace('_', ' ')} ({_in_short(name)})" for name in names])
-
-
-def _in_short(name: str) -> str:
-    return CATALOGUE[name].in_short if name in CATALOGUE else IN_SHORT[name]
-
-
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
 
@@ -278,15 +140,10 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
         return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
-    sentence = _lacks(names, before, after)
+    sentence = lacks(names, before, after)
     if all(name in p.own.made and not p.own.made[name].keys() & p.court.floors.keys() for name in names):
-        sentence = f"The model lacks {_in_words(names)}: fitted runs show it, held-out ones have none of it."
+        sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
     return Ruling(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)
-
-
-def _listed(words: Sequence[str]) -> str:
-    """a, b and c."""
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

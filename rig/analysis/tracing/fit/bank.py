@@ -12,7 +12,8 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.laid import Block, Index, Sheet, Single
-from rig.analysis.tracing.runs.recording import Recording, settled
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.sliding import settled
 from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array, Effect, Reach
 

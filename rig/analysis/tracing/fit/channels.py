@@ -1,4 +1,4 @@
-"""The three equations of the rig as linear regressions, and how an effect's ports show in them.
+"""The three equations of the rig as linear regressions: what each says of a run, and by which columns.
 
 With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [ghorbel2001, Eqs. 1, 6-8]
 
@@ -22,7 +22,7 @@ no time            rows have no known distance: whatever is a rate belongs to ea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -30,11 +30,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.runs.counts import FREE, LOCKED, one_a_stay, resting
-from rig.analysis.tracing.runs.first_stroke import has_turned
-from rig.analysis.tracing.runs.recording import COARSE, UNKNOWN, Recording, settled
+from rig.analysis.tracing.fit.holding import holds
+from rig.analysis.tracing.runs.declared import UNKNOWN
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.resolution import COARSE
 from rig.analysis.tracing.runs.smoothing import Smoother
-from rig.model.effect import Array, Known, Port, Signals
+from rig.model.effect import Array, Known, Signals
 from rig.model.fourier import FourierSeries
 from rig.model.waves import powers
 
@@ -63,10 +64,7 @@ BASELINE: Final = (
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
 """Coefficients of derivatives by time."""
-HIGHEST: Final = 3  # derivative the low-pass makes
-ENDS: Final = 8  # rows at each end of a piece, where the filters of the effects have no neighbours
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
-SLIDING: Final = 0.25  # of the mean load speed: slower, and the load's friction has no sure sign
 
 
 @dataclass(frozen=True)
@@ -110,7 +108,7 @@ def is_measured(run: Recording, channel: str) -> bool:
 def rows(run: Recording, channel: str) -> Rows:
     """Response and baseline columns of a channel, pieces joined, masked rows gone."""
     y, z, at = unmasked(run, channel)
-    keep = np.concatenate([valid(piece, run, channel) for piece in run.pieces])
+    keep = np.concatenate([holds(piece, run, channel) for piece in run.pieces])
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
     shared, z = shared_columns(run, channel, at), z[keep]
@@ -158,41 +156,6 @@ def _shaken(run: Recording, alpha: Array) -> bool:
         return False
     usual = float(np.nanmedian(np.abs(alpha))) / 0.6745  # the median does not see reversals
     return usual < SHAKEN * noise * run.smoother.gain(2)
-
-
-def valid(piece: Signals, run: Recording, channel: str) -> Array:
-    """Rows in which the channel's equation holds: all but the ends in A, where it moves; sliding ones in M and L, those
-    beside them in R."""
-    smooth = run.smoother
-    inside = np.ones(smooth.rows(piece.t.size), dtype=bool)
-    inside[:ENDS] = inside[-ENDS:] = False
-    sliding = smooth(settled(piece).astype(float)) > 1 - 1e-9
-    if channel == "R":
-        return np.asarray(inside & ~sliding & (smooth((piece.way != 0).astype(float)) > 1 - 1e-9))
-    if channel == "A":
-        known = inside & _angle_known(piece, run)
-        torque_known = run.locked or "tau_l" in run.knows
-        return np.asarray(known if torque_known else known & sliding & _load_slides(piece, run))
-    return np.asarray(inside & sliding & _load_slides(piece, run) if channel == "L" else inside & sliding)
-
-
-def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
-    """Rows in which the load's friction has a sure sign, and with it the torque that was not measured."""
-    smooth, moving = run.smoother, settled(piece)
-    usual = float(np.median(np.abs(piece.omega_m[moving]))) / run.ratio if moving.any() else 0.0
-    rate = smooth.same(piece.theta_l, 1) * piece.way
-    return np.asarray(smooth((moving & (rate > SLIDING * usual)).astype(float)) > 1 - 1e-9)
-
-
-def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
-    """Rows in which the motor's angle is known to better than a count; with a locked output one of every stay
-    too, and none before the first reversal."""
-    f = run.smoother
-    rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
-    if not run.locked:
-        return np.asarray(f(rest.astype(float)) < 1e-9, dtype=np.bool_)
-    stays = one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
-    return np.asarray(stays & has_turned(piece)[f.centres(piece.t.size)])
 
 
 Columns = tuple[Array, dict[str, Array]]
@@ -255,91 +218,6 @@ def series(theta: Array) -> Array:
 def slopes(theta: Array) -> Array:
     """d/dθ of `series`, shape (n, 30)."""
     return powers(theta, ORDERS, slopes=True)
-
-
-Mark = tuple[str, Array, int]
-"""Channel, column (n, k) before the low-pass, and which derivative of it by time shows there."""
-
-
-def _motor_torque(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "M", c, 0
-
-
-def _load_torque(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "L", c, 0
-
-
-def _kinematic_error(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "A", c, 0
-
-
-def _lever(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "M", -s.torque[:, None] * c, 0
-
-
-def _reads_theta_m(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "A", c * (1 / s.ratio - s.series_slope)[:, None], 0
-    yield "M", -s.gear.J_m * c, 2
-
-
-def _reads_theta_l(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "A", -c, 0
-    yield "L", -s.gear.J_l * c, 2
-
-
-def _reads_tau_m(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "M", c, 0
-
-
-def _reads_tau_l(c: Array, s: Signals) -> Iterator[Mark]:
-    k = s.gear.K
-    yield "A", -c / k, 0
-    yield "A", s.gear.B_sp / k**2 * c, 1
-    yield "M", -c / s.ratio, 0
-    yield "L", c, 0
-
-
-FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
-    Port.MOTOR_TORQUE: _motor_torque,
-    Port.LOAD_TORQUE: _load_torque,
-    Port.KINEMATIC_ERROR: _kinematic_error,
-    Port.WIND_UP: _kinematic_error,
-    Port.LEVER: _lever,
-    Port.READS_THETA_M: _reads_theta_m,
-    Port.READS_THETA_L: _reads_theta_l,
-    Port.READS_TAU_M: _reads_tau_m,
-    Port.READS_TAU_L: _reads_tau_l,
-}
-
-
-def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) -> dict[str, Array]:
-    """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`."""
-    out: dict[str, Array] = {}
-    for port, columns in ports.items():
-        for first in FOOTPRINTS[port](columns, s):
-            for channel, column, order in _passed_on(first, s, has):
-                made = f(column, order)
-                out[channel] = out[channel] + made if channel in out else made
-    return out | ({"R": out["M"]} if "M" in out else {})
-
-
-def _passed_on(first: Mark, s: Signals, has: Has) -> Iterator[Mark]:
-    """A column, and where else it shows for want of a sensor; a fourth derivative would be noise alone.
-
-    Without time a derivative has no size that runs could share.
-    """
-    channel, column, order = first
-    if order and "t" not in has:
-        return
-    yield first
-    if channel == "A" and "t" in has and order < HIGHEST - 1:
-        if "theta_l" not in has:
-            yield from _passed_on(("L", -s.gear.J_l * column, order + 2), s, has)
-        if "theta_m" not in has:
-            yield "M", s.gear.J_m * s.ratio * column, order + 2
-    if channel == "L" and "tau_l" not in has:
-        yield "A", column / s.gear.K, order
-        yield "M", column / s.ratio, order
 
 
 def damping_of(coefficient: float, stiffness: float, lag: float) -> float:

@@ -9,7 +9,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS, Rows, footprint, is_measured, rows, shared_columns, unmasked
+from rig.analysis.tracing.fit.channels import CHANNELS, Rows, is_measured, rows, shared_columns, unmasked
+from rig.analysis.tracing.fit.footprint import footprint
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import MEASURED, Array, Effect, Known, Port, Shape

@@ -21,7 +21,7 @@ from rig.analysis.tracing.thresholds import ALONE, MISSING
 from rig.model.effect import Array, Parameter
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.court.verdict import Ruling
+    from rig.analysis.tracing.court.ruling import Ruling
     from rig.analysis.tracing.trace import Prepared
 
 FURTHER: Final = 1.3  # of the speeds and torques fitted: up to there a law is taken on

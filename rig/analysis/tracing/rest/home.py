@@ -46,3 +46,7 @@ def plainest(found: Sequence[Home]) -> list[Home]:
         return h.share < PLAIN_ENOUGH * best, not h.first, h.late, SIMPLE.index(h.coordinate), -h.share
 
     return sorted(found, key=rank)
+
+
+WHERE_IT_TURNS_BACK: Final = Home("memory", "R", 1.0)
+"""What stands only where the motor turns back remembers the way since then."""

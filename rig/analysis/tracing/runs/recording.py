@@ -6,32 +6,28 @@ import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.analysis.source import Motion, Source, motion_of
-from rig.analysis.tame import LARGEST, RATIOS, Tame, number
+from rig.analysis.tame import RATIOS, Tame
+from rig.analysis.tracing.runs.declared import believed, is_locked, stated
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.meanings import computed_torque
+from rig.analysis.tracing.runs.resolution import noise_of, quiet, smallest_step
+from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.thresholds import BANDWIDTH, LOOSE, RATE, SETTLING, SLOWEST_TURNING
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, substituted
+from rig.analysis.tracing.thresholds import BANDWIDTH, RATE
 from rig.core.errors import UsageError
 from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
-from rig.model.fourier import FourierSeries
 from rig.runfile.run import Run
 
-UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
 DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
 SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
-ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
-COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
-FINE = 2 * np.pi / 10_000  # rad, a count that needs no lower low-pass; of 2000 J_m is 17 % off at 12 Hz, right at 7
-SLOWEST = 3.0  # Hz, the lowest low-pass: with it a piece of 3 s is still ten times as long as the filter
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -105,9 +101,9 @@ def record(whole_run: Run, start: float) -> Recording:
     factor = max(1, round(1 / dt / RATE))
     work = dt * factor
     encoders = run.manifest.get("encoders") or {}
-    sigma = min(BANDWIDTH, TAMEST / work, _quiet(channels["theta_m"], encoders))
+    sigma = min(BANDWIDTH, TAMEST / work, quiet(channels["theta_m"], encoders))
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
-    tau_ext = _stated(run.conditions, "tau_ext", 0.0)
+    tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
         for lo, hi in _joined(t, dt, breaks, steady)
@@ -126,19 +122,12 @@ def record(whole_run: Run, start: float) -> Recording:
         counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
         rate=1 / dt,
         thinned=factor,
-        noise={n: _noise(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
+        noise={n: noise_of(n, c, encoders) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
         notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
-        speed_rpm=abs(_stated(run.conditions, "speed_rpm", 0.0)),
-        declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := _stated(run.declared, n, 0.0))},
+        speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
+        declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
     )
-
-
-def _quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
-    """Hz of low-pass that suits the motor encoder: a position loop answers the rounding of a coarse one with torque,
-    and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
-    step = 0.0 if theta_m is None else _count(theta_m, encoders)
-    return max(SLOWEST, BANDWIDTH * FINE / step) if step > COARSE else BANDWIDTH
 
 
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
@@ -158,15 +147,9 @@ def _there(x: Array | None) -> Array | None:
 def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
     """Time of each row, s between rows, and whether there is a time at all (else rows count)."""
     if t is None or t.size < 3:
-        said = abs(_stated(run.manifest, "sample_rate_hz", RATE))
+        said = abs(stated(run.manifest, "sample_rate_hz", RATE))
         return np.arange(rows) / said, 1 / said, False
     return t, float(np.median(np.diff(t))), True
-
-
-def _stated(table: Mapping[str, Any], name: str, default: float) -> float:
-    """The number a manifest states, `default` where it is absent, zero or none."""
-    value = number(table.get(name))
-    return value if 0 < abs(value) < LARGEST else default
 
 
 def _refuse_ratio(ratio: float) -> None:
@@ -215,7 +198,7 @@ def _piece(
     n = c["theta_m"].size
     if n < 10 * smooth.half:
         return None
-    c = _substituted(c, smooth.dt, run, tau_ext)
+    c = substituted(c, smooth.dt, run, tau_ext)
     time = start + first + smooth.dt * np.arange(n)
     derived = _derived(c, smooth)
     return Signals(
@@ -235,33 +218,6 @@ def _piece(
         cut=None,
         **derived,
     )
-
-
-def _substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) -> dict[str, Array]:
-    """Stand-ins for readings that are not there, so that columns have something to lean on.
-
-    The shaft torque of a free load is what its declared inertia and weight take; one angle is the other's times N, and
-    a locked output rests.
-    """
-    out = dict(c)
-    if not np.isfinite(out["theta_m"]).any():
-        out["theta_m"] = out["theta_l"] * run.ratio
-    if not np.isfinite(out["theta_l"]).any():
-        out["theta_l"] = np.zeros_like(out["theta_m"]) if is_locked(run) else out["theta_m"] / run.ratio
-    if not np.isfinite(out["tau_l"]).any() and not is_locked(run):
-        out["tau_l"] = believed(run).J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
-    return out
-
-
-def is_locked(run: Source) -> bool:
-    """Whether the output is held."""
-    return bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock"
-
-
-def believed(run: Source) -> Known:
-    """The gear as declared, to begin with; a paper-sized one where nothing is."""
-    said = {name: abs(_stated(run.declared, name, getattr(UNKNOWN, name))) for name in ("K", "J_m", "J_l")}
-    return replace(UNKNOWN, K=said["K"], J_m=said["J_m"], J_l=said["J_l"])
 
 
 def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
@@ -297,68 +253,7 @@ def _knowing(piece: Signals, known: Known) -> Signals:
 
 def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: np.random.Generator) -> Signals:
     added = {n: s * rng.standard_normal(piece.t.size) for n, s in noise.items() if hasattr(piece, n)}
-    added |= _in_stand_ins(added, piece, smooth.dt)
+    added |= in_stand_ins(added, piece, smooth.dt)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, smooth)
     return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})
-
-
-def _in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float) -> dict[str, Array]:
-    """What the noise of readings does to those `_substituted` made of them: the torque of a load's inertia has its
-    encoder's noise twice differentiated."""
-    out: dict[str, Array] = {}
-    if "theta_m" not in added and "theta_l" in added:
-        out["theta_m"] = added["theta_l"] * piece.ratio
-    if "theta_l" not in added and "theta_m" in added and np.any(piece.theta_l):
-        out["theta_l"] = added["theta_m"] / piece.ratio
-    if "tau_l" not in added and "theta_l" in {*added, *out}:
-        out["tau_l"] = piece.gear.J_l * flat_rate({**added, **out}["theta_l"], dt, 2)
-    return out
-
-
-def _noise(name: str, x: Array, encoders: Mapping[str, float]) -> float:
-    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
-    less: while it moves by less than a count a row it looks free of noise."""
-    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
-    if name == "theta_m" and counts > 0:
-        return float(min(max(rough(x), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
-    return rough(x)
-
-
-def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:
-    """rad of one count, as declared, or less where the reading is finer than that; 0 where nothing is declared."""
-    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
-    return min(2 * np.pi / counts, smallest_step(theta_m)) if counts > 0 else 0.0
-
-
-def rough(x: Array) -> float:
-    """RMS of the white noise in a reading (n,)."""
-    # the fourth difference of white noise has 70 times its variance; the median does not see reversals
-    return float(np.nanmedian(np.abs(np.diff(x, 4))) / 0.6745 / np.sqrt(70.0))
-
-
-def smallest_step(x: Array) -> float:
-    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
-    one count of a coarse reading, next to nothing of a fine one."""
-    steps = np.abs(np.diff(x, 2))
-    steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
-    return float(np.min(steps, initial=np.inf)) if steps.size else 0.0
-
-
-def direction(omega: Array, dt: float) -> Array:
-    """−1 or 1 while it slides, 0 around every reversal and stop; (n,)."""
-    sign = np.where(np.abs(omega) > SLOWEST_TURNING, np.sign(omega), 0.0)
-    width = max(1, round(LOOSE / dt))
-    turns = np.flatnonzero((sign == 0) | (np.diff(sign, prepend=sign[:1]) != 0))
-    edges = np.zeros(omega.size + 1)
-    np.add.at(edges, np.maximum(turns - width, 0), 1.0)
-    np.add.at(edges, np.minimum(turns + width + 1, omega.size), -1.0)
-    return np.where(np.cumsum(edges[:-1]) > 0, 0.0, sign)
-
-
-def settled(piece: Signals) -> npt.NDArray[np.bool_]:
-    """Where it has slid, and goes on to slide, for so long that what stuck has come loose; (n,)."""
-    width = max(1, round(SETTLING / piece.dt)) - max(1, round(LOOSE / piece.dt))
-    stopped, rows = np.concatenate([[0], np.cumsum(piece.way == 0)]), np.arange(piece.t.size)
-    before, after = np.maximum(rows - width, 0), np.minimum(rows + width + 1, rows.size)
-    return np.asarray(stopped[after] == stopped[before])

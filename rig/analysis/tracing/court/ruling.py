@@ -1,0 +1,19 @@
+"""A verdict, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rig.analysis.tracing.outcome.result import NextRun, Verdict
+from rig.analysis.tracing.rest.home import Home
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """The verdict, and what follows from it."""
+
+    verdict: Verdict
+    home: Home | None
+    lives_in: tuple[str, ...]
+    next_run: NextRun | None
+    cannot: tuple[str, ...] = ()

@@ -1,0 +1,55 @@
+"""What a verdict says in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from rig.analysis.tracing.floor.local import IN_SHORT
+from rig.analysis.tracing.rest.home import Home
+from rig.model.effects import CATALOGUE
+
+FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
+
+
+def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
+    them = "them" if len(names) > 1 else "it"
+    return (
+        f"The model lacks {in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
+        f"to {after:.2f} times the floor."
+    )
+
+
+def of_the_rest(best: Home, total: float) -> str:
+    where = best.coordinate.replace("_", " ")
+    if best.share < FORETELLS_NOTHING:
+        return (
+            f"What is left is {total:.1f} times the floor and follows no effect of the library; no coordinate that was "
+            f"tried foretells it, {where} comes nearest."
+        )
+    return (
+        f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
+        f"{where} ({min(best.share, 1.0):.0%} of it)"
+        + (f", order {best.order:.2f}" if best.order else "")
+        + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
+        + "."
+    )
+
+
+def how_often(home: Home) -> str:
+    """In words; seconds where it takes some."""
+    hz = home.frequency_hz or 0.0
+    return f"every {1 / hz:.3g} s of the campaign's clock" if hz < 1 else f"{hz:.2f} times a second, whatever the speed"
+
+
+def in_words(names: Sequence[str]) -> str:
+    return _listed([f"{name.replace('_', ' ')} ({_in_short(name)})" for name in names])
+
+
+def _in_short(name: str) -> str:
+    return CATALOGUE[name].in_short if name in CATALOGUE else IN_SHORT[name]
+
+
+def _listed(words: Sequence[str]) -> str:
+    """a, b and c."""
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

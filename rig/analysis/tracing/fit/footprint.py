@@ -1,0 +1,98 @@
+"""Where a column at one of an effect's ports shows: in which equations of the rig, and which of its rates by time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Final
+
+from rig.analysis.tracing.runs.smoothing import Smoother
+from rig.model.effect import Array, Port, Signals
+
+HIGHEST: Final = 3  # derivative the low-pass makes
+
+
+Mark = tuple[str, Array, int]
+"""Channel, column (n, k) before the low-pass, and which derivative of it by time shows there."""
+
+
+def _motor_torque(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", c, 0
+
+
+def _load_torque(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "L", c, 0
+
+
+def _kinematic_error(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", c, 0
+
+
+def _lever(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", -s.torque[:, None] * c, 0
+
+
+def _reads_theta_m(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", c * (1 / s.ratio - s.series_slope)[:, None], 0
+    yield "M", -s.gear.J_m * c, 2
+
+
+def _reads_theta_l(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "A", -c, 0
+    yield "L", -s.gear.J_l * c, 2
+
+
+def _reads_tau_m(c: Array, s: Signals) -> Iterator[Mark]:
+    yield "M", c, 0
+
+
+def _reads_tau_l(c: Array, s: Signals) -> Iterator[Mark]:
+    k = s.gear.K
+    yield "A", -c / k, 0
+    yield "A", s.gear.B_sp / k**2 * c, 1
+    yield "M", -c / s.ratio, 0
+    yield "L", c, 0
+
+
+Has = frozenset[str]
+
+FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
+    Port.MOTOR_TORQUE: _motor_torque,
+    Port.LOAD_TORQUE: _load_torque,
+    Port.KINEMATIC_ERROR: _kinematic_error,
+    Port.WIND_UP: _kinematic_error,
+    Port.LEVER: _lever,
+    Port.READS_THETA_M: _reads_theta_m,
+    Port.READS_THETA_L: _reads_theta_l,
+    Port.READS_TAU_M: _reads_tau_m,
+    Port.READS_TAU_L: _reads_tau_l,
+}
+
+
+def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) -> dict[str, Array]:
+    """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`."""
+    out: dict[str, Array] = {}
+    for port, columns in ports.items():
+        for first in FOOTPRINTS[port](columns, s):
+            for channel, column, order in _passed_on(first, s, has):
+                made = f(column, order)
+                out[channel] = out[channel] + made if channel in out else made
+    return out | ({"R": out["M"]} if "M" in out else {})
+
+
+def _passed_on(first: Mark, s: Signals, has: Has) -> Iterator[Mark]:
+    """A column, and where else it shows for want of a sensor; a fourth derivative would be noise alone.
+
+    Without time a derivative has no size that runs could share.
+    """
+    channel, column, order = first
+    if order and "t" not in has:
+        return
+    yield first
+    if channel == "A" and "t" in has and order < HIGHEST - 1:
+        if "theta_l" not in has:
+            yield from _passed_on(("L", -s.gear.J_l * column, order + 2), s, has)
+        if "theta_m" not in has:
+            yield "M", s.gear.J_m * s.ratio * column, order + 2
+    if channel == "L" and "tau_l" not in has:
+        yield "A", column / s.gear.K, order
+        yield "M", column / s.ratio, order

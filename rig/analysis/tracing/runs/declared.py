@@ -1,0 +1,31 @@
+"""What the manifest of a run says of the gear and of the run, as far as it is a number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from rig.analysis.source import Source
+from rig.analysis.tame import LARGEST, number
+from rig.model.effect import Known
+from rig.model.fourier import FourierSeries
+
+UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
+
+
+def is_locked(run: Source) -> bool:
+    """Whether the output is held."""
+    return bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock"
+
+
+def believed(run: Source) -> Known:
+    """The gear as declared, to begin with; a paper-sized one where nothing is."""
+    said = {name: abs(stated(run.declared, name, getattr(UNKNOWN, name))) for name in ("K", "J_m", "J_l")}
+    return replace(UNKNOWN, K=said["K"], J_m=said["J_m"], J_l=said["J_l"])
+
+
+def stated(table: Mapping[str, Any], name: str, default: float) -> float:
+    """The number a manifest states, `default` where it is absent, zero or none."""
+    value = number(table.get(name))
+    return value if 0 < abs(value) < LARGEST else default

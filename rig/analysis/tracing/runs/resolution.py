@@ -1,0 +1,57 @@
+"""How fine a reading is: its white noise, the step of its encoder, and the low-pass that suits a coarse one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rig.analysis.tracing.thresholds import BANDWIDTH
+from rig.model.effect import Array
+
+ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
+
+
+COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
+
+
+FINE = 2 * np.pi / 10_000  # rad, a count that needs no lower low-pass; of 2000 J_m is 17 % off at 12 Hz, right at 7
+
+
+SLOWEST = 3.0  # Hz, the lowest low-pass: with it a piece of 3 s is still ten times as long as the filter
+
+
+def quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
+    """Hz of low-pass that suits the motor encoder: a position loop answers the rounding of a coarse one with torque,
+    and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
+    step = 0.0 if theta_m is None else _count(theta_m, encoders)
+    return max(SLOWEST, BANDWIDTH * FINE / step) if step > COARSE else BANDWIDTH
+
+
+def noise_of(name: str, x: Array, encoders: Mapping[str, float]) -> float:
+    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
+    less: while it moves by less than a count a row it looks free of noise."""
+    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
+    if name == "theta_m" and counts > 0:
+        return float(min(max(rough(x), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
+    return rough(x)
+
+
+def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:
+    """rad of one count, as declared, or less where the reading is finer than that; 0 where nothing is declared."""
+    counts = float(encoders.get("motor_counts_per_rev") or 0.0)
+    return min(2 * np.pi / counts, smallest_step(theta_m)) if counts > 0 else 0.0
+
+
+def rough(x: Array) -> float:
+    """RMS of the white noise in a reading (n,)."""
+    # the fourth difference of white noise has 70 times its variance; the median does not see reversals
+    return float(np.nanmedian(np.abs(np.diff(x, 4))) / 0.6745 / np.sqrt(70.0))
+
+
+def smallest_step(x: Array) -> float:
+    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
+    one count of a coarse reading, next to nothing of a fine one."""
+    steps = np.abs(np.diff(x, 2))
+    steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
+    return float(np.min(steps, initial=np.inf)) if steps.size else 0.0
