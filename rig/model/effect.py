@@ -27,6 +27,7 @@ Shape = tuple[float, ...]
 """The parameters an effect depends on nonlinearly (a Stribeck speed, an order), in `shape_names`' order."""
 
 
+ALIKE: Final = 1e-9  # relative: what rounding leaves of two speeds of which one was made from the other
 MEASURED: Final = frozenset({"t", "theta_m", "theta_l", "tau_m", "tau_l"})
 """What a full campaign measures."""
 
@@ -142,6 +143,15 @@ class Signals(Once):
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self._series[0]
+
+    @cached_property
+    def spring_torque(self) -> Array:
+        """T − B_sp·φ̇: what the spring holds of the shaft torque while the damper beside it takes the rest, N·m, (n,).
+        Where one angle stands in for the other the torque itself has to tell how fast the spring winds up."""
+        wound = self.omega_m / self.ratio - self.omega_l
+        if np.max(np.abs(wound), initial=0.0) > ALIKE * np.max(np.abs(self.omega_l), initial=0.0):
+            return self.torque - self.gear.B_sp * (wound - self.series_slope * self.omega_m)
+        return self.torque - self.gear.B_sp / self.gear.K * self.torque_rate
 
     def states(self, make: Callable[[Signals], tuple[Array, ...]]) -> tuple[Array, ...]:
         """What `make` gives of the whole piece, in these rows (n,): a state remembers what was before the first."""
