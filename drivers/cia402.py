@@ -16,17 +16,7 @@ from drivers.limits402 import set_limits
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
 from drivers.node import Mapped, Node, emergency_text
 from drivers.pdo import Inputs, Outputs
-from drivers.profile402 import (
-    DISABLE,
-    ENABLE,
-    OPERATES,
-    RESET,
-    SHUTDOWN,
-    SWITCH_ON,
-    TURN,
-    speed_unit,
-    state_of,
-)
+from drivers.profile402 import DISABLE, ENABLE, OPERATES, RESET, SHUTDOWN, SWITCH_ON, speed_unit, state_of
 from drivers.scales402 import compare_scales
 from drivers.silence import UNANSWERED
 from drivers.targets402 import PERMILLE, TARGETS, Scale
@@ -36,6 +26,7 @@ from rig.core.channels import Flag
 from rig.core.devices import Drive, DriveReading, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
+from rig.core.units import TURN
 
 PROFILE = 402
 VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import ClassVar
 
 from drivers.node import Mapped, Node
@@ -13,9 +12,9 @@ from rig.core.channels import Flag
 from rig.core.devices import AngleReading, Encoder, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
+from rig.core.units import TURN
 
 PROFILE = 406
-TURN = 2 * math.pi
 LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 SCALING = 1 << 2  # of 6000h: 6001h and 6002h are in use
 WHOLE = 1 << 32  # values of 6004h: a total range of so many does not fit into 6002h, which is then 0

@@ -9,9 +9,9 @@ import math
 import struct
 
 from drivers.node import Node, Refused
-from drivers.profile402 import TURN
 from drivers.targets402 import PERMILLE
 from drivers.wiring import Place
+from rig.core.units import TURN
 
 PATIENCE = 50  # ms outside of the following error window before the drive faults: the guard, which says why, is faster
 WIDEST = 0xFFFFFFFE  # counts: 0xFFFFFFFF would switch the window off

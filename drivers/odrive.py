@@ -20,8 +20,8 @@ from rig.core.channels import Flag
 from rig.core.devices import Drive, DriveReading, Identity, torque_only
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Setpoint
+from rig.core.units import TURN
 
-TURN = 2 * math.pi
 NEVER = -1e9  # s, a reading time older than any
 STEP_PATIENCE = 2.0  # s for a change of state, seen in a heartbeat
 ANSWER = 0.1  # s for the first readings

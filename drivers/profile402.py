@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import struct
+
+from rig.core.units import TURN
 
 OPERATES = 1 << 2  # of the statusword: also while it brakes, in quick stop or because of a fault
 DISABLE, SHUTDOWN, SWITCH_ON, ENABLE, RESET = 0x00, 0x06, 0x07, 0x0F, 0x80  # controlwords
-TURN = 2 * math.pi
 REVOLUTION, INCREMENT, SECOND, MINUTE = 0xB4, 0xB5, 0x03, 0x47  # notation indices of units      [cia303]
 
 

@@ -6,7 +6,6 @@ data in hexadecimal; an answer repeats letter and register, in small letters, th
 
 from __future__ import annotations
 
-import math
 import re
 import time
 from typing import ClassVar
@@ -19,6 +18,7 @@ from rig.core.channels import Flag
 from rig.core.devices import AngleReading, Encoder, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
+from rig.core.units import TURN
 
 BAUD = 230_400
 ANSWER = re.compile(rb"([rwsex])([0-9A-Fa-f]{2})([0-9A-Fa-f]{8})(?:\s*([0-9A-Fa-f]{8}))?\s*!?")
@@ -26,7 +26,6 @@ LONGEST = 40  # bytes of an answer
 NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for an answer
 LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
-TURN = 2 * math.pi
 KIND, MODE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x00, 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
 X4 = 0x03  # of MODE: four counts a line
 

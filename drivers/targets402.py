@@ -6,9 +6,10 @@ import math
 from typing import NamedTuple
 
 from drivers.node import Mapped
-from drivers.profile402 import TURN, signed32
+from drivers.profile402 import signed32
 from drivers.wiring import Place
 from rig.core.sample import Mode
+from rig.core.units import TURN
 
 PERMILLE = 1000.0
 EXACT = 1.0 + 1e-12  # 0.6 N·m of 3 N·m are 200 per mille, and 199.99999999999997 in binary

@@ -21,7 +21,8 @@ from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.procedure import Setting
 from rig.core.sample import Mode
-from rig.guard import DEG, RPM, Limits
+from rig.core.units import DEG, RPM
+from rig.guard import Limits
 from rig.instruments import Instruments
 from rig.twin_hand import TwinHand
 

@@ -6,6 +6,7 @@ import math
 
 from rig.core.errors import NotReady
 from rig.core.operator import Change, HangWeight, LockOutput, Rigging
+from rig.core.units import RPM
 from rig.instruments import Instruments
 from rig.procedures.lock_check import LockProof
 from rig.procedures.weigh import Weighing
@@ -39,7 +40,7 @@ def wait_for_rest(instruments: Instruments) -> None:
             raise NotReady(f"the drive tells no new motor angle for {WINDOW:g} s: whether it is at rest is not known")
         if clock.now() > give_up:
             raise NotReady(
-                f"the motor still turns at {speed * 30 / math.pi:.1f} rpm {PATIENCE:g} s after its torque went off: "
+                f"the motor still turns at {speed / RPM:.1f} rpm {PATIENCE:g} s after its torque went off: "
                 "does the weight drive it? Hold the output and take the weight off"
             )
 

@@ -13,9 +13,7 @@ from typing import NamedTuple
 from rig.core.channels import Flag
 from rig.core.procedure import Envelope
 from rig.core.sample import NAN, Position, Sample, Setpoint, Torque, Velocity
-
-DEG = math.pi / 180
-RPM = math.pi / 30
+from rig.core.units import DEG, RPM
 
 
 class Trip(NamedTuple):

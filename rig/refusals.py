@@ -9,6 +9,7 @@ from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
+from rig.core.units import DEG, RPM
 
 TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torque", "shaft": "shaft torque"}
 LIMITS = {
@@ -69,8 +70,8 @@ def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float,
     """(what, asked, limit, unit shown, SI → shown) of everything the procedure will ask for at most."""
     envelope, limits = procedure.envelope(bench.setting(lambda text: None)), bench.limits
     found = [
-        ("travel", envelope.travel, limits.travel, "deg", 57.29577951308232),
-        ("speed", envelope.speed, limits.speed, "rpm", 9.549296585513721),
+        ("travel", envelope.travel, limits.travel, "deg", 1 / DEG),
+        ("speed", envelope.speed, limits.speed, "rpm", 1 / RPM),
         ("torque", envelope.torque, limits.torque, "N·m", 1.0),
     ]
     if limits.shaft_torque is not None and math.isfinite(envelope.shaft_torque):

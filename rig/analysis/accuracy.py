@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
+from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]
 BINS = 64  # pieces a turn of the wave generator: order 15 has four of them a period

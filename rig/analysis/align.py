@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import DEG, TURN
 from rig.analysis.result import Array
+from rig.core.units import DEG, TURN
 
 Complex = npt.NDArray[np.complex128]
 GRID = 1440  # trial shifts a turn, 0.25° apart: order 15 has 24° a period
-COMMON = 6.0 / DEG  # rad  other zeros differ by anything: in 29 cases of 30 by more than this
-NONE = 1.0 / DEG  # rad  and below this the shift is none: order 2 moves by 1/30
+COMMON = 6.0 * DEG  # rad  other zeros differ by anything: in 29 cases of 30 by more than this
+NONE = 1.0 * DEG  # rad  and below this the shift is none: order 2 moves by 1/30
 SIGMA = 3.0  # as is one below so many of its own σ
 MODEL = 0.15  # of what the model says an order gains: how far it is believed
 
@@ -40,7 +40,7 @@ class Alignment:
     @property
     def sentence(self) -> str:
         """Which way was taken, with the numbers."""
-        fitted = f"{self.fitted * DEG:.2f}° ± {1.96 * self.u_fitted * DEG:.2f}°"
+        fitted = f"{self.fitted / DEG:.2f}° ± {1.96 * self.u_fitted / DEG:.2f}°"
         if self.odd:
             return (
                 f"Both runs seem to count the motor angle from one zero, and yet a shift of {fitted} fits better: "

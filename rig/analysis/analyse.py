@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from rig.analysis.angle import TURN
 from rig.analysis.findings import Findings, conclude
 from rig.analysis.latch_skew_words import LABEL as SKEW
 from rig.analysis.latch_skew_words import add_latch_skew
@@ -17,6 +16,7 @@ from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
+from rig.core.units import TURN
 
 UNFORESEEN = (
     ArithmeticError,

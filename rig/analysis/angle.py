@@ -6,12 +6,7 @@ import numpy as np
 
 from rig.analysis.result import Array
 from rig.core.rows import room, stretches
-
-TURN = 2.0 * np.pi  # rad
-DEG = 180.0 / np.pi  # degrees in a radian
-ARCMIN = 60.0 * DEG
-ARCSEC = 3600.0 * DEG
-RPM = 60.0 / TURN  # rev/min in a rad/s
+from rig.core.units import TURN
 
 
 def transmission_error(theta_m: Array, theta_l: Array, ratio: float) -> Array:

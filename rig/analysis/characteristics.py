@@ -7,15 +7,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN
 from rig.analysis.intervals import t95
 from rig.analysis.result import Estimate, Result
+from rig.core.units import ARCMIN
 from rig.model.gearfile import Parameter
 
 FIGURES: dict[str, tuple[str, float]] = {
     "tau_break": ("breakaway", 1.0),
-    "lost_motion": ("lost_motion", 1.0 / ARCMIN),
-    "hysteresis_loss": ("hysteresis_loss", 1.0 / ARCMIN),
+    "lost_motion": ("lost_motion", ARCMIN),
+    "hysteresis_loss": ("hysteresis_loss", ARCMIN),
     "hysteresis_energy": ("hysteresis_energy", 1e-3),
     "K1": ("stiffness_K1", 1.0),
     "K2": ("stiffness_K2", 1.0),

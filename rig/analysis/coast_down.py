@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.coast import FEWEST, SKIP, SLOWEST, Coast, Piece, fit_coasts
 from rig.analysis.decomposition import declared_gear
 from rig.analysis.findings import Findings, pm
 from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array, Check
 from rig.analysis.source import Motion, Source
+from rig.core.units import RPM
 from rig.model.linear import damping_ratio, natural_frequency
 
 HELD = 1.0  # s before the torque was taken off, over which it is averaged
@@ -33,7 +33,7 @@ def add_coast_down(found: Findings, run: Source, motion: Motion) -> None:
     """Add inertia, friction and the curves; says why where there is no coast."""
     pieces = _pieces(run, motion)
     if len(pieces) < 2:
-        found.sentence = f"The run has {len(pieces)} coasts from above {FAST * RPM:.0f} rpm, expected at least 2."
+        found.sentence = f"The run has {len(pieces)} coasts from above {FAST / RPM:.0f} rpm, expected at least 2."
         found.inconclusive = found.sentence
         found.cannot.append("Coasts need t, theta_m and the torque that was commanded.")
         return
@@ -104,8 +104,8 @@ def together(coasts: list[Coast], b: float, u_b: float) -> Inertia:
 
 
 def _figures(found: Findings, result: Inertia, coasts: list[Coast], b: float, u_b: float) -> None:
-    n, fast = len(coasts), float(np.mean([c.omega_0 for c in coasts])) * RPM
-    basis = f"{n} coasts from {fast:.0f} rpm to {SLOWEST * RPM:.0f} rpm, both directions"
+    n, fast = len(coasts), float(np.mean([c.omega_0 for c in coasts])) / RPM
+    basis = f"{n} coasts from {fast:.0f} rpm to {SLOWEST / RPM:.0f} rpm, both directions"
     how = (
         f"Mean torque that held the speed over the deceleration right after it was taken off, {basis}; interval from "
         f"their scatter and {100 * METHOD:g} % (1 σ) for what the law leaves out."
@@ -159,9 +159,9 @@ def _curves(found: Findings, pieces: list[Piece], coasts: list[Coast], b: float)
     measured = []
     for p in pieces:
         step = max(round(0.004 / max(float(np.median(np.diff(p.t))), 1e-6)), 1)
-        speed = (p.theta[2 * step :] - p.theta[: -2 * step]) / (p.t[2 * step :] - p.t[: -2 * step]) * RPM
+        speed = (p.theta[2 * step :] - p.theta[: -2 * step]) / (p.t[2 * step :] - p.t[: -2 * step]) / RPM
         measured.append(np.interp(grid, p.t[step:-step], speed, left=np.nan, right=np.nan))
     omega_0, a = float(np.mean([c.omega_0 for c in coasts])), float(np.mean([c.a for c in coasts]))
     decay = np.exp(-b * grid)
     law = omega_0 * decay - a * (-np.expm1(-b * grid) / b if b > 0 else grid)
-    found.curve(coast__t=grid, coast__speed_rpm=np.array(measured), coast__law_rpm=np.maximum(law, 0.0) * RPM)
+    found.curve(coast__t=grid, coast__speed_rpm=np.array(measured), coast__law_rpm=np.maximum(law, 0.0) / RPM)

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.align import Alignment, align
-from rig.analysis.angle import ARCSEC, TURN
 from rig.analysis.intervals import Ranged, t95
 from rig.analysis.result import Array
 from rig.core.errors import DataError
+from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile
 from rig.runfile.run import Run
@@ -20,7 +20,6 @@ from rig.runfile.run import Run
 BINS: Final = 180  # of a motor turn: 2°, twelve to a period of order 15
 TRUSTED: Final = 8  # orders that vote for the encoder's zero: higher ones are nearly noise
 DRAWS: Final = 200  # of the series from its covariance, one a turn
-RPM: Final = np.pi / 30
 
 Complex = npt.NDArray[np.complex128]
 
@@ -59,8 +58,8 @@ def followed(run: Run) -> Followed:
     ]
     turns = np.concatenate([m[0] for m in made])
     return Followed(
-        _figure(np.ptp(turns, axis=1) * ARCSEC),
-        _figure(np.sqrt(np.mean(turns**2, axis=1)) * ARCSEC),
+        _figure(np.ptp(turns, axis=1) / ARCSEC),
+        _figure(np.sqrt(np.mean(turns**2, axis=1)) / ARCSEC),
         np.array([m[0].mean(0) for m in made]),
         np.array([m[1].mean(0) for m in made]),
         np.concatenate([m[1] for m in made]),
@@ -124,7 +123,7 @@ def zero_of(before: Followed, series: FourierSeries) -> Alignment | None:
     grid = (np.arange(BINS) + 0.5) / BINS * TURN
     waves = np.exp(-1j * np.multiply.outer(orders, grid))
     seen = np.array([2 / BINS * waves @ (t - e) for e, t in zip(before.error, before.tracking, strict=True)])
-    u = np.maximum(np.abs(seen[0] - seen[1]) / 2, 1e-3 / ARCSEC)
+    u = np.maximum(np.abs(seen[0] - seen[1]) / 2, 1e-3 * ARCSEC)
     expected = np.array(series.a) - 1j * np.array(series.b)
     return align(seen.mean(0), expected, u, min(TRUSTED, k))
 
@@ -155,13 +154,13 @@ def expected(gear: GearFile, speed_rpm: float, before: Followed, rng: np.random.
     g = transmissibility(gear, speed_rpm * RPM, k)
     c = np.array(series.a) - 1j * np.array(series.b)
     wave = _wave(c * g)
-    without = Expected(float(np.ptp(wave)) * ARCSEC, float(np.sqrt(np.mean(wave**2))) * ARCSEC)
+    without = Expected(float(np.ptp(wave)) / ARCSEC, float(np.sqrt(np.mean(wave**2))) / ARCSEC)
     n = np.arange(1, BINS // 4)
     waves = 2 / BINS * np.exp(-1j * np.multiply.outer(n, _grid()))
     lag = before.loop @ waves.T  # (turns, orders)
     lag[:, :k] += np.resize(_draws(gear, rng), (lag.shape[0], k))
     left = np.array([_wave(c * transmissibility(gear, speed_rpm * RPM, n.size)) for c in lag])
-    return without, Expected(float(np.mean(np.ptp(left, axis=1))) * ARCSEC, float(np.sqrt(np.mean(left**2))) * ARCSEC)
+    return without, Expected(float(np.mean(np.ptp(left, axis=1))) / ARCSEC, float(np.sqrt(np.mean(left**2))) / ARCSEC)
 
 
 def _draws(gear: GearFile, rng: np.random.Generator) -> Complex:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
+from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]
 NEAR = 0.5  # r²  above it an order is too near its resonance (or beyond) for a law without damping

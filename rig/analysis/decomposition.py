@@ -8,13 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.align import Alignment, align
-from rig.analysis.angle import RPM
 from rig.analysis.flexibility import declared
 from rig.analysis.kinematic_error import KinematicError, groups_by_speed, measure
 from rig.analysis.profile import Profile
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import find_strokes
+from rig.core.units import RPM
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.linear import transmissibility
@@ -93,7 +93,7 @@ def ratios(run: Source, fast: KinematicError, k: int) -> tuple[Complex, Array] |
     The mean over the turns' own speeds: near a resonance the speed of a run at constant torque wanders across it.
     """
     gear = declared_gear(run)
-    speeds = np.concatenate([s.speed_rpm for s in fast.strokes]) / RPM
+    speeds = np.concatenate([s.speed_rpm for s in fast.strokes]) * RPM
     if gear is None or not np.isfinite(speeds).all():
         return None
     n = np.arange(1.0, k + 1)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import DEG
 from rig.analysis.decomposition import Complex, Decomposition, decompose, slow_profile
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import amplitude_interval
@@ -16,6 +15,7 @@ from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.strokes import find_strokes
 from rig.analysis.tame import Tame
 from rig.analysis.window import measured_window, part
+from rig.core.units import DEG
 
 NO_REFERENCE = (
     "The part of θ̃ that the gear's flexibility makes needs a slow run of the same gear: put one in the same campaign, "
@@ -44,9 +44,9 @@ def add_decomposition(found: Findings, run: Source, motion: Motion, reference: S
     found.figure(
         "alignment_shift",
         "Angle between the zeros of the two runs",
-        split.alignment.fitted * DEG,
+        split.alignment.fitted / DEG,
         "°",
-        1.96 * split.alignment.u_fitted * DEG,
+        1.96 * split.alignment.u_fitted / DEG,
         f"Shift of the motor angle at which {basis} agree best, all orders weighted by their uncertainty.",
     )
     _figures(found, split, basis)

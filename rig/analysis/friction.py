@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.findings import Findings, pm
 from rig.analysis.identify.friction import MotorFriction, load_friction, motor_friction, total_friction
 from rig.analysis.identify.means import Mean, Sides, mean_of, variances
@@ -17,6 +16,7 @@ from rig.analysis.intervals import t95
 from rig.analysis.result import Array, Check
 from rig.analysis.revolutions import TERMS
 from rig.analysis.source import Motion, Source
+from rig.core.units import RPM
 from rig.model.fourier import FourierSeries
 
 WARMED = 0.03  # of friction, rising against falling: more and the lubricant changed during the run
@@ -80,7 +80,7 @@ def _lines(found: Findings, f: MotorFriction, prefix: str, where: str, of: str) 
         fell = f"{how} Falling part fall·exp(−(ω/ω_s)²) with the speed that fits best."
         label = f"Friction above Coulomb at standstill, {where}"
         found.figure(f"{prefix}fall", label, s.coefficients[f.fall], "N·m", s.half(f.fall), fell)
-        found.exact(f"{prefix}stribeck_speed", f"Speed of the fall, {where}", f.omega_s * RPM, "rpm", fell)
+        found.exact(f"{prefix}stribeck_speed", f"Speed of the fall, {where}", f.omega_s / RPM, "rpm", fell)
 
 
 def _breakaway(found: Findings, run: Source, motion: Motion) -> None:
@@ -105,7 +105,7 @@ def _unsteady(found: Findings, run: Source, means: Sequence[Mean]) -> None:
     asked = run.conditions.get("speeds_rpm")
     if not isinstance(asked, list | tuple):
         return
-    held = [abs(m.omega) * RPM for m in means]
+    held = [abs(m.omega) / RPM for m in means]
     missing = [s for s in asked if isinstance(s, int | float) and not any(abs(h / s - 1.0) < HELD for h in held)]
     if missing:
         words = ", ".join(f"{s:g}" for s in missing)
@@ -141,13 +141,13 @@ def _warming(found: Findings, means: Sequence[Mean]) -> None:
 def _tables(found: Findings, means: Sequence[Mean], best: MotorFriction | None) -> None:
     rows: list[dict[str, float | str]] = []
     for m in means:
-        row: dict[str, float | str] = {"speed_rpm": m.omega * RPM, "seconds": m.duration, "motor_torque": m.total}
+        row: dict[str, float | str] = {"speed_rpm": m.omega / RPM, "seconds": m.duration, "motor_torque": m.total}
         row |= {"motor_side": m.motor, "load_side": m.load}
         rows.append(row)
     found.tables["plateaus"] = rows
     order = np.argsort([m.omega for m in means])
     omega = np.array([m.omega for m in means])[order]
-    found.curve(friction__rpm=omega * RPM, friction__total=np.array([m.total for m in means])[order])
+    found.curve(friction__rpm=omega / RPM, friction__total=np.array([m.total for m in means])[order])
     if best is None:
         return
     s = best.solved
@@ -157,7 +157,7 @@ def _tables(found: Findings, means: Sequence[Mean], best: MotorFriction | None) 
             np.geomspace(np.abs(omega).min(), np.abs(omega).max(), 60),
         )
     )
-    found.curve(friction__line_rpm=speeds * RPM, friction__line=curve(best, s, speeds))
+    found.curve(friction__line_rpm=speeds / RPM, friction__line=curve(best, s, speeds))
     side = np.array([m.motor if np.isfinite(m.motor) else m.total for m in means])[order]
     found.curve(friction__motor=side)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import RPM, TURN, measured_ratio
+from rig.analysis.angle import measured_ratio
 from rig.analysis.flexibility import added_share, declared
 from rig.analysis.profile import Profile, combine
 from rig.analysis.result import Array
@@ -14,6 +14,7 @@ from rig.analysis.revolutions import ROWS_PER_TERM, TERMS, StrokeResult, analyse
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke
 from rig.analysis.trend import Trend, find_trend
+from rig.core.units import RPM, TURN
 
 SAME_SPEED = 1.15  # strokes whose speeds differ by less are averaged together
 
@@ -61,7 +62,7 @@ def measure(run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> K
     K, J_l = declared(run.declared, "K"), declared(run.declared, "J_l")
     orders = np.arange(1.0, terms + 1)
     known = slow and K is not None and J_l is not None and bool(np.isfinite(speed))
-    added = added_share(orders, speed / RPM, K, J_l) if known and K and J_l else np.zeros(terms)
+    added = added_share(orders, speed * RPM, K, J_l) if known and K and J_l else np.zeros(terms)
     trend = find_trend(results, motion.ratio, motion.t is not None)
     counts = declared(run.manifest.get("encoders") or {}, "motor_counts_per_rev")
     u_zero = TURN / counts / np.sqrt(12.0) if counts else 0.0

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import DEG
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import amplitude_interval
 from rig.analysis.kinematic_error import KinematicError
 from rig.analysis.profile import SMALL, Profile, chosen_terms, truncation
 from rig.analysis.result import Array, Estimate, Part
 from rig.analysis.revolutions import GRID
+from rig.core.units import DEG
 
 SHOWN_ORDERS = (1, 2, 4, 6, 8, 10)  # figures of their own when resolved; all orders stand in the table
 CURVES = 400  # revolutions drawn at most
@@ -107,8 +107,8 @@ def coefficients(p: Profile, u_zero: float) -> list[dict[str, float | str]]:
             "C_arcsec": value,
             "C_lo": low,
             "C_hi": high,
-            "phase_deg": float(np.arctan2(b, a)) * DEG if low > 0 else float("nan"),
-            "u_phase": float(np.hypot(across, turn)) * DEG if low > 0 else float("nan"),
+            "phase_deg": float(np.arctan2(b, a)) / DEG if low > 0 else float("nan"),
+            "u_phase": float(np.hypot(across, turn)) / DEG if low > 0 else float("nan"),
         }
         rows.append(row)
     return rows

@@ -16,9 +16,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.angle import TURN
 from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array
+from rig.core.units import TURN
 
 SETTLE = 0.5  # s at speed before a row counts: the gear's own swing, 25 Hz at 4 % damping, is over by then
 STEADY = 1e-6  # of the speed: the reference runs straight

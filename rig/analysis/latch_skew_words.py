@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, RPM
 from rig.analysis.findings import Findings, pm
 from rig.analysis.flexibility import declared
 from rig.analysis.latch_skew import Late, Wound, legs, load_encoder_late, pairs, torque_late
 from rig.analysis.result import Estimate, Result
 from rig.analysis.source import Motion, Source
+from rig.core.units import ARCSEC, RPM
 
 LABEL = "skew"  # of the runs that measure it
 FEWEST = 4  # pairs: two parameters, and something left to see their scatter
@@ -39,7 +39,7 @@ def add_latch_skew(found: Findings, run: Source, motion: Motion) -> None:
         f", the shaft torque {_told(torque)} after the load angle (its own filter included)." if torque else "."
     )
     found.tables["skew_legs"] = [
-        {"speed_rpm": p.omega * RPM, "odd_part_arcsec": p.odd * ARCSEC, "odd_torque_Nm": p.torque} for p in both
+        {"speed_rpm": p.omega / RPM, "odd_part_arcsec": p.odd / ARCSEC, "odd_torque_Nm": p.torque} for p in both
     ]
     if torque is None and run.has("tau_l"):
         found.cannot.append("The torque's time: no order of the motor shook the load clearly enough at these speeds.")
@@ -104,7 +104,7 @@ def add_skew_error(found: Findings, run: Source, speed_rpm: float) -> None:
     """
     if not np.isfinite(speed_rpm):
         return
-    per_second = speed_rpm / RPM / run.ratio * ARCSEC  # arcsec at the output
+    per_second = speed_rpm * RPM / run.ratio / ARCSEC  # arcsec at the output
     known = _known(run.manifest)
     if known is not None:
         value, half = abs(known.value) * per_second, known.half * per_second

@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from rig.analysis.align import Alignment, Complex, align
-from rig.analysis.angle import RPM, TURN, transmission_error
+from rig.analysis.angle import transmission_error
 from rig.analysis.intervals import Z95, t95
 from rig.analysis.result import Array
 from rig.analysis.source import Source, motion_of
 from rig.analysis.sums import harmonics
+from rig.core.units import RPM, TURN
 from rig.model.fourier import FourierSeries
 
 ORDERS = 6  # of one turn: higher ones are below the noise of a turn
 PARTS = 12  # of a way: their scatter says how sure the orders are
-MOVING = 3.0 / RPM  # rad/s: slower rows are the corners of the turn, where friction changes sides and the gear unwinds
+MOVING = 3.0 * RPM  # rad/s: slower rows are the corners of the turn, where friction changes sides and the gear unwinds
 ENOUGH = 0.8  # of a turn has to be left for each way
 TRUSTED = 4  # orders that vote on the shift
 

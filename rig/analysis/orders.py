@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
 from rig.analysis.sums import BLOCK, fit, harmonics, without
+from rig.core.units import TURN
 
 FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere in the spectrum
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import DEG, RPM
 from rig.analysis.findings import Findings
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source
 from rig.analysis.speed import Speed
 from rig.core.rows import STRETCH
+from rig.core.units import DEG, RPM
 
 POINTS = 2000  # of every curve
 Index = npt.NDArray[np.int64]
@@ -31,7 +31,7 @@ def _behind(reference: Array, theta: Array, starts: Index) -> tuple[Array, Array
     for first in range(0, starts.size, together):
         here = starts[first : first + together]
         rows = slice(here[0], starts[first + together] if first + together < starts.size else theta.size)
-        found.append(_extremes((reference[rows] - theta[rows]) * DEG, here - here[0]))
+        found.append(_extremes((reference[rows] - theta[rows]) / DEG, here - here[0]))
     return np.concatenate([low for low, _ in found]), np.concatenate([high for _, high in found])
 
 
@@ -39,7 +39,7 @@ def _speed_extremes(speed: Speed, starts: Index) -> tuple[Array, Array]:
     """Minimum and maximum speed [rpm] in each piece of rows; pieces without a value of their own take the next one."""
     first = np.minimum(np.searchsorted(speed.row, starts), speed.t.size - 1)
     unique, back = np.unique(first, return_inverse=True)
-    low, high = _extremes(speed.omega * RPM, unique)
+    low, high = _extremes(speed.omega / RPM, unique)
     return low[back], high[back]
 
 
@@ -49,10 +49,10 @@ def add_overview(found: Findings, run: Source, motion: Motion, speed: Speed | No
     if t is None or t.size < 2:
         return
     starts = pieces(t.size)
-    found.curve(time__t=t[starts], time__theta_m_deg=motion.theta_m[starts] * DEG)
+    found.curve(time__t=t[starts], time__theta_m_deg=motion.theta_m[starts] / DEG)
     reference = motion.pick(run.column("theta_ref"))
     if reference is not None and np.isfinite((behind := _behind(reference, motion.theta_m, starts))[0]).any():
-        found.curve(time__theta_ref_deg=reference[starts] * DEG)
+        found.curve(time__theta_ref_deg=reference[starts] / DEG)
         found.curve(time__following_error_min=behind[0], time__following_error_max=behind[1])
     if speed is not None and speed.t.size:
         low, high = _speed_extremes(speed, starts)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.kinematic_error import groups_by_speed, measure
 from rig.analysis.source import Source, motion_of
 from rig.analysis.strokes import find_strokes
+from rig.core.units import ARCSEC
 from rig.model.fourier import FourierSeries
 
 
@@ -20,5 +20,5 @@ def kinematic_error_reference(run: Source) -> FourierSeries | None:
     found = measure(run, motion, slowest, slow=True)
     if found is None:
         return None
-    cosine, sine = found.profile.cosine / ARCSEC, found.profile.sine / ARCSEC
+    cosine, sine = found.profile.cosine * ARCSEC, found.profile.sine * ARCSEC
     return FourierSeries(tuple(map(float, cosine)), tuple(map(float, sine)))

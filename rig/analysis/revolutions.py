@@ -8,11 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
 from rig.analysis.source import Motion
 from rig.analysis.strokes import Stroke
 from rig.analysis.sums import BLOCK, Sums, harmonics, legendre
+from rig.core.units import TURN
 
 TERMS = 15  # orders of the paper's series      [ghorbel2001, Eq. 8]
 GRID = 512  # points per motor turn of the curves

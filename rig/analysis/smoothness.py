@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import RPM, TURN
 from rig.analysis.fast_ripple import TOP_HZ, fast_ripple
 from rig.analysis.result import Array, Check, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.strokes import Stroke
 from rig.analysis.sums import fit, harmonics, without
+from rig.core.units import RPM, TURN
 
 STUCK_BELOW = 0.10  # of the nominal speed: below this the motor counts as stuck
 STUCK_LIMIT = 0.02  # share of the time
@@ -99,7 +99,7 @@ def nominal_rpm(motion: Motion, strokes: list[Stroke], reference: Array | None) 
         slopes = []
         for s in strokes:
             dt = float(motion.t[s.stop - 1] - motion.t[s.start])
-            slopes.append(abs(float(reference[s.stop - 1] - reference[s.start])) / dt * RPM)
+            slopes.append(abs(float(reference[s.stop - 1] - reference[s.start])) / dt / RPM)
         if np.all(np.isfinite(slopes)) and min(slopes) > 0:
             return float(np.median(slopes))
     return float(np.median([abs(motion.speed_rpm(s.start, s.stop - 1)) for s in strokes]))
@@ -120,7 +120,7 @@ def smoothness(
     ripple = _Ripple(max(here.stop - here.start for _, here in used))
     square, stuck, count = 0.0, 0, 0
     for s, here in used:
-        rpm = speed.omega[here] * RPM * s.direction
+        rpm = speed.omega[here] / RPM * s.direction
         stuck += int(np.count_nonzero(np.abs(rpm) < STUCK_BELOW * nominal))
         count += rpm.size
         deviation = rpm - rpm.mean()
@@ -129,10 +129,10 @@ def smoothness(
     variance = square / count
     hunting_hz, share = ripple.hunting(speed.window / 4, variance)
     fast = fast_ripple(motion.t, motion.theta_m, strokes, speed.window)
-    whole = variance + fast.variance * RPM**2
+    whole = variance + fast.variance / RPM**2
     share *= variance / whole if whole else 0.0
-    if whole and fast.peak_variance * RPM**2 / whole > share:
-        hunting_hz, share = fast.peak_hz, fast.peak_variance * RPM**2 / whole
+    if whole and fast.peak_variance / RPM**2 / whole > share:
+        hunting_hz, share = fast.peak_hz, fast.peak_variance / RPM**2 / whole
     variance = whole
     return Smoothness(nominal, stuck / count, float(np.sqrt(variance)) / nominal, hunting_hz, share, speed.window)
 

@@ -9,10 +9,11 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import ARCSEC, RPM, TURN, is_wrapped, transmission_error, unwrap
+from rig.analysis.angle import is_wrapped, transmission_error, unwrap
 from rig.analysis.result import Array
 from rig.core.channels import UNTRUSTED, Flag
 from rig.core.rows import picked, room, stretches
+from rig.core.units import ARCSEC, RPM, TURN
 
 Rows = npt.NDArray[np.int64]
 FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
@@ -63,7 +64,7 @@ class Motion:
     def error_arcsec(self, lo: int, hi: int) -> Array:
         """θ̃ of rows lo..hi, arcsec at the output      [ghorbel2001, Eq. 1]"""
         assert self.theta_l is not None
-        return transmission_error(self.theta_m[lo:hi], self.theta_l[lo:hi], self.ratio) * ARCSEC
+        return transmission_error(self.theta_m[lo:hi], self.theta_l[lo:hi], self.ratio) / ARCSEC
 
     def pick(self, column: Array | None) -> Array | None:
         """The same rows of another column of the run."""
@@ -73,7 +74,7 @@ class Motion:
         """Mean motor speed between two rows, rpm, signed; NaN without time."""
         if self.t is None or hi <= lo or self.t[hi] == self.t[lo]:
             return float("nan")
-        return float((self.theta_m[hi] - self.theta_m[lo]) / (self.t[hi] - self.t[lo])) * RPM
+        return float((self.theta_m[hi] - self.theta_m[lo]) / (self.t[hi] - self.t[lo])) / RPM
 
 
 def _angle(run: Source, side: str, notes: list[str]) -> Array | None:

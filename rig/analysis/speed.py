@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.result import Array
 from rig.core.rows import room, stretches
+from rig.core.units import RPM
 
 STEP = 0.010  # s    one speed value this often: hunting up to 50 Hz stays visible
 FEWEST = 2  # rows in a mean
@@ -55,4 +55,4 @@ def motor_speed(t: Array, theta_m: Array, step: float = STEP) -> Speed:
 
 def per_row_rpm(speed: Speed, t: Array) -> Array:
     """The speed at any times `t` [s], rpm, linear between its values."""
-    return np.interp(t, speed.t, speed.omega) * RPM
+    return np.interp(t, speed.t, speed.omega) / RPM

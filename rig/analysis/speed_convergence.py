@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from rig.analysis import smoothness as smooth
-from rig.analysis.angle import RPM, TURN
 from rig.analysis.convergence_law import Law, SpeedStep, fit_law, speed_at
 from rig.analysis.decomposition import declared_gear, phasors
 from rig.analysis.findings import Findings
@@ -21,6 +20,7 @@ from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.turning import add_turning
 from rig.analysis.window import part
+from rig.core.units import RPM, TURN
 from rig.model.linear import held_frequency, natural_frequency
 
 TOLERANCE = 0.02  # of the waveform's rms, where the run does not say
@@ -71,7 +71,7 @@ def _step(found: Findings, run: Source, motion: Motion, group: list[Stroke]) -> 
         return None
     if locked := in_step(run, motion, ke.speed_rpm):
         found.cannot.append(locked)
-    return SpeedStep(ke.speed_rpm / RPM, phasors(ke.profile, ke.profile.terms), u, turns)
+    return SpeedStep(ke.speed_rpm * RPM, phasors(ke.profile, ke.profile.terms), u, turns)
 
 
 def _u(p: Profile) -> Array:
@@ -120,7 +120,7 @@ def chosen(steps: list[SpeedStep], tolerance: float) -> int | None:
 def agreement(omega_m: float, law: Law, tolerance: float) -> str:
     """What the fastest speed [rad/s] that agrees with its neighbour is worth: close neighbours agree long before."""
     early = law.resolved and omega_m > law.speed_at(tolerance)
-    return f"{omega_m * RPM:.3g} rpm is the fastest of the speeds run that agrees with the next slower one" + (
+    return f"{omega_m / RPM:.3g} rpm is the fastest of the speeds run that agrees with the next slower one" + (
         f", though speed adds more than {100 * tolerance:g} % there" if early else ""
     )
 
@@ -128,10 +128,10 @@ def agreement(omega_m: float, law: Law, tolerance: float) -> str:
 def _conclude(found: Findings, run: Source, steps: list[SpeedStep]) -> None:
     tolerance, law = tolerance_of(run.conditions), fit_law(steps)
     best = chosen(steps, tolerance)
-    basis = f"{len(steps)} speeds, {steps[0].omega_m * RPM:.3g} to {steps[-1].omega_m * RPM:.3g} rpm"
+    basis = f"{len(steps)} speeds, {steps[0].omega_m / RPM:.3g} to {steps[-1].omega_m / RPM:.3g} rpm"
     words = [_limit(found, law, steps, tolerance, basis)]
     if best is not None:
-        speed = steps[best].omega_m * RPM
+        speed = steps[best].omega_m / RPM
         how = (
             f"Fastest of {basis} whose waveform differs from that of the next slower one by less than "
             f"{100 * tolerance:g} % of its rms (or twice the noise) and 1 % of order 2, as do all slower ones."
@@ -149,9 +149,9 @@ def _conclude(found: Findings, run: Source, steps: list[SpeedStep]) -> None:
 
 def _limit(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float, basis: str) -> str:
     """The speed at which the fitted law reaches the tolerance."""
-    speed = law.speed_at(tolerance) * RPM
+    speed = law.speed_at(tolerance) / RPM
     if not law.resolved:
-        fastest = steps[-1].omega_m * RPM
+        fastest = steps[-1].omega_m / RPM
         found.cannot.append(
             f"Up to {fastest:.3g} rpm the waveform does not grow with speed beyond its scatter: the speed at which it "
             f"would by {100 * tolerance:g} % cannot be extrapolated."
@@ -159,7 +159,7 @@ def _limit(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float, 
         return f"no growth with speed up to {fastest:.3g} rpm"
     u = float(np.hypot(law.u_relative, LAW))
     half = Z95 * u * speed
-    beyond = " (extrapolated beyond the speeds run)" if speed > steps[-1].omega_m * RPM else ""
+    beyond = " (extrapolated beyond the speeds run)" if speed > steps[-1].omega_m / RPM else ""
     how = (
         f"Where θ̃_n = θ̃_p,n/(1 − (nΩ/ω_0)²), fitted to all orders at {basis}, differs from standstill by "
         f"{100 * tolerance:g} % of the rms{beyond}; interval from the scatter of the turns (χ² per degree of freedom "
@@ -181,7 +181,7 @@ def _prediction(
         found.cannot.append("J_m, J_l or K is not declared: theory's speed cannot be said.")
         return
     held, free = held_frequency(gear.K, gear.J_l), natural_frequency(gear)
-    low, high = (speed_at(law.pure, omega, tolerance) * RPM for omega in (held, free))
+    low, high = (speed_at(law.pure, omega, tolerance) / RPM for omega in (held, free))
     found.estimates.append(
         Estimate(
             "speed_limit_predicted",
@@ -207,7 +207,7 @@ def _table(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float) 
         away = float(np.sqrt(np.sum(np.abs(step.phasor - law.pure) ** 2))) / size
         rows.append(
             {
-                "speed_rpm": step.omega_m * RPM,
+                "speed_rpm": step.omega_m / RPM,
                 "turns": float(step.revolutions),
                 "change_percent": 100 * d,
                 "noise_percent": 100 * noise,
@@ -225,7 +225,7 @@ def _table(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float) 
         convergence__speed_rpm=np.array([r["speed_rpm"] for r in rows], float),
         convergence__deviation=np.array([r["from_standstill_percent"] for r in rows], float),
         convergence__u=np.array([r["from_standstill_u_percent"] for r in rows], float),
-        convergence__law_rpm=grid[keep] * RPM if keep.any() else None,
+        convergence__law_rpm=grid[keep] / RPM if keep.any() else None,
         convergence__law=100 * curve[keep] if keep.any() else None,
         convergence__tolerance=np.array([100 * tolerance]),
     )

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, TURN
 from rig.analysis.findings import Findings
 from rig.analysis.flexibility import declared
 from rig.analysis.intervals import t95
 from rig.analysis.orders import Line, find_lines
 from rig.analysis.result import Array, Check
 from rig.analysis.source import Motion, Source
+from rig.core.units import ARCSEC, TURN
 
 PIECES = 100  # the run is looked at in this many pieces to see when it had settled
 OUTLIER = 5.0  # σ of the settled pieces
@@ -21,8 +21,8 @@ MOST_LINES = 5  # per channel
 TEN = 10.0  # periods in the run: slower is drift, not a line
 SHAKES = 0.3  # of a channel's variance in one line: below, it is a peak in the noise
 CHANNELS = (
-    ("theta_m", "Motor angle", "arcsec", ARCSEC),
-    ("theta_l", "Load angle", "arcsec", ARCSEC),
+    ("theta_m", "Motor angle", "arcsec", 1 / ARCSEC),
+    ("theta_l", "Load angle", "arcsec", 1 / ARCSEC),
     ("tau_m", "Motor torque", "N·m", 1.0),
     ("tau_l", "Shaft torque", "N·m", 1.0),
 )

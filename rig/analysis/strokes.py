@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
 from rig.analysis.source import Motion
+from rig.core.units import TURN
 
 CUT = TURN / 2  # rad  presliding and the 2·F_cl/K wind-up (0.8° of the motor) are over; half an order-1 period is safe
 REVERSAL = TURN / 4  # rad  a motion back by less is hunting, not a reversal

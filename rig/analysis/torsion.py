@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, TURN
 from rig.analysis.intervals import t95
 from rig.analysis.orders import Line, fit_lines
 from rig.analysis.result import Array
 from rig.analysis.source import Motion
 from rig.analysis.strokes import turning_points
+from rig.core.units import ARCSEC, TURN
 
 MOVES = 2.0  # scatter of the torque's turn means over its scatter within a turn: below, the torque does not move
 STEADY = 0.10  # of the sweep's speed: outside, the shaft torque holds inertia, and friction that changes with speed
@@ -107,7 +107,7 @@ def torsion(motion: Motion, tau_l: Array, orders: list[float]) -> Torsion | None
     n = steady.stop - steady.start
     if n < 50 * BLOCKS or not torque_moves(motion, tau_l, steady):
         return None
-    error = motion.error_arcsec(sweep.start, sweep.stop) / ARCSEC
+    error = motion.error_arcsec(sweep.start, sweep.stop) * ARCSEC
     theta_m, theta_l, tau = motion.theta_m[steady], motion.theta_l[steady], tau_l[steady]
     angle = error[steady.start - sweep.start : steady.stop - sweep.start]
     angle = angle - angle.mean()

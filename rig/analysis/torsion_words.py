@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN, ARCSEC
 from rig.analysis.findings import Findings
 from rig.analysis.orders import Line
 from rig.analysis.result import Array, Estimate
 from rig.analysis.source import Motion
 from rig.analysis.torsion import LOAD_HARMONICS, Torsion, torsion
 from rig.core.rows import stretches
+from rig.core.units import ARCMIN, ARCSEC
 
 DRAWN = 4000  # points of the loop
 
@@ -31,10 +31,10 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
     ci95 = (min(r.interval), max(r.interval))
     found.estimates.append(Estimate("torsional_stiffness_apparent", label, r.stiffness, "N·m/rad", ci95, how))
     label, how = "Torsion, span over the whole sweep", "Largest minus smallest θ̃."
-    found.exact("torsion_span", label, r.span * ARCMIN, "arcmin", how)
+    found.exact("torsion_span", label, r.span / ARCMIN, "arcmin", how)
     label = "Remainder after torsion and output harmonics, rms"
     how = f"rms of θ̃ after torque and {LOAD_HARMONICS} harmonics of the output angle, steady speed."
-    found.exact("torsion_remainder_rms", label, r.remainder * ARCMIN, "arcmin", how)
+    found.exact("torsion_remainder_rms", label, r.remainder / ARCMIN, "arcmin", how)
     found.tables["torsion_lines"] = [_row(line) for line in r.lines]
     for line in r.lines:
         if line.resolved and line.order != round(line.order):
@@ -46,7 +46,7 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
                 f"Fitted by itself to what torque and output harmonics leave; {r.turns:.0f} turns tell orders "
                 f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
             )
-            unit, scale = ("arcsec", ARCSEC) if line.amplitude * ARCMIN < 1.0 else ("arcmin", ARCMIN)
+            unit, scale = ("arcsec", 1 / ARCSEC) if line.amplitude / ARCMIN < 1.0 else ("arcmin", 1 / ARCMIN)
             half = 1.96 * line.u * scale
             found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * scale, unit, half, how)
     _doubts(found, r)
@@ -54,9 +54,9 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
     ends = np.array([r.torque.min(), r.torque.max()])
     found.curve(
         torsion__torque=r.torque[::every],
-        torsion__angle=r.angle[::every] * ARCMIN,
+        torsion__angle=r.angle[::every] / ARCMIN,
         torsion__fit_torque=ends,
-        torsion__fit_angle=(ends - r.torque.mean()) / r.stiffness * ARCMIN,
+        torsion__fit_angle=(ends - r.torque.mean()) / r.stiffness / ARCMIN,
     )
     return True
 
@@ -79,8 +79,8 @@ def _doubts(found: Findings, r: Torsion) -> None:
 def _row(line: Line) -> dict[str, float | str]:
     return {
         "order": line.order,
-        "amplitude_arcsec": line.amplitude * ARCSEC,
-        "u_arcsec": line.u * ARCSEC,
+        "amplitude_arcsec": line.amplitude / ARCSEC,
+        "u_arcsec": line.u / ARCSEC,
         "resolution": line.resolution,
         "resolved": "yes" if line.resolved else "no",
     }

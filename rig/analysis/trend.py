@@ -8,11 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.angle import DEG, TURN
 from rig.analysis.intervals import inflation, neighbour_correlation, t95
 from rig.analysis.result import Array
 from rig.analysis.revolutions import StrokeResult
 from rig.analysis.sums import legendre
+from rig.core.units import DEG, TURN
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def find_trend(strokes: list[StrokeResult], ratio: float, timed: bool) -> Trend:
     shape = _shape(low, high, max(degree, 1))
     fit = _fit(strokes, np.column_stack([*shape(theta_l), *extra])) if degree >= 1 else None
     if fit is None:
-        return Trend(None, None, (high - low) * DEG, None, None)
+        return Trend(None, None, (high - low) / DEG, None, None)
     grid = np.linspace(low, high, 181)
     curve = shape(grid)
     slow = np.vstack(
@@ -53,13 +53,13 @@ def find_trend(strokes: list[StrokeResult], ratio: float, timed: bool) -> Trend:
     ).T  # less its constant
     values = slow @ fit.coefficients
     # the mean slope over what was covered, ends to ends by a line through the polynomial
-    line = np.polynomial.polynomial.polyfit(grid * DEG, slow, 1)[1]
+    line = np.polynomial.polynomial.polyfit(grid / DEG, slow, 1)[1]
     extremes = slow[int(np.argmax(values))] - slow[int(np.argmin(values))]
     alone = np.eye(fit.coefficients.size)[degree + 1 :]  # direction, then time
     return Trend(
         slope=fit.figure(line),
         peak_to_peak=(float(np.ptp(values)), fit.figure(extremes)[1]),
-        covered_deg=(high - low) * DEG,
+        covered_deg=(high - low) / DEG,
         offset=fit.figure(alone[0]) if both else None,
         drift=fit.figure(alone[1]) if both and timed else None,
     )

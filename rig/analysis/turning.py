@@ -6,7 +6,6 @@ import numpy as np
 
 from rig.analysis import kinematic_words as words
 from rig.analysis import smoothness as smooth
-from rig.analysis.angle import DEG, RPM, TURN
 from rig.analysis.findings import Findings
 from rig.analysis.intervals import amplitude_interval
 from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
@@ -19,6 +18,7 @@ from rig.analysis.speed import Speed, motor_speed
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.sums import fit, legendre, without
 from rig.analysis.torsion_words import add_torsion
+from rig.core.units import DEG, RPM, TURN
 
 SPECTRUM_TO = 40.0  # orders of the motor drawn
 LINES_TO = 150.0  # orders searched: tooth mesh of a ratio-50 gear is 102
@@ -179,8 +179,8 @@ def _line_row(line: Line, ratio: float) -> dict[str, float | str]:
         "per_output_turn": line.order * ratio,
         "amplitude_arcsec": line.amplitude,
         "u_arcsec": line.u,
-        "phase_deg": line.phase * DEG,
-        "u_phase": line.u_phase * DEG,
+        "phase_deg": line.phase / DEG,
+        "u_phase": line.u_phase / DEG,
         "resolution": line.resolution,
     }
 
@@ -192,7 +192,7 @@ def _speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) -> No
         return
     s = max(strokes, key=lambda s: s.revolutions)
     edges = s.edges
-    turns = np.diff(motion.theta_m[edges]) / np.diff(motion.t[edges]) * RPM
+    turns = np.diff(motion.theta_m[edges]) / np.diff(motion.t[edges]) / RPM
     if not any(e.name == "mean_speed" for e in found.estimates):
         half = 1.96 * float(turns.std()) / np.sqrt(turns.size)
         found.figure(
@@ -213,6 +213,6 @@ def _speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) -> No
     if jitter > JITTER * fine.window:
         found.cannot.append(f"Speed ripple: the rows' times jitter by {1000 * jitter:.2g} ms, which looks like ripple.")
     elif fine.omega.size > 16:
-        ripple = float(np.std(fine.omega) * RPM)
+        ripple = float(np.std(fine.omega) / RPM)
         how = f"1 σ of the speed over {1000 * fine.window:.0f} ms windows: ripple with the angle, wander, count noise."
         found.exact("speed_ripple", "Speed ripple", ripple, "rpm", how)

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.angle import TURN
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
+from rig.core.units import TURN
 
 SAME = 1e-9  # N·m  asked torques that differ by less are one and the same command
 FEWEST = 1.0  # turns that a stretch of constant torque must have to be one

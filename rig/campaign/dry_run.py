@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,18 +10,18 @@ from rig.campaign.changes import ByHand, Deed, Measure, deeds
 from rig.campaign.planner import Campaign
 from rig.campaign.preview import stored_energy
 from rig.campaign.steps import Item
-from rig.campaign.swing import RPM, declared_gear, resonance_speed
+from rig.campaign.swing import declared_gear, resonance_speed
 from rig.campaign.unseen import unseen
 from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
+from rig.core.units import RPM, TURN
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.weigh import Weigh
 
 SHARE = 1.4  # journal as it is, archive at about 0.4 of it
 CHANGE = 60.0  # s a person takes for one, a guess for the total; the twin's hand takes none
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True)

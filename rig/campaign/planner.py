@@ -10,9 +10,10 @@ from rig.bench import Bench
 from rig.campaign.order import shuffled, with_sentinels
 from rig.campaign.plan import Plan
 from rig.campaign.steps import Item, extra_items, items_of
-from rig.campaign.swing import ARCMIN, declared_gear, into_resonance, swing
+from rig.campaign.swing import declared_gear, into_resonance, swing
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope
+from rig.core.units import ARCMIN
 from rig.refusals import refuse_beyond_limits, refuse_endless
 
 ROLE = {"theta_l": "load_encoder", "tau_l": "torque_sensor"}  # which device gives which channel

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 
 from rig.bench import Bench
 from rig.core.procedure import Envelope
+from rig.core.units import ARCMIN, RPM
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.linear import natural_frequency
@@ -14,8 +14,6 @@ from rig.model.resonance import worst_swing
 
 ORDER = 2  # the wave generator is an ellipse: twice a turn is what it does most
 CLEAR = 0.85  # of the resonance's speed: nearer, a run would swing over 3.6 times as far as its spring alone lets it
-ARCMIN = math.pi / 180 / 60
-RPM = math.pi / 30
 ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin peak to peak can hold, as in plans
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.align import Alignment
-from rig.analysis.angle import ARCSEC
 from rig.analysis.compensation import Expected, Followed, expected, followed, turned, zero_of
 from rig.analysis.result import Array
 from rig.bench import Bench
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.units import ARCSEC, RPM
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile
 from rig.model.linear import natural_frequency
@@ -25,7 +25,6 @@ from rig.session import Ended, Session
 STRANGE = 0.5  # of the RMS of the error: feeding such a series forward may well make it worse
 DYNAMIC = 0.4  # of the error; with so much made by the gear's dynamics its series is not found in the rest
 ORDERS = 15  # looked at for the one that is amplified most
-RPM = np.pi / 30  # rad/s
 SEED = 20011  # of the draws of the series: the same gear file gives the same prediction
 
 
@@ -110,7 +109,7 @@ def unlike_the_series(gear: GearFile, speed_rpm: float) -> str:
     share = float(np.std(other) / np.std(wave.kinematic_error))
     if share < DYNAMIC:
         return ""
-    total, pure = (np.abs(wave.orders(x, ORDERS)) * ARCSEC for x in (wave.kinematic_error, wave.pure))
+    total, pure = (np.abs(wave.orders(x, ORDERS)) / ARCSEC for x in (wave.kinematic_error, wave.pure))
     n = int(np.argmax(np.abs(wave.orders(other, ORDERS)))) + 1
     at = natural_frequency(gear.gear()) / n / RPM
     return (

@@ -15,6 +15,7 @@ from rig.commands.options import bench_arguments, open_bench
 from rig.commands.person import Person
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.units import ARCSEC
 from rig.interrupts import Interrupts
 from rig.runfile.manifest import told, utc_now, write_atomic
 from rig.session import Session
@@ -112,7 +113,6 @@ def _gear(args: argparse.Namespace) -> GearFile:
 
 def document(found: list[Compared], where: Alignment, gear: GearFile, simulated: bool) -> dict[str, Any]:
     """compensation.json, schema hdrig.compensation/1; errors in arcsec, curves over the motor turn."""
-    arcsec = 206264.80624709636
     return {
         "schema": "hdrig.compensation/1",
         "simulated": simulated,
@@ -125,8 +125,8 @@ def document(found: list[Compared], where: Alignment, gear: GearFile, simulated:
                 "runs": list(one.runs),
                 "measured": {
                     name: {"rms": asdict(f.rms), "peak_to_peak": asdict(f.peak_to_peak), "turns": f.turns,
-                           "forth_arcsec": (f.error[0] * arcsec).round(3).tolist(),
-                           "back_arcsec": (f.error[1] * arcsec).round(3).tolist()}
+                           "forth_arcsec": (f.error[0] / ARCSEC).round(3).tolist(),
+                           "back_arcsec": (f.error[1] / ARCSEC).round(3).tolist()}
                     for name, f in (("without", one.without), ("with", one.with_it))
                 },
                 "predicted": {"without": asdict(one.expected_without), "with": asdict(one.expected_with)},

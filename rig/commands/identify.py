@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from rig.commands.folders import expand, runs_argument
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
+from rig.core.units import ARCMIN, ARCSEC, DEG, RPM
 
 if TYPE_CHECKING:
     from rig.analysis.identify.identified import Identified
@@ -23,10 +24,7 @@ if TYPE_CHECKING:
 
 TERMS = 15  # orders of the paper's series
 MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
-RPM = 30 / math.pi  # in a rad/s
-ARCSEC = 206264.80624709636  # in a radian
-DEG = 180.0 / math.pi  # in a radian
-SHOWN = {"rad": (ARCSEC / 60.0, "arcmin"), "J": (1e3, "mJ"), "s": (1e6, "µs")}  # SI to what people read
+SHOWN = {"rad": (1 / ARCMIN, "arcmin"), "J": (1e3, "mJ"), "s": (1e6, "µs")}  # SI to what people read
 UNITS_BESIDE = {
     "B_sum": "N·m·s/rad",
     "omega_n": "rad/s",
@@ -191,11 +189,11 @@ def series_lines(series: MeasuredSeries) -> list[str]:
 
     if series.origin != "measured":
         return ["  θ̃_p      not determined: none of these runs shows the kinematic error"]
-    lines = [f"  θ̃_p      {series.series.peak_to_peak() * ARCSEC:.1f} arcsec peak to peak, orders:"]
+    lines = [f"  θ̃_p      {series.series.peak_to_peak() / ARCSEC:.1f} arcsec peak to peak, orders:"]
     for (n, size, u), (psi, u_psi) in zip(order_amplitudes(series), order_phases(series), strict=True):
-        amplitude = quantity(size * ARCSEC, 1.96 * u * ARCSEC, "arcsec")
+        amplitude = quantity(size / ARCSEC, 1.96 * u / ARCSEC, "arcsec")
         told = size > 2.45 * u  # below, the phase may be any
-        phase = f"at {quantity(psi * DEG, 1.96 * u_psi * DEG, '°')}" if told else "(not told from zero)"
+        phase = f"at {quantity(psi / DEG, 1.96 * u_psi / DEG, '°')}" if told else "(not told from zero)"
         lines.append(f"    C_{n:<3d} {amplitude:28s} {phase}")
     return lines
 
@@ -258,7 +256,7 @@ def covered(found: Identified) -> Covered | None:
     """Speeds and loads of the stretches of constant speed the numbers come from; None without any."""
     from rig.model.gearfile import Covered
 
-    speeds = [abs(m.omega) * RPM for m in found.fits.means]
+    speeds = [abs(m.omega) / RPM for m in found.fits.means]
     loads = [m.tau_ext for m in found.fits.means]
     return Covered((min(speeds), max(speeds)), (min(loads), max(loads))) if speeds else None
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import Exit, UsageError
+from rig.core.units import ARCSEC, RPM
 
 if TYPE_CHECKING:
     from rig.model.gear import Gear
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from rig.model.simulate import Waveform
 
 Array = npt.NDArray[np.float64]
-ARCSEC = 180.0 / np.pi * 3600.0
-RPM = np.pi / 30.0  # rad/s
 SPEEDS = (120.0, 300.0, 500.0)  # rpm, the paper's Fig. 11
 NEAR = 0.05  # of an end of what was covered: a speed held by a constant torque is a few per cent off
 ORDERS = 8  # printed; beyond, amplitudes are below what a rig resolves
@@ -147,9 +146,9 @@ def open_gear(source: str) -> GearFile:
 def figures(wave: Waveform) -> Array:
     """What the table shows of a waveform, in its units, then the amplitudes of the orders in arcsec."""
     curves = (wave.kinematic_error, wave.pure, wave.flexible)
-    swings = [float(np.ptp(c)) * ARCSEC for c in curves]
+    swings = [float(np.ptp(c)) / ARCSEC for c in curves]
     head = [wave.mean_speed / RPM, wave.tau, *swings, float(np.ptp(wave.omega_m)) / RPM]
-    orders = np.abs(wave.orders(wave.kinematic_error, ORDERS)) * ARCSEC
+    orders = np.abs(wave.orders(wave.kinematic_error, ORDERS)) / ARCSEC
     return np.array([*head, float(np.ptp(wave.shaft_torque)), *orders])
 
 
@@ -194,7 +193,7 @@ def draw(path: Path, wave: Waveform, source: str) -> None:
 def curves(wave: Waveform) -> dict[str, Array]:
     """Curves of the drawing, arcsec and N·m about their means, on 512 points of the trigonometric interpolant."""
     made = {"total": wave.kinematic_error, "pure": wave.pure, "flexible": wave.flexible}
-    scaled = {name: (c - c.mean()) * ARCSEC for name, c in made.items()}
+    scaled = {name: (c - c.mean()) / ARCSEC for name, c in made.items()}
     scaled["torque"] = wave.shaft_torque - wave.shaft_torque.mean()
     out = {f"steady.{name}": fine(c) for name, c in scaled.items()}
     out["steady.theta_deg"] = np.linspace(0.0, 360.0, 512, endpoint=False)

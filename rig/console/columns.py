@@ -9,12 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCSEC, DEG, RPM, TURN
+
 MAGIC, VERSION = 0x48445247, 1
 HEADER = struct.Struct("<IHHII")  # magic, version, columns, rows, skipped
-DEG = 180.0 / math.pi
-RPM = 30.0 / math.pi
-ARCSEC = DEG * 3600.0
-TURN = 2.0 * math.pi
 
 COLUMNS: tuple[tuple[str, str], ...] = (
     ("motor_angle", "deg"),
@@ -38,14 +36,14 @@ def of_run(rows: Rows, ratio: float, zero: float) -> Rows:
     out = np.empty(len(rows), LAYOUT)
     theta_m = rows["theta_m"]
     out["t"] = rows["t"]
-    out["motor_angle"] = theta_m * DEG
-    out["wave_angle"] = np.mod(theta_m, TURN) * DEG
-    out["load_angle"] = rows["theta_l"] * DEG
-    out["speed"] = rows["omega_m"] * RPM
+    out["motor_angle"] = theta_m / DEG
+    out["wave_angle"] = np.mod(theta_m, TURN) / DEG
+    out["load_angle"] = rows["theta_l"] / DEG
+    out["speed"] = rows["omega_m"] / RPM
     for name in ("tau_m", "tau_ask", "tau_applied", "tau_l"):
         out[name] = rows[name]
-    out["following"] = (rows["theta_ref"] - theta_m) * DEG
-    out["kinematic_error"] = (theta_m / ratio - rows["theta_l"] - zero) * ARCSEC
+    out["following"] = (rows["theta_ref"] - theta_m) / DEG
+    out["kinematic_error"] = (theta_m / ratio - rows["theta_l"] - zero) / ARCSEC
     out["age"] = rows["age"] * 1e3
     return out
 
@@ -54,9 +52,9 @@ def of_reading(reading: Mapping[str, Any], ratio: float) -> Rows:
     """One reading while nothing runs, shape (1,). What nobody asked for or measured is NaN."""
     theta_m, theta_l, omega_m, tau_m, tau_l, age = (math.nan if x is None else float(x) for x in reading["row"])
     out = np.full(1, math.nan, LAYOUT)
-    out["t"], out["motor_angle"], out["load_angle"] = float(reading["t"]), theta_m * DEG, theta_l * DEG
-    out["wave_angle"] = theta_m % TURN * DEG
-    out["speed"], out["tau_m"], out["tau_l"], out["age"] = omega_m * RPM, tau_m, tau_l, age * 1e3
+    out["t"], out["motor_angle"], out["load_angle"] = float(reading["t"]), theta_m / DEG, theta_l / DEG
+    out["wave_angle"] = theta_m % TURN / DEG
+    out["speed"], out["tau_m"], out["tau_l"], out["age"] = omega_m / RPM, tau_m, tau_l, age * 1e3
     return out
 
 

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCSEC, DEG
 from rig.live.calm import Calm
 from rig.live.view.turns import Turns
 
-ARCSEC = 180.0 / math.pi * 3600.0
-DEG = 180.0 / math.pi
 Rows = np.ndarray[Any, Any]
 
 
@@ -29,7 +28,7 @@ class SoFar:
     @property
     def following(self) -> float | None:
         """Root mean square of reference minus motor angle [deg], over the rows that have a reference."""
-        return math.sqrt(self._squares / self._n) * DEG if self._n else None
+        return math.sqrt(self._squares / self._n) / DEG if self._n else None
 
     def add(self, rows: Rows) -> Rows:
         """The next rows, shape (n,); True for those whose θ̃ tells of the gear, shape (n,)."""
@@ -47,5 +46,5 @@ class SoFar:
         told &= np.isfinite(error)
         for turn in self._turns.add(rows["theta_m"][told], error[told]):
             if not math.isnan(turn.peak_to_peak):
-                self.peak_to_peak = turn.peak_to_peak * ARCSEC
+                self.peak_to_peak = turn.peak_to_peak / ARCSEC
         return told

@@ -10,10 +10,10 @@ from rig.control.pid import Pid
 from rig.control.profile import Ramp
 from rig.core.procedure import Setting, Steps
 from rig.core.sample import Sample, Torque
+from rig.core.units import TURN
 
 ACCELERATION = 20.0  # rad/s²  1.2e-3 kg·m² takes 24 mN·m for it: a tenth of the friction; 500 rpm in 2.6 s
 EASE = 1.0  # s the loop is given after the ramp before its torque is believed
-TURN = 2.0 * math.pi
 
 
 def hold_time(omega: float, seconds: float) -> float:

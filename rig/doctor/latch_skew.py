@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 from rig.bench import Bench
+from rig.core.units import ARCSEC, RPM
 from rig.doctor.finding import Finding, Health
 
 SLOW = 9.6  # rpm, the speed of a kinematic-error run      [ghorbel2001]
-ARCSEC = math.degrees(1.0) * 3600.0  # in a rad
 
 
 def check_latch_skew(bench: Bench) -> list[Finding]:
@@ -16,7 +14,7 @@ def check_latch_skew(bench: Bench) -> list[Finding]:
     section = bench.file.load_encoder
     if section is None:
         return []
-    per_second = SLOW * math.pi / 30 / bench.file.gear.N * ARCSEC  # arcsec at the output, each direction
+    per_second = SLOW * RPM / bench.file.gear.N / ARCSEC  # arcsec at the output, each direction
     name = "latch skew of the load encoder"
     if section.skew is None or section.skew_half_width is None:
         period = 1.0 / bench.file.loop.rate

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,8 +9,8 @@ from rig.control.brake import AT_REST, PATIENCE, REST_TIME, brake
 from rig.control.spin import hold_duration, hold_speed, hold_travel
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import RPM
 
-RPM = math.pi / 30
 HOLD = 1.0  # s at speed whose mean torque is the friction there
 PAUSE = 0.2  # s at rest between
 

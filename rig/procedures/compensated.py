@@ -13,9 +13,8 @@ from rig.control.profile import Trapezoid
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import RPM, TURN
 
-RPM = math.pi / 30
-TURN = 2 * math.pi
 ACCELERATION = 40.0  # rad/s² of the motor: 500 rpm in 1.3 s
 SETTLE = 1.0  # s at speed: ten time constants of the paper's rig under its loop
 PAUSE = 0.5  # s at rest before, between and after

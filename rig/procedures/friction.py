@@ -15,10 +15,9 @@ from rig.control.spin import ACCELERATION, EASE
 from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
+from rig.core.units import DEG, RPM, TURN
 
-RPM = math.pi / 30
-TURN = 2 * math.pi
-MOVED = 0.5 * math.pi / 180  # rad of the motor, 14 counts of 10 000: presliding of a gear is a tenth of it
+MOVED = 0.5 * DEG  # rad of the motor, 14 counts of 10 000: presliding of a gear is a tenth of it
 RATE = 0.2  # N·m/s, of the ramp to breakaway: 10 ms from breaking loose to having moved are 2 mN·m
 SHARE = 0.4  # of the drive's torque limit, most that breakaway may take
 PAUSE = 0.5  # s without torque after it

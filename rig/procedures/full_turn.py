@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -12,9 +11,8 @@ from rig.control.spin import ACCELERATION
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import RPM, TURN
 
-RPM = math.pi / 30
-TURN = 2.0 * math.pi
 WAYS = {"forward": 1.0, "reverse": -1.0}
 LEAD = 1.0  # turns of the motor before and after: half a turn is cut at each end, the other half lets the loop settle
 

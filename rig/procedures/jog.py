@@ -11,10 +11,8 @@ from rig.control.profile import Trapezoid
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import DEG, RPM, TURN
 
-DEG = math.pi / 180
-RPM = math.pi / 30
-TURN = 2.0 * math.pi
 MOST_TURNS = 10.0  # of the motor: a fifth of a turn of the output at 1:50, in sight of whoever jogs
 MOST_RPM = 60.0  # of the motor: a turn a second can be followed by eye
 ACCELERATION = 10.0  # rad/s²: 60 rpm in 0.6 s

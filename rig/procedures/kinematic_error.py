@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,8 +10,7 @@ from rig.control.profile import Triangle
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
-
-DEG = math.pi / 180
+from rig.core.units import DEG, RPM
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,7 @@ class KinematicError(Procedure):
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""
-        speed = self.reference.speed * 30 / math.pi
+        speed = self.reference.speed / RPM
         return {"output_locked": False, "tau_ext": 0.0, "speed_rpm": round(speed, 6)}
 
     def steps(self, setting: Setting) -> Steps:

@@ -11,8 +11,8 @@ from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
+from rig.core.units import DEG
 
-DEG = math.pi / 180
 OVERSHOOT = 2.0  # of the wind-up, and 3 N·m: stick-slip, or a gear that was wound up before
 
 

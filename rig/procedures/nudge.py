@@ -8,8 +8,8 @@ from collections.abc import Generator
 from rig.core.errors import NotReady
 from rig.core.procedure import Setting
 from rig.core.sample import Sample, Setpoint, Torque
+from rig.core.units import DEG
 
-DEG = math.pi / 180
 DEAD = 5.0  # times the motion looked for, by the load encoder: then the motor encoder should have shown it
 HELD = 0.1  # of what the load should have moved: less is a load that does not follow at all
 REST = 0.3  # s without torque: friction brings it to rest

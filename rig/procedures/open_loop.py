@@ -18,9 +18,8 @@ from rig.control.spin import (
 from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Setting, Steps
 from rig.core.sample import Sample, Torque
+from rig.core.units import RPM, TURN
 
-RPM = math.pi / 30
-TURN = 2.0 * math.pi
 AVERAGE = 5.0  # s of torque under the loop; friction that wanders 1 % with 0.3 s is then known to 0.4 %
 SHORT = 0.5  # s of it where the torque is given
 MARGIN = 1.15  # constant torque gives the asked speed to within this factor: friction wanders, the drive rounds

@@ -13,9 +13,9 @@ from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
-from rig.procedures.nudge import DEG, nudge, refuse_held
+from rig.core.units import DEG, RPM, TURN
+from rig.procedures.nudge import nudge, refuse_held
 
-TURN = 2 * math.pi
 RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
 BLOCKS = 8  # stretches of the turn whose mean shaft torques tell how sure their mean is
 STEADY = 0.1  # of the nominal speed: a motor that nearly stops leaves any torque in the shaft
@@ -61,7 +61,7 @@ class SignAndScale(Procedure):
     @property
     def turn(self) -> Trapezoid:
         """One motor turn."""
-        speed = self.speed_rpm * math.pi / 30
+        speed = self.speed_rpm * RPM
         return Trapezoid(TURN, speed, speed / 0.3)
 
     def envelope(self, setting: Setting) -> Envelope:

@@ -12,9 +12,8 @@ from rig.control.spin import ACCELERATION
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import RPM, TURN
 
-RPM = math.pi / 30
-TURN = 2 * math.pi
 REST = 0.3  # s between two legs
 SETTLE = 0.5  # s at speed before a row counts, either way: the gear's own swing, 25 Hz at 4 % damping, is over in 0.5 s
 FEWEST = 2  # speeds: what grows with speed against what does not

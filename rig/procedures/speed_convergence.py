@@ -12,9 +12,8 @@ from rig.control.profile import Triangle
 from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import DEG, RPM
 
-DEG = math.pi / 180
-RPM = math.pi / 30
 FEWEST = 3  # speeds: two to see a change, one more to see that it has ended
 # At 60 rpm 10 000 counts a turn are 10 counts a millisecond: every row is then rounded alike, and the rounding follows
 # the angle instead of averaging out.

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
+from rig.core.units import RPM
 from rig.procedures.nudge import REST, nudge
 
 NUDGE_RATE = 1.0  # N·m/s
@@ -37,7 +38,7 @@ class StepTest(Procedure):
     def envelope(self, setting: Setting) -> Envelope:
         """Bounds with friction and load inertia left out."""
         duration = self.torque / NUDGE_RATE + REST + 2 * self.repeats * (self.on + self.off)
-        return Envelope(duration, 4 * 2 * math.pi, 0.6 * 600 * math.pi / 30, self.torque, coupled=False)
+        return Envelope(duration, 4 * 2 * math.pi, 0.6 * 600 * RPM, self.torque, coupled=False)
 
     def conditions(self) -> dict[str, object]:
         """For the manifest."""

@@ -11,8 +11,8 @@ from rig.control.winding import Winding
 from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
+from rig.core.units import DEG
 
-DEG = math.pi / 180
 SOFTEST = 3.0  # times the declared compliance: a gear that winds up farther is not the one of the bench file
 GIVES_WAY = 0.15  # of the wind-up at tau_max: a load that moved this far is not locked
 OVERSHOOT = 1.3  # of tau_max: a slip may end beyond it by what stick-slip is long

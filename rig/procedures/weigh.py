@@ -13,8 +13,8 @@ from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
+from rig.core.units import RPM, TURN
 
-TURN = 2 * math.pi
 STANDSTILL = 0.5  # s, 500 readings at 1 kHz
 BLOCKS = 8  # stretches whose means tell how sure the mean is
 
@@ -59,7 +59,7 @@ class Weigh(Procedure):
     @property
     def turn(self) -> Trapezoid:
         """One motor turn, so that the kinematic error averages out."""
-        speed = self.speed_rpm * math.pi / 30
+        speed = self.speed_rpm * RPM
         return Trapezoid(TURN, speed, speed / 0.3)
 
     def envelope(self, setting: Setting) -> Envelope:

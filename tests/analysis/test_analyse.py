@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis import Verdict, analyse
-from rig.analysis.angle import TURN
+from rig.core.units import TURN
 from tests.analysis.synthetic import ARCSEC, PROFILE, MadeRun, count
 
 PROCEDURES = (

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.angle import TURN, is_wrapped, unwrap
+from rig.analysis.angle import is_wrapped, unwrap
 from rig.analysis.source import motion_of
 from rig.core import rows
 from rig.core.channels import UNTRUSTED, Flag
+from rig.core.units import TURN
 from tests.analysis.synthetic import PROFILE, MadeRun, count, triangle
 
 

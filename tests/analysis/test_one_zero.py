@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.angle import DEG
 from rig.analysis.one_zero import shown_common, zero_between
+from rig.core.units import DEG
 from rig.model.fourier import FourierSeries
 from tests.analysis.synthetic import ARCSEC, PROFILE, TURN, MadeRun, count
 
@@ -24,7 +24,7 @@ def proof(moved_deg: float = 0.0, series: FourierSeries = PROFILE, turn: float =
     theta_l = theta / N - series.value(theta) - late + 1e-6 * rng.standard_normal(theta.size)
     columns = {
         "t": np.arange(theta.size) / rate,
-        "theta_m": count(theta + moved_deg / DEG, 10_000),
+        "theta_m": count(theta + moved_deg * DEG, 10_000),
         "theta_l": count(theta_l, 900_000),
     }
     return MadeRun(columns, {"procedure": "other", "gear": {"ratio": N}})
@@ -33,7 +33,7 @@ def proof(moved_deg: float = 0.0, series: FourierSeries = PROFILE, turn: float =
 def test_a_zero_that_was_kept_is_found_to_have_been() -> None:
     where = zero_between(proof(), PROFILE)
     assert where is not None
-    assert abs(where.fitted * DEG) < 1.0
+    assert abs(where.fitted / DEG) < 1.0
     assert shown_common(where)
 
 
@@ -41,8 +41,8 @@ def test_a_zero_that_was_kept_is_found_to_have_been() -> None:
 def test_a_zero_that_has_moved_is_found_where_it_is_and_not_taken_for_common(moved: float) -> None:
     where = zero_between(proof(moved), PROFILE)
     assert where is not None
-    apart = (where.fitted * DEG - moved + 180.0) % 360.0 - 180.0
-    assert abs(apart) < max(4.0 * where.u_fitted * DEG, 0.5)
+    apart = (where.fitted / DEG - moved + 180.0) % 360.0 - 180.0
+    assert abs(apart) < max(4.0 * where.u_fitted / DEG, 0.5)
     assert not shown_common(where)
 
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.analysis.angle import TURN
 from rig.analysis.orders import find_lines, fit_lines, resample, spectrum
+from rig.core.units import TURN
 from tests.analysis.synthetic import wander
 
 

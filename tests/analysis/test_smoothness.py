@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from rig.analysis import Verdict, analyse
-from rig.analysis.angle import RPM, TURN
 from rig.analysis.smoothness import smoothness
 from rig.analysis.source import Motion
 from rig.analysis.speed import motor_speed
 from rig.analysis.strokes import find_strokes
+from rig.core.units import RPM, TURN
 from tests.analysis.synthetic import MadeRun, count, slow_run, triangle
 
 OMEGA = 4 * 4 * TURN * 0.01  # rad/s: 9.6 rpm
@@ -83,7 +83,7 @@ def test_a_motor_that_stood_half_the_time_is_held_to_the_reference_not_to_itself
 def test_the_speed_of_counts_is_right_to_a_third_of_a_percent_at_one_and_a_half_counts_a_row() -> None:
     t = np.arange(0, 20, 1e-3)
     speed = motor_speed(t, count(OMEGA * t, 10_000))
-    assert abs(speed.omega.mean() * RPM - 9.6) < 1e-3
+    assert abs(speed.omega.mean() / RPM - 9.6) < 1e-3
     assert speed.omega.std() / OMEGA < 0.0035
 
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.analysis.angle import TURN
 from rig.analysis.source import Motion
 from rig.analysis.strokes import find_strokes, turning_points
+from rig.core.units import TURN
 from tests.analysis.synthetic import count, slow_run, triangle
 
 

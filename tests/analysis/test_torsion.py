@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from rig.analysis import Result, analyse
-from rig.analysis.angle import TURN, unwrap
+from rig.analysis.angle import unwrap
+from rig.core.units import TURN
 from tests.analysis.synthetic import MadeRun, count
 
 LARA8 = Path(__file__).parents[1] / "data" / "lara8" / "validate_joint3.csv"

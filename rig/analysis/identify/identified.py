@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.flexibility import declared
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
@@ -19,6 +18,7 @@ from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.undetermined import NOTHING, said_open, stand_in, undetermined
 from rig.analysis.intervals import t95
 from rig.core.errors import DataError
+from rig.core.units import RPM
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import SIGMA, UNITS, GearFile, MeasuredSeries, Parameter
 
@@ -263,7 +263,7 @@ def _always(found: Mapping[str, Parameter]) -> list[str]:
     if found["tau_s"].origin != "measured":
         said.append(
             "tau_s and omega_s: breakaway and the speed over which friction falls need at least three speeds held "
-            f"constant below {SLOW * RPM:.0f} rpm at which friction is seen to fall; only stretches of constant speed "
+            f"constant below {SLOW / RPM:.0f} rpm at which friction is seen to fall; only stretches of constant speed "
             "are read for it here. hdrig trace reads every row, and may name Stribeck friction in the same runs."
         )
     return said

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.identify.recording import Plateau
 from rig.analysis.result import Array
+from rig.core.units import TURN
 from rig.model.fourier import FourierSeries
 
 PIECE = 1.0  # s at least, in whole turns: longer than friction remembers (0.3 s on the twin)

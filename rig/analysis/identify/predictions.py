@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, RPM, TURN
 from rig.analysis.identify.recording import Plateau, Recording, plateaus
 from rig.analysis.identify.slow import SLOW
 from rig.analysis.profile import combine
 from rig.analysis.revolutions import analyse_stroke
 from rig.analysis.strokes import Stroke
+from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, Waveform, at_speed
 
@@ -41,25 +41,25 @@ def predictions(runs: Sequence[Recording], gear: Gear, terms: int) -> list[Predi
 
 def _of(run: Recording, gear: Gear, terms: int) -> Prediction | None:
     # a loop that holds the speed bends the waveform: only what runs free is what the equations say
-    level = [p for p in plateaus(run) if abs(p.omega) * RPM > SLOW and not p.followed]
+    level = [p for p in plateaus(run) if abs(p.omega) / RPM > SLOW and not p.followed]
     if not level:
         return None
     best = max(level, key=lambda p: p.duration)
     stroke = _stroke(best)
     if stroke.revolutions < FEWEST or int(np.min(np.diff(stroke.edges))) < 4 * terms:
         return None
-    strokes, rpm = [analyse_stroke(run.motion, stroke, terms)], best.omega * RPM
+    strokes, rpm = [analyse_stroke(run.motion, stroke, terms)], best.omega / RPM
     profile = combine(strokes, np.zeros(terms))
     value, interval = profile.peak_to_peak()
     try:
-        wave = at_speed(gear, rpm / RPM)
+        wave = at_speed(gear, rpm * RPM)
     except NoSteadyState:
         return Prediction(run.name, rpm, value, interval, float("nan"), float("nan"), float("nan"))
-    made = wave.orders(wave.kinematic_error, terms) * ARCSEC
+    made = wave.orders(wave.kinematic_error, terms) / ARCSEC
     off = np.hypot(profile.cosine - made.real, profile.sine - made.imag)
     rms = float(np.sqrt(0.5 * np.sum(off**2)))
     return Prediction(
-        run.name, rpm, value, interval, _swing(wave, terms), gear.kinematic_error.peak_to_peak() * ARCSEC, rms
+        run.name, rpm, value, interval, _swing(wave, terms), gear.kinematic_error.peak_to_peak() / ARCSEC, rms
     )
 
 
@@ -76,4 +76,4 @@ def _swing(wave: Waveform, terms: int) -> float:
     """Peak to peak of the first `terms` orders of θ̃, arcsec: what the fitted profile holds of it."""
     c = np.zeros(GRID // 2 + 1, dtype=np.complex128)
     c[1 : terms + 1] = np.conj(wave.orders(wave.kinematic_error, terms))
-    return float(np.ptp(np.fft.irfft(c, GRID) * (GRID / 2))) * ARCSEC
+    return float(np.ptp(np.fft.irfft(c, GRID) * (GRID / 2))) / ARCSEC

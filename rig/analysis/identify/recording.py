@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.flexibility import declared
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source, motion_of
+from rig.core.units import TURN
 
 BLOCK = 0.1  # s over which a speed is taken to find plateaus: 160 counts at 9.6 rpm with 10 000 counts a turn
 STEADY = 0.06  # of the speed: how far a block may lie from the plateau's own median; 500 rpm swings by 1 %

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, RPM
 from rig.analysis.identify.gram import Known, known
 from rig.analysis.identify.recording import Recording
 from rig.analysis.kinematic_error import groups_by_speed
@@ -14,6 +13,7 @@ from rig.analysis.profile import combine
 from rig.analysis.result import Array
 from rig.analysis.revolutions import analyse_stroke
 from rig.analysis.strokes import find_strokes
+from rig.core.units import ARCSEC, RPM
 
 SLOW = 25.0  # rpm: above, inertia bends the gear by more than the correction for it is worth
 ORDINARY = ("kinematic_error", "speed_convergence", "full_turn")  # procedures made for it
@@ -41,12 +41,12 @@ def slow_series(run: Recording, terms: int) -> SlowSeries | None:
     if min(int(np.min(np.diff(s.edges))) for s in groups[0]) < 8 * terms:
         return None
     results = [analyse_stroke(run.motion, s, terms) for s in groups[0]]
-    omega = float(np.mean(np.abs(np.concatenate([r.speed_rpm for r in results])))) / RPM
-    if not omega * RPM < SLOW:
+    omega = float(np.mean(np.abs(np.concatenate([r.speed_rpm for r in results])))) * RPM
+    if not omega / RPM < SLOW:
         return None
     profile = combine(results, np.zeros(terms))
-    c = np.concatenate((profile.cosine, profile.sine)) / ARCSEC
-    u = np.concatenate((profile.u_cosine, profile.u_sine)) / ARCSEC
+    c = np.concatenate((profile.cosine, profile.sine)) * ARCSEC
+    u = np.concatenate((profile.u_cosine, profile.u_sine)) * ARCSEC
     if not np.isfinite(u).all():
         return None
     return SlowSeries(run.name, c, u, profile.dof, omega, run.tau_ext)

@@ -10,13 +10,13 @@ import numpy as np
 from rig.analysis.flexibility import declared
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.means import Mean
+from rig.core.units import RPM
 from rig.model.gearfile import MeasuredSeries, Parameter
 
 WANTED = ("J_m", "J_l", "K", "B_sp", "B_m", "B_l", "tau_c", "F_cl")
 """What makes an identification complete. B_ml is never measured, tau_s and omega_s only where friction falls."""
 
 SERIES = "θ̃_p"
-RPM = 9.549296585513721  # in a rad/s
 TAKES = "four stretches at two speeds or more, one twice the other, in both directions (hdrig run friction)"
 NO_MOTOR_SUM = f"tau_c, B_m and B_ml: they take {TAKES}, drive's torque and torque sensor."
 NO_LOAD_SUM = f"F_cl and B_l: they take {TAKES}, with the torque sensor."
@@ -83,7 +83,7 @@ def _friction(
 def _motor_sum(found: dict[str, Parameter], balance: Balance, ratio: float, sigma: int) -> str:
     """tau_c is what the drag leaves of the sum."""
     drag = (found["B_m"].value + found["B_ml"].value * (1.0 + sigma / ratio) ** 2) * balance.omega
-    at = f"{balance.torque:.4f} N·m at {balance.omega * RPM:.0f} rpm"
+    at = f"{balance.torque:.4f} N·m at {balance.omega / RPM:.0f} rpm"
     found["tau_c"] = _left(balance.torque - drag, f"{_stands(found, 'B_m')} and {_stands(found, 'B_ml')}", at)
     return (
         f"tau_c, B_m and B_ml: only their sum is known, tau_c + [B_m + B_ml·(1 + σ/N)²]·ω_m = {at}; to tell them "
@@ -94,7 +94,7 @@ def _motor_sum(found: dict[str, Parameter], balance: Balance, ratio: float, sigm
 def _load_sum(found: dict[str, Parameter], balance: Balance, fits: Fits) -> str:
     """F_cl is what the drag leaves of the sum."""
     omega = balance.omega / fits.ratio
-    at = f"{balance.torque:.4f} N·m at {omega * RPM:.2f} rpm of the output"
+    at = f"{balance.torque:.4f} N·m at {omega / RPM:.2f} rpm of the output"
     found["F_cl"] = _left(balance.torque - found["B_l"].value * omega, _stands(found, "B_l"), at)
     if len({m.way for m in fits.means if m.tau_ext == 0.0}) == 2:
         what, total = "F_cl and B_l", "F_cl + B_l·ω_l"

@@ -12,10 +12,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import TURN
 from rig.analysis.identify.recording import Plateau
 from rig.analysis.result import Array
 from rig.analysis.sums import harmonics
+from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]
 TURNS = 7  # a window at least: sin⁴ passes six orders' width between its first zeros, so neighbours stay apart

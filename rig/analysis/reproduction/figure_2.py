@@ -10,7 +10,7 @@ from rig.analysis.reproduction.claim import Claim, Number, missing, positive
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.split import THETA_DEG, amplitude, peak_to_peak, words
 
-RPM = 300.0
+SPEED_RPM = 300.0
 TITLE = "θ̃ at 300 rpm, no load"
 PAPER = "A kinematic error that repeats with the wave generator and goes twice up and down in each of its turns."
 TWICE = "Twice per turn of the wave generator"
@@ -19,9 +19,9 @@ RULE = "Amplitude of order 2 less that of the next largest order, above zero wit
 
 def figure(campaign: Campaign) -> Exhibit:
     """Every turn, the mean, and whether order 2 is the largest."""
-    reading = campaign.at_speed(RPM)
+    reading = campaign.at_speed(SPEED_RPM)
     if reading is None or reading.fast is None:
-        lacking = f"It takes an unloaded run at {RPM:g} rpm, constant torque."
+        lacking = f"It takes an unloaded run at {SPEED_RPM:g} rpm, constant torque."
         return Exhibit("Figure 2", TITLE, PAPER, "", (missing(TWICE, lacking),), missing=lacking)
     fast = reading.fast
     curves = {

@@ -8,7 +8,7 @@ from rig.analysis.intervals import Z95
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, covers, missing
 from rig.analysis.reproduction.exhibit import Exhibit
-from rig.analysis.reproduction.figure_2 import RPM
+from rig.analysis.reproduction.figure_2 import SPEED_RPM
 from rig.analysis.reproduction.reading import Reading
 
 TITLE = "Spectrum of θ̃ at 300 rpm"
@@ -22,9 +22,9 @@ RULE = (
 
 def figure(campaign: Campaign) -> Exhibit:
     """The amplitudes and where the largest lies."""
-    reading = campaign.at_speed(RPM)
+    reading = campaign.at_speed(SPEED_RPM)
     if reading is None or reading.spectrum is None:
-        lacking = f"It takes an unloaded run at {RPM:g} rpm with time."
+        lacking = f"It takes an unloaded run at {SPEED_RPM:g} rpm with time."
         return Exhibit("Figure 3", TITLE, PAPER, "", (missing(CLAIM, lacking),), missing=lacking)
     s = reading.spectrum
     curves = {"spectrum.cpm": s.cpm, "spectrum.cpm_amplitude": s.amplitude}

@@ -22,7 +22,7 @@ from rig.analysis.reproduction.split import (
     words,
 )
 
-RPM = 310.0
+SPEED_RPM = 310.0
 NEXT = (1.5, 2.5)  # times the slow speed: the neighbour in a search by halving
 STILL = 0.02  # of the rms: what counts as no change, from the recipe for the slow speed
 A = ("Figure 7 a", "θ̃ at 310 rpm, measured and by the model")
@@ -40,12 +40,12 @@ COLOURED = "θ̃ at 310 rpm is larger than θ̃_p"
 SLOW = "Around 10 rpm turning slower no longer changes it"
 SUM = "θ̃ = θ̃_p + θ̃_s"
 MODEL = "The model’s θ̃_s is the measured one"
-NO_RUN = f"It takes an unloaded run at {RPM:g} rpm and a slow one of the same assembly."
+NO_RUN = f"It takes an unloaded run at {SPEED_RPM:g} rpm and a slow one of the same assembly."
 
 
 def figure_a(campaign: Campaign) -> Exhibit:
     """θ̃, measured beside simulated."""
-    split = split_of(campaign, RPM)
+    split = split_of(campaign, SPEED_RPM)
     if split is None:
         return Exhibit(*A, PAPER_A, "", (missing(COLOURED, NO_RUN),), missing=NO_RUN)
     pure = campaign.pure()
@@ -94,7 +94,7 @@ def settled(error: KinematicError, others: list[KinematicError]) -> Claim:
 
 def figure_c(campaign: Campaign) -> Exhibit:
     """θ̃_s as the difference, as the torque sensor shows it, and of the model."""
-    split = split_of(campaign, RPM)
+    split = split_of(campaign, SPEED_RPM)
     if split is None:
         return Exhibit(*C, PAPER_C, "", (missing(SUM, NO_RUN), missing(MODEL, NO_RUN)), missing=NO_RUN)
     parts = split.decomposition

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC, RPM
 from rig.analysis.decomposition import Decomposition, decompose
 from rig.analysis.kinematic_error import KinematicError
 from rig.analysis.profile import DRAWS, Profile
@@ -18,6 +17,7 @@ from rig.analysis.reproduction.reading import Reading
 from rig.analysis.reproduction.shaft import Complex, Shaft, wave
 from rig.analysis.result import Array
 from rig.analysis.revolutions import GRID
+from rig.core.units import ARCSEC, RPM
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, at_speed
 
@@ -70,11 +70,11 @@ def simulate(gear: Gear, fast: KinematicError, parts: Decomposition) -> tuple[Co
     """(θ̃, θ̃_p, torque N·m) of the gear turning steadily at constant torque with the speed that was measured."""
     way = float(np.sign(fast.strokes[0].direction))
     try:
-        made = at_speed(gear, way * fast.speed_rpm / RPM)
+        made = at_speed(gear, way * fast.speed_rpm * RPM)
     except NoSteadyState:
         return None
     k = parts.total.size
-    turned = np.exp(-1j * np.arange(1.0, k + 1) * parts.alignment.shift) * ARCSEC
+    turned = np.exp(-1j * np.arange(1.0, k + 1) * parts.alignment.shift) / ARCSEC
     total, pure = (np.conj(made.orders(c, k)) * turned for c in (made.kinematic_error, made.pure))
     return np.asarray(total), np.asarray(pure), made.tau
 
@@ -82,10 +82,10 @@ def simulate(gear: Gear, fast: KinematicError, parts: Decomposition) -> tuple[Co
 def bending(shaft: Shaft, model: Model, fast: KinematicError, terms: int) -> Complex:
     """θ̃_s,n = τ_l,n/(K + jnΩ·B_sp), arcsec: what the spring bends by the torque sensor      [ghorbel2001, Eq. 7]"""
     n = np.arange(1.0, min(terms, shaft.orders.size) + 1)
-    omega = fast.speed_rpm / RPM * float(np.sign(fast.strokes[0].direction))
+    omega = fast.speed_rpm * RPM * float(np.sign(fast.strokes[0].direction))
     gear = model.gear
     found = np.zeros(terms, dtype=np.complex128)
-    found[: n.size] = shaft.orders[: n.size] / (gear.K + 1j * n * omega * gear.B_sp) * ARCSEC
+    found[: n.size] = shaft.orders[: n.size] / (gear.K + 1j * n * omega * gear.B_sp) / ARCSEC
     return found
 
 

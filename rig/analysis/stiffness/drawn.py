@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN
 from rig.analysis.findings import Findings
 from rig.analysis.stiffness.measure import Stiffness
+from rig.core.units import ARCMIN
 
 MOST = 4000  # points drawn
 WINDOW = 0.12  # of the reach, either side: over which the measured local stiffness is a slope
@@ -24,10 +24,10 @@ def add_curves(found: Findings, s: Stiffness) -> None:
     knots = np.array([ends[0], *inner, ends[1]])
     at = lines.law.windup(knots, lines.p, lines.scale)
     found.curve(
-        lock__windup=(w - lines.middle) * ARCMIN,
+        lock__windup=(w - lines.middle) / ARCMIN,
         lock__torque=run.tau[::step],
         lock__departure=run.tau[::step] - lines.torque(w),
-        lock__fit_windup=at * ARCMIN,
+        lock__fit_windup=at / ARCMIN,
         lock__fit_torque=knots,
     )
     torque = np.linspace(ends[0], ends[1], 161)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN
 from rig.analysis.findings import Findings
 from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.loop import rate_law
 from rig.analysis.stiffness.measure import SENSOR_GAIN, Stiffness
+from rig.core.units import ARCMIN
 
 
 def add_loop(found: Findings, s: Stiffness) -> str:
@@ -17,12 +17,12 @@ def add_loop(found: Findings, s: Stiffness) -> str:
         found.cannot.append("Zero torque was not crossed on the way up and on the way down: no hysteresis loss.")
         return ""
     relative = float(np.hypot(s.tilt.zones[0], SENSOR_GAIN))
-    width, half = s.gap.value * ARCMIN, float(np.hypot(s.gap.half, relative * s.gap.value)) * ARCMIN
+    width, half = s.gap.value / ARCMIN, float(np.hypot(s.gap.half, relative * s.gap.value)) / ARCMIN
     n = len(s.widths)
     how = (
         f"Wind-up between falling and rising ramps at zero torque, at the first rate ({n} ramps passed there at all "
         "rates). A zero error of the sensor shifts both alike and drops out. In the interval: where within a count of "
-        f"the motor's encoder, {s.count * ARCMIN:.2g} arcmin, the motor stood on either branch."
+        f"the motor's encoder, {s.count / ARCMIN:.2g} arcmin, the motor stood on either branch."
     )
     found.figure("hysteresis_loss", "Hysteresis loss (gap at zero torque)", width, "arcmin", half, how)
     how = f"∮ τ dw over {s.loops} closed loops at the first rate." if s.loops else "∮ τ dw of the fitted loop."
@@ -49,7 +49,7 @@ def _add_rates(found: Findings, s: Stiffness) -> None:
     found.figure("loop_viscous", "What widens it with the rate", v.value, "N·m·s/rad", v.half, how)
     found.tables["loop_against_rate"] = [
         {
-            "windup_rate_arcmin/s": w.rate * ARCMIN,
+            "windup_rate_arcmin/s": w.rate / ARCMIN,
             "direction": float(w.direction),
             "half_width_nm": w.half,
             "standard_uncertainty_nm": w.u,
@@ -57,9 +57,9 @@ def _add_rates(found: Findings, s: Stiffness) -> None:
         for w in s.widths
     ]
     found.curve(
-        loop__rate=np.array([w.rate * ARCMIN for w in s.widths]),
+        loop__rate=np.array([w.rate / ARCMIN for w in s.widths]),
         loop__half_width=np.array([w.half for w in s.widths]),
-        loop__fit=np.array([h.value, v.value / ARCMIN]),
+        loop__fit=np.array([h.value, v.value * ARCMIN]),
     )
 
 
@@ -79,4 +79,4 @@ def add_creep(found: Findings, s: Stiffness) -> None:
         found.cannot.append(
             "Hysteresis and creep: what creeps while it is wound up widens the loop too, nearly as much at any rate."
         )
-    found.curve(creep__time=c.time, creep__windup=c.windup * ARCMIN * 60.0)
+    found.curve(creep__time=c.time, creep__windup=c.windup / ARCMIN * 60.0)

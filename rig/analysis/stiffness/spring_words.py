@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rig.analysis.angle import ARCMIN
 from rig.analysis.findings import Findings
 from rig.analysis.result import Array, Part
 from rig.analysis.stiffness.choice import LeftOut
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.laws import Play
 from rig.analysis.stiffness.measure import SENSOR_GAIN, Stiffness
+from rig.core.units import ARCMIN
 
 RATED = 178.0  # N·m, size 40, ratio 50 [harmonicdrive]; where the bench declares none
 LOST = 0.04  # of rated torque, as makers define lost motion
@@ -83,7 +83,7 @@ def add_play(found: Findings, s: Stiffness) -> None:
         return
     (_, b), (_, half) = value_of(s.spring.chosen_out, parameters)
     how = "Wind-up without torque, between the straight lines either side: backlash, at this motor angle."
-    found.figure("play", "Play (dead zone)", 2 * b * ARCMIN, "arcmin", 2 * half * ARCMIN, how)
+    found.figure("play", "Play (dead zone)", 2 * b / ARCMIN, "arcmin", 2 * half / ARCMIN, how)
 
 
 def add_tangent(found: Findings, s: Stiffness) -> None:
@@ -117,7 +117,7 @@ def add_lost_motion(found: Findings, s: Stiffness, rated: float | None) -> None:
         return
 
     def lost(c: Curve) -> Array:
-        return 2.0 * ARCMIN * c.law.windup(np.array([torque]), c.p, c.scale)
+        return 2.0 / ARCMIN * c.law.windup(np.array([torque]), c.p, c.scale)
 
     value, random = value_of(s.spring.chosen_out, lost)
     half = half_width(value, random, s.tilt.zones[0])

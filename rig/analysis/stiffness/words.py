@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.angle import DEG, TURN
 from rig.analysis.findings import Findings
 from rig.analysis.flexibility import declared
 from rig.analysis.reference import kinematic_error_reference
@@ -27,6 +26,7 @@ from rig.analysis.stiffness.spring_words import (
     value_of,
 )
 from rig.analysis.tame import Tame
+from rig.core.units import DEG, TURN
 
 MOVES = 0.05  # of the wind-up: a load that moves more is not locked
 
@@ -103,7 +103,7 @@ def _add_secant(found: Findings, s: Stiffness, motion: Motion) -> tuple[float, f
     parts = parts_of(float(value[0]), float(random[0]), s.tilt.secant)
     label = "System torsional stiffness, secant"
     found.figure("torsional_stiffness", label, float(value[0]), "N·m/rad", half, how, *parts)
-    angle = round(float(np.median(motion.theta_m)) % TURN * DEG, 1) % 360.0
+    angle = round(float(np.median(motion.theta_m)) % TURN / DEG, 1) % 360.0
     how = "Middle of the motor angles of this run, by the motor encoder's own zero: the stiffness holds there."
     found.exact("wave_generator_angle", "Wave-generator angle", angle, "°", how)
     return float(value[0]), half

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCSEC, RPM
 from rig.live.envelope import extremes, grouped
 from rig.live.view import colours
 from rig.live.view.about import About
@@ -18,8 +19,6 @@ from rig.live.view.lateness import Lateness
 
 Array = np.ndarray[Any, Any]
 
-ARCSEC = 180 * 3600 / math.pi  # arcsec a rad
-RPM = 30 / math.pi  # rpm a rad/s
 COLOURS = (colours.FORWARD, colours.REVERSE, colours.GOOD, colours.BRASS, colours.MARK)
 
 
@@ -43,9 +42,9 @@ GROUPS: Groups = {
         Curve("θ_ref − θ_m", colours.FORWARD, lambda b, n: np.degrees(b["theta_ref"] - b["theta_m"])),
     ),
     "/curves/error": (  # arcsec at the output      [ghorbel2001, Eq. 1]
-        Curve("θ̃", colours.GOOD, lambda b, n: (b["theta_m"] / n - b["theta_l"]) * ARCSEC),
+        Curve("θ̃", colours.GOOD, lambda b, n: (b["theta_m"] / n - b["theta_l"]) / ARCSEC),
     ),
-    "/curves/speed": (Curve("ω_m", colours.FORWARD, lambda b, n: speed(b) * RPM),),  # rpm
+    "/curves/speed": (Curve("ω_m", colours.FORWARD, lambda b, n: speed(b) / RPM),),  # rpm
     "/curves/motor": (  # N·m, motor side
         Curve("asked", colours.MUTED, lambda b, n: b["tau_ask"]),
         Curve("given", colours.FORWARD, lambda b, n: b["tau_applied"]),

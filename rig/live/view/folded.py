@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCSEC
 from rig.live.calm import Calm
 from rig.live.view import colours
 from rig.live.view.axes import HEIGHT, WIDTH, Axis, Frame
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas, Pen
-from rig.live.view.curves import ARCSEC
 from rig.live.view.drawing import Drawing, draw_frame
 from rig.live.view.turns import BINS, Turn, Turns
 
@@ -72,7 +72,7 @@ class Folded(Drawing):
 
     def add(self, block: Block, canvas: Canvas) -> None:
         """Takes the rows of a run in progress; a whole turn is drawn into its side, a part of one upon it."""
-        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
+        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) / ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         if not here.any():
             return

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCSEC
 from rig.live.calm import Calm
 from rig.live.view import colours
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
-from rig.live.view.curves import ARCSEC
 from rig.live.view.drawing import Drawing
 from rig.live.view.turns import BINS, Turn, Turns
 
@@ -43,7 +43,7 @@ class Orders(Drawing):
 
     def add(self, block: Block, canvas: Canvas) -> None:
         """Takes the rows of a run; the bars are drawn anew when a whole turn has come."""
-        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) * ARCSEC
+        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) / ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         done = self._turns.add(theta[here], error[here])
         for turn in done:

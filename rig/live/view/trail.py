@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import ARCMIN, RPM
 from rig.live.view import colours
 from rig.live.view.axes import WIDTH, Axis, Frame
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas, Pen
-from rig.live.view.curves import RPM, speed
+from rig.live.view.curves import speed
 from rig.live.view.drawing import Drawing, draw_frame
 
 Array = np.ndarray[Any, Any]
@@ -22,7 +23,6 @@ PIECE = 300  # points of a piece: what is sealed is sent once
 PIECES = 24  # the trail's length: older ones give their place to new ones
 APART = 1 / 300  # of an axis: nearer points are one on any screen
 BACK = 0.05  # of the axis that x goes back before it counts as another way: noise and stick-slip turn all the time
-ARCMIN = 180 * 60 / np.pi  # arcmin a rad
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,14 @@ WIND_UP = Plane(
     "/wind_up",
     Axis("wind-up θ_m/N − θ_l", "arcmin", -1.0, 1.0),
     Axis("shaft torque τ_l", "N·m", -5.0, 5.0),
-    lambda b, n: (twist(b, n) * ARCMIN, b["tau_l"]),
+    lambda b, n: (twist(b, n) / ARCMIN, b["tau_l"]),
     0.01,
 )
 STRIBECK = Plane(
     "/stribeck",
     Axis("motor speed ω_m", "rpm", -10.0, 10.0),
     Axis("motor torque given", "N·m", -0.1, 0.1),
-    lambda b, n: (speed(b) * RPM, torque(b)),
+    lambda b, n: (speed(b) / RPM, torque(b)),
     0.05,
 )
 
@@ -61,7 +61,7 @@ def loss(stiffness: float) -> Plane:
         "/loss",
         Axis("wind-up θ_m/N − θ_l", "arcmin", -1.0, 1.0),
         Axis(f"τ_l less {stiffness:g} N·m/rad of wind-up", "N·m", -0.5, 0.5),
-        lambda b, n: (twist(b, n) * ARCMIN, b["tau_l"] - stiffness * twist(b, n)),
+        lambda b, n: (twist(b, n) / ARCMIN, b["tau_l"] - stiffness * twist(b, n)),
         0.05,
     )
 

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from rig.core.units import TURN
+
 Array = np.ndarray[Any, Any]
 
-TURN = 2 * math.pi
 BINS = 360  # of a turn: a picture is hardly wider
 GAP = 1 / 8  # of a turn that may lie between two bins with rows, where a turn counts as seen
 HIDING = 1 / 20  # of a turn in which a peak of order 2 loses 5 % at most

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rig.core.units import TURN
 from rig.model.gear import Gear
 from rig.model.simulate.sweep import each_under_torque
-from rig.model.simulate.waveform import TURN, Array
+from rig.model.simulate.waveform import Array
 
 STEP = 0.01  # s between the times kept: a turn at 600 rpm is ten of them
 LAST = 0.2  # of the time: the speed it ends at is the mean over it

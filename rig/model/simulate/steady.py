@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rig.core.units import TURN
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.linear import effective_inertia, natural_frequency
-from rig.model.simulate.waveform import TURN, Array, NoSteadyState, Waveform
+from rig.model.simulate.waveform import Array, NoSteadyState, Waveform
 
 POINTS = 160  # a turn: five times the 15 orders of the paper's series both ways; more where the series is longer
 PER_ORDER = 10  # points for each order of a longer series

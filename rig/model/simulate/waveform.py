@@ -10,7 +10,6 @@ import numpy.typing as npt
 from rig.core.errors import Exit, HdrigError
 
 Array = npt.NDArray[np.float64]
-TURN = 2.0 * np.pi
 
 
 class NoSteadyState(HdrigError):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.outcome.result import Errors, Trace
+from rig.core.units import ARCSEC
 
 
 class Channel(NamedTuple):
@@ -31,7 +31,7 @@ class Channel(NamedTuple):
 
 
 CHANNELS = (
-    Channel("A", "theta_l", "Kinematic error", "θ̃", "arcsec", ARCSEC, 1.0),
+    Channel("A", "theta_l", "Kinematic error", "θ̃", "arcsec", 1 / ARCSEC, 1.0),
     # the motor's friction is a few hundredths of a N·m, its floor a few thousandths
     Channel("M", "tau_m", "Motor torque", "τ_m", "mN·m", 1e3, 1e3),
     Channel("L", "tau_l", "Shaft torque", "τ_l", "N·m", 1.0, 1.0),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rig.analysis.angle import ARCSEC
+from rig.core.units import ARCSEC
 from rig.model.effect import Parameter
 from rig.report.numbers import ABSENT, estimate, fixed, plain
 
@@ -25,7 +25,7 @@ def three(value: float | None) -> str:
 def said(p: Parameter) -> str:
     """Value with 95 % interval and unit."""
     if p.unit == "rad" and 0 < abs(p.value) < FINE:
-        return estimate(p.value * ARCSEC, (p.ci95[0] * ARCSEC, p.ci95[1] * ARCSEC), "arcsec")
+        return estimate(p.value / ARCSEC, (p.ci95[0] / ARCSEC, p.ci95[1] / ARCSEC), "arcsec")
     if p.unit in MILLI and 0 < max(abs(p.value), (p.ci95[1] - p.ci95[0]) / 2) < SMALL:
         return estimate(p.value * 1e3, (p.ci95[0] * 1e3, p.ci95[1] * 1e3), MILLI[p.unit])
     return estimate(p.value, p.ci95, p.unit)

@@ -11,11 +11,12 @@ import numpy.typing as npt
 
 from rig.core.channels import CHANNEL
 from rig.core.errors import UsageError
+from rig.core.units import TURN
 from rig.runfile.importing import refuse, timing
 from rig.runfile.importing.channel import QUANTITY, ChannelMap
 from rig.runfile.importing.mapping import Mapping
 from rig.runfile.importing.table import Table
-from rig.runfile.importing.units import SI, TURN, UNITS, known
+from rig.runfile.importing.units import SI, UNITS, known
 from rig.runfile.importing.unwrap import unwrap
 
 Array = npt.NDArray[Any]

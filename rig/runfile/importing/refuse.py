@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import UsageError
+from rig.core.units import TURN
 from rig.runfile.importing.channel import ChannelMap
-from rig.runfile.importing.units import TURN, UNITS
+from rig.runfile.importing.units import UNITS
 from rig.runfile.importing.unwrap import wrapped_at
 
 Array = npt.NDArray[Any]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from rig.core.errors import UsageError
+from rig.core.units import TURN
 from rig.runfile.importing.strict import nearest
 
 
@@ -17,7 +17,6 @@ class Unit(NamedTuple):
     factor: float | None
 
 
-TURN = 2 * math.pi  # rad
 SI = {"angle": "rad", "time": "s", "torque": "N·m", "speed": "rad/s"}
 
 _TABLE: dict[str, dict[str, float | None]] = {

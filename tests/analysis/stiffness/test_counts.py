@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.angle import ARCMIN, TURN
 from rig.analysis.source import motion_of
 from rig.analysis.stiffness.counts import of_width, one_count
+from rig.core.units import ARCMIN, TURN
 from tests.analysis.stiffness.plant import K, LockedGear, N
 from tests.analysis.stiffness.test_spring import figures
 from tests.analysis.synthetic import MadeRun
@@ -34,7 +34,7 @@ def sticking(apart: float) -> MadeRun:
 def test_a_motor_that_stands_half_a_count_apart_looks_like_a_loop_and_the_interval_knows() -> None:
     found = figures(analyse(sticking(0.5)))
     loss, energy = found["hysteresis_loss"], found["hysteresis_energy"]
-    assert loss.value == pytest.approx(-0.5 * COUNT * ARCMIN, rel=0.2), "arcmin, of a gear that has none"
+    assert loss.value == pytest.approx(-0.5 * COUNT / ARCMIN, rel=0.2), "arcmin, of a gear that has none"
     assert loss.ci95[0] < 0.0 < loss.ci95[1]
     assert energy.value == pytest.approx(-0.5 * COUNT * TORQUE_SPAN * 1e3, rel=0.2), "mJ"
     assert energy.ci95[0] < 0.0 < energy.ci95[1]
@@ -43,7 +43,7 @@ def test_a_motor_that_stands_half_a_count_apart_looks_like_a_loop_and_the_interv
 
 def test_more_cycles_make_that_part_no_smaller() -> None:
     few, many = (figures(analyse(LockedGear(rates=(1.0,), cycles=n).run()))["hysteresis_loss"] for n in (1, 4))
-    least = of_width(COUNT) * ARCMIN
+    least = of_width(COUNT) / ARCMIN
     for figure in (few, many):
         assert (figure.ci95[1] - figure.ci95[0]) / 2 > least
     assert (many.ci95[1] - many.ci95[0]) / 2 < 1.3 * least

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.angle import ARCMIN
+from rig.core.units import ARCMIN
 from rig.runfile.run import Run
 from tests.analysis.stiffness.test_spring import figures
 
@@ -41,6 +41,6 @@ def test_the_hysteretic_gear_has_its_loop_and_the_elastic_one_none(shared: Path,
     told = truth(shared, "open-3")
     force, B_sp = told["parameters"]["bw_k"] * told["parameters"]["bw_xy"], told["baseline"]["Bsp"]
     rate = 0.0006 if name == "lock_20_1" else 0.0017  # rad/s, these runs'
-    true = 2 * (force + B_sp * rate) / told["baseline"]["K"] * ARCMIN
+    true = 2 * (force + B_sp * rate) / told["baseline"]["K"] / ARCMIN
     assert abs(found(shared, "open-3", name)["hysteresis_loss"].value / true - 1) < 0.05
     assert abs(found(shared, "open-1", name)["hysteresis_loss"].value) < 0.02

@@ -7,9 +7,9 @@ from typing import ClassVar, final
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from rig.analysis.angle import TURN
 from rig.analysis.orders import resample, spectrum
 from rig.analysis.result import Array
+from rig.core.units import TURN
 from tests.bench.figure import AtMost, Figure, Shown, ratio
 from tests.bench.row import Row
 from tests.bench.turns import Rounds, cpu, peak_mib, take_turns

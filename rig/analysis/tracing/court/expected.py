@@ -19,9 +19,9 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, extended, f
 from rig.analysis.tracing.outcome.replay import _led, _moved, model_of
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.sliding import direction
+from rig.core.units import RPM
 from rig.model.effect import MEASURED, Array, Signals
 
-RPM: Final = np.pi / 30
 TWICE: Final = 2  # every run is repeated
 SETTING_UP: Final = 120.0  # s, to hang a weight or lock the output and check it
 

@@ -12,10 +12,10 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.thresholds import LINE
+from rig.core.units import TURN
 from rig.model.effect import Array, Reach
 from rig.model.effects.encoder_interpolation_error import EncoderInterpolationError
 
-TURN: Final = 2.0 * np.pi
 SLOW: Final = 2.0  # times the slowest run: faster ones sample the lines too seldom to find them
 PEAKS: Final = 2  # of each encoder: the lines and their second wave
 FEWEST: Final = 2.0  # periods of the fewest lines that a stroke must hold

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit, prior, solve
 from rig.analysis.tracing.fit.refine import nudged
+from rig.core.units import ARCSEC
 from rig.model.effect import Array, Fit, Parameter, parameter
 
 PLAIN = {
@@ -75,8 +75,8 @@ def _of_the_series(s: Solution, damping: float, stiffness: float) -> float:
 def _order(s: Solution, c: Array, n: int) -> Parameter:
     a, b = s.value(f"a{n}"), s.value(f"b{n}")
     size = max(float(np.hypot(a, b)), 1e-15)
-    along = (_unit(c, f"a{n}") * a + _unit(c, f"b{n}") * b) / size * ARCSEC
-    return _of(f"theta_p_order_{n}", size * ARCSEC, along, c, "arcsec")
+    along = (_unit(c, f"a{n}") * a + _unit(c, f"b{n}") * b) / size / ARCSEC
+    return _of(f"theta_p_order_{n}", size / ARCSEC, along, c, "arcsec")
 
 
 def _unit(c: Array, name: str) -> Array:

@@ -25,9 +25,9 @@ from rig.analysis.tracing.floor.repeats import (
     strokes,
 )
 from rig.analysis.tracing.thresholds import CHANCE, FLOOR_LEAST, GAIN, LENIENT, MISSING, TURNED_BACK, ZERO
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN = 2 * np.pi
 ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 FEW = 25  # rows to compare: fewer have no spread worth the name

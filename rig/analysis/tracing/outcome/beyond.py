@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.outcome.honest import in_words, left_open
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.thresholds import ALONE, MISSING
+from rig.core.units import RPM
 from rig.model.effect import Array, Parameter
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
 
 def reach(runs: Sequence[Recording]) -> Range:
     """Of some runs; (nan, nan) of speeds where none turns freely, of torques where none was measured."""
-    speeds = [run.turning * RPM for run in runs if not run.locked]
+    speeds = [run.turning / RPM for run in runs if not run.locked]
     ends = np.array([t for run in runs if (t := _torques(run)) is not None])
     torque = (float(ends[:, 0].min()), float(ends[:, 1].max())) if ends.size else (np.nan, np.nan)
     return Range((min(speeds), max(speeds)) if speeds else (np.nan, np.nan), torque)
@@ -107,7 +107,7 @@ def _torques(run: Recording) -> tuple[float, float] | None:
 
 def _is_outside(run: Recording, covered: Range) -> bool:
     slow, fast = covered.speed
-    if not run.locked and not slow / FURTHER <= run.turning * RPM <= fast * FURTHER:  # where none is known too
+    if not run.locked and not slow / FURTHER <= run.turning / RPM <= fast * FURTHER:  # where none is known too
         return True
     (low, high), torques = covered.torque, _torques(run)
     if torques is None or not np.isfinite(low):

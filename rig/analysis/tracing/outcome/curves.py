@@ -7,23 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
+from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-TURN = 2 * np.pi
 SHOWN = 3000  # points of a run: more than a page is wide
 
 
 def curves(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
     """See `Trace`."""
     out: dict[str, Array] = {}
-    one = dict.fromkeys(p.court.floors, 1.0 / ARCSEC)
+    one = dict.fromkeys(p.court.floors, ARCSEC)
     pair = [(name, rest(p.eq, e, one, "A", beside=False)) for name, e in (("before", before), ("after", after))]
     orders = np.arange(0.02, 40.0, 0.02)
     for name, r in pair:
@@ -46,12 +45,12 @@ def _runs(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) 
     for key in (k for k in before if k[1] == "A"):
         run, r = p.eq.runs[key[0]], p.eq.rows[key]
         thin = slice(None, None, max(1, r.y.size // SHOWN))
-        measured = (r.y - r.y.mean()) * ARCSEC
+        measured = (r.y - r.y.mean()) / ARCSEC
         torque = np.concatenate([q.torque[run.smoother.centres(q.t.size)] for q in run.pieces])[r.keep]
         name = f"loop.{run.name}" if run.locked else f"run.{run.name}"
         first = {"windup_arcsec": measured, "torque_Nm": torque} if run.locked else {}
         shown = {"theta_m_turns": r.theta_m / TURN, "measured_arcsec": measured, **first}
-        shown |= {"before_arcsec": measured - before[key] * ARCSEC, "after_arcsec": measured - after[key] * ARCSEC}
+        shown |= {"before_arcsec": measured - before[key] / ARCSEC, "after_arcsec": measured - after[key] / ARCSEC}
         out |= {f"{name}.{column}": values[thin] for column, values in shown.items()}
     return out
 
@@ -62,9 +61,7 @@ def _means(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
     for channel in "AML":
         keys = [k for k in before if k[1] == channel]
         pieces = [p.eq.runs[i].pieces for i, _ in keys]
-        out[f"runs.{channel}.speed_rpm"] = (
-            np.array([np.mean([q.omega_m.mean() for q in r]) for r in pieces]) * 30 / np.pi
-        )
+        out[f"runs.{channel}.speed_rpm"] = np.array([np.mean([q.omega_m.mean() for q in r]) for r in pieces]) / RPM
         out[f"runs.{channel}.load_Nm"] = np.array([-r[0].tau_ext[0] for r in pieces])
         out[f"runs.{channel}.time_s"] = np.array([r[0].t[0] for r in pieces])
         out[f"runs.{channel}.before_over_floor"] = np.array([p.court.ratio(before, [k]) for k in keys])

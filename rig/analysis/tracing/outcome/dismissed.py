@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.outcome.result import CHANNELS, Candidate, Errors, Verdict
 from rig.analysis.tracing.thresholds import EXPLAINED
+from rig.core.units import ARCSEC
 
 
 def dismissed(found: Sequence[Candidate], verdict: Verdict, pooled: Errors) -> tuple[Candidate, ...]:
@@ -18,7 +18,7 @@ def dismissed(found: Sequence[Candidate], verdict: Verdict, pooled: Errors) -> t
 
 def _with_the_rest(c: Candidate, pooled: Errors) -> Candidate:
     floors = {
-        "theta_l": pooled.floor_kinematic_error_arcsec and pooled.floor_kinematic_error_arcsec / ARCSEC,
+        "theta_l": pooled.floor_kinematic_error_arcsec and pooled.floor_kinematic_error_arcsec * ARCSEC,
         "tau_m": pooled.floor_tau_m,
         "tau_l": pooled.floor_tau_l,
     }

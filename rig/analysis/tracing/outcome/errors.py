@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.court.judge import Court
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.outcome.result import Before, Errors
+from rig.core.units import ARCSEC
 from rig.model.effect import Array
 
-UNITS = {"A": ARCSEC, "M": 1.0, "L": 1.0}
+UNITS = {"A": 1 / ARCSEC, "M": 1.0, "L": 1.0}
 OF_A_SENSOR = {"A": "A", "M": "MR", "L": "L"}  # R is the motor torque too
 
 

@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from rig.analysis.angle import ARCSEC
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, rung, shown
 from rig.analysis.tracing.outcome.result import Before
 from rig.analysis.tracing.runs.recording import Recording
+from rig.core.units import ARCSEC, TURN
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-TURN: Final = 2 * np.pi
 CLOSE_UP: Final = 2.0  # motor turns
 BACK: Final = 0.01  # motor turns: more than jitter
 FEWEST: Final = 200  # rows after the start is forgotten
@@ -82,7 +81,7 @@ def _simulated(
     here = keep[rows.keep.nonzero()[0][rows.keep.nonzero()[0] < count]]  # of the rows that are compared at all
     measured, theta = rows.y[: here.size][here], rows.theta_m[: here.size][here]
     columns = [m[keep] for m in made if m is not None]
-    before, after, seen = (ARCSEC * _own_out(p, key, x, keep, here) for x in (*columns, measured))
+    before, after, seen = (_own_out(p, key, x, keep, here) / ARCSEC for x in (*columns, measured))
     by_load = _by_load(p, key, left[0], models[0], keep), _by_load(p, key, left[1], models[1], keep)
     return Free(theta, seen, before, after + _vibration(p, run, keep, seen - after), by_load)
 
@@ -97,7 +96,7 @@ def _by_load(p: Prepared, key: Key, left: Mapping[Key, Array], model: Model, kee
     torque = np.zeros(there.size)
     torque[there] = left[of_load]
     made = rung(torque[: keep.size], smoother.dt * smoother.step, model)
-    return ARCSEC * float(np.std(made[keep]))
+    return float(np.std(made[keep])) / ARCSEC
 
 
 def _vibration(p: Prepared, run: Recording, keep: Array, left: Array) -> Array:

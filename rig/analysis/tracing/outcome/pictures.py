@@ -15,12 +15,12 @@ from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.analysis.tracing.rest.shares import shares
+from rig.core.units import TURN
 from rig.model.effect import Array
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.trace import Prepared
 
-TURN: Final = 2 * np.pi
 SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
 QUARTERS: Final = 4  # of a run: what is drawn again and again, many correlation times long

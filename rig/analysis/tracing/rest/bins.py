@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN: Final = 2 * np.pi
 BINS: Final = 24  # of a turn, 15°: finer than the paper's strongest orders, with rows enough in each
 LEVELS: Final = 12  # of a range
 FEWEST: Final = 30  # rows of a bin: an RMS of fewer scatters by more than an eighth

@@ -8,9 +8,9 @@ import numpy as np
 
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned, slid, summed
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN = 2 * np.pi
 BINS = 60  # of a turn: 6°, a few teeth
 LEVELS = 24  # of a range
 FINER = 4  # times as many: a tooth and a half; 2 % of a range

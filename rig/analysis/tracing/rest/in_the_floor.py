@@ -23,9 +23,9 @@ from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
 from rig.analysis.tracing.rest.readings import Reading, in_columns, nothing, powers, waves
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.thresholds import FORETOLD, WANDERS
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN: Final = 2 * np.pi
 TWICE: Final = 2.0  # periods at least within the campaign: less is a trend, as gains and zeros have it
 FINE: Final = 8  # frequencies tried for every whole wave more in the campaign
 MOST: Final = 20_000  # of them: eight hours; each costs a fit

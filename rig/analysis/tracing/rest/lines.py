@@ -11,9 +11,9 @@ from rig.analysis.tracing.rest.coordinates import both, turned
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.analysis.tracing.rest.readings import in_bins, in_columns, share, waves
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN = 2 * np.pi
 LOWEST = 0.8  # Hz of a line; a slow run's motor turns every six seconds
 FINEST = {"motor_angle": (0.001, 0.02), "load_angle": (0.02, 1.0)}  # orders apart: half a cycle over all the turns
 SPAN = {

@@ -16,9 +16,9 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.readings import waves
 from rig.analysis.tracing.thresholds import LOCKS_DIFFER, PLAIN_ENOUGH
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN: Final = 2 * np.pi
 SLOWEST: Final = 3.0  # periods in a lock test at least: less is a drift
 FASTEST: Final = 0.8  # Hz
 FINE: Final = 4  # frequencies tried for every whole wave more in all lock tests together

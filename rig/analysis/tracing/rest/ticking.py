@@ -19,9 +19,9 @@ from rig.analysis.tracing.floor.vibration import sharpened
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.readings import waves
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
+from rig.core.units import TURN
 from rig.model.effect import Array
 
-TURN: Final = 2 * np.pi
 TIMES: Final = 6.0  # periods a run must hold to tell a line from drift
 FASTEST: Final = 0.8  # of half the row rate: there the low-pass leaves nothing
 GRID: Final = 0.01  # Hz: what the longest runs resolve

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.runs.holdout import grouped
 from rig.analysis.tracing.runs.recording import Recording
+from rig.core.units import RPM
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
 ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
@@ -91,7 +92,7 @@ def highest_order(runs: Sequence[Recording]) -> int:
 def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     if "t" not in has or not one_speed(runs):
         return []
-    speeds = [run.turning * 30 / np.pi for run in runs if not run.locked]
+    speeds = [run.turning / RPM for run in runs if not run.locked]
     return [f"All runs turn at about {np.mean(speeds):.3g} rpm: constant friction, damping, falling friction and drag "
             "cannot be told apart, nor a real kinematic error from an encoder's."]  # fmt: skip
 

@@ -13,13 +13,13 @@ from rig.analysis.tracing.floor.repeats import alike, strokes
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
+from rig.core.units import TURN
 from rig.model.effect import Signals
 
 LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
 KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
 SPARED = 3  # one stretch of so many is held out
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
-TURN = 2 * np.pi
 HELD_PART = "part held out"
 TOLD = 8  # names of runs in a sentence
 TOO_SHORT = "no run is long enough to hold a part of it out: at least two turns or strokes of the motor are needed"

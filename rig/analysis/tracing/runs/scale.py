@@ -15,12 +15,13 @@ from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
 from rig.core.errors import UsageError
+from rig.core.units import DEG
 
 SURELY: Final = 5.0  # standard deviations above zero
 FAR: Final = 30.0  # times the declared value, or a part of it: worth a note
 NEAR: Final = 1.4  # how far a factor may be from that of a unit: what is declared is a design value
 UNITS: Final[Mapping[float, str]] = {
-    np.pi / 180: "angles seem to be in degrees, expected rad",
+    DEG: "angles seem to be in degrees, expected rad",
     1e3: "torques seem to be in mN·m, expected N·m",
     1e-3: "torques seem to be in kN·m, expected N·m",
 }

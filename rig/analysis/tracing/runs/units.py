@@ -12,9 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.angle import RPM
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
+from rig.core.units import RPM
 
 DEGREES: Final = 180 / np.pi
 ALONG: Final = 0.05  # how far θ_l may be from θ_m/N over any run: kinematic error and wind-up take a hundredth of it
@@ -92,7 +92,7 @@ def _degrees(run: Recording) -> str | None:
         )
     if "t" not in run.has:
         return None
-    turning = run.turning * RPM
+    turning = run.turning / RPM
     own = abs(run.ratio / DEGREES - 1) > UNLIKE
     if own and run.speed_rpm and abs(turning / run.speed_rpm / DEGREES - 1) < SPEED:
         return (
