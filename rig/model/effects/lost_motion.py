@@ -7,7 +7,10 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic, parameter
+from rig.model.waves import wave
+
+EVEN, BY_ANGLE = 0.0, 1.0  # of the last shape parameter: the same all round, or wider at one angle of the motor
 
 
 class LostMotion(Effect):
@@ -15,33 +18,41 @@ class LostMotion(Effect):
     side K holds as before
 
     In the gap the damper still drags, at 300 rpm a tenth of a newton metre: by T itself the crossing would come late. ε
-    only makes the jump finite. A law with a longer tail makes the gap 5 to 10 % too wide.
+    only makes the jump finite. A law with a longer tail makes the gap 5 to 10 % too wide. The slop of an Oldham
+    coupling may be wider at one angle: b gains b_1·cos(θ_m + φ).
     """
 
     name: ClassVar[str] = "lost_motion"
     in_short: ClassVar[str] = "dead zone at zero torque (Oldham backlash)"
     glosses: ClassVar[Mapping[str, str]] = {
         "gap": "2b, the whole dead zone at the output",
+        "gap_by_angle_amplitude": "2b_1, by how much it is wider at one angle of the motor",
+        "gap_by_angle_phase": "φ of that angle, cos(θ_m + φ)",
     }
     source: ClassVar[str] = "harmonicdrive"
     backbone: ClassVar[bool] = True
-    shape_names: ClassVar[tuple[str, ...]] = ("epsilon",)
-    loose: ClassVar[tuple[bool, ...]] = (True,)
+    shape_names: ClassVar[tuple[str, ...]] = ("epsilon", "kind")
+    loose: ClassVar[tuple[bool, ...]] = (True, False)
     WIDTHS: Final = (0.08, 0.15, 0.4)  # N·m: noise of a torque sensor to the least that counts as soft wind-up
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Widths well inside the torque reached."""
-        return tuple((e,) for e in self.WIDTHS if e < 0.1 * reach.torque)
+        widths = [e for e in self.WIDTHS if e < 0.1 * reach.torque]
+        return (*((e, EVEN) for e in widths), *((e, BY_ANGLE) for e in widths[1:2]))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column."""
-        return {Port.WIND_UP: np.tanh(signals.spring_torque / shape[0])[:, None]}
+        """One column; three where it is wider at one angle."""
+        side = np.tanh(signals.spring_torque / shape[0])
+        if shape[1] == EVEN:
+            return {Port.WIND_UP: side[:, None]}
+        return {Port.WIND_UP: np.concatenate([side[:, None], wave(signals.theta_m, side)], 1)}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The whole gap, 2b."""
         gap = np.zeros(fit.covariance.shape[0])
         gap[0] = 2.0
-        return (parameter("gap", 2.0 * fit.coefficients[0], fit.half_width(gap), "rad"),)
+        whole = parameter("gap", 2.0 * fit.coefficients[0], fit.half_width(gap), "rad")
+        return (whole, *harmonic(fit, "gap_by_angle", "rad", 1, 2.0)) if fit.shape[1] == BY_ANGLE else (whole,)
 
     def plausible(self, fit: Fit) -> bool:
         """A gap is open."""

@@ -8,16 +8,19 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import presliding
+from rig.model.memory import play, presliding
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter: whose friction
+BRISTLE, ELEMENTS = 0.0, 1.0  # of the last: one bristle, or elements side by side that slip one after the other
 
 
 class PreslidingFriction(Effect):
     """Instead of jumping, τ_c·sgn ω_m builds up with the way: τ_c·z, dz/dθ_m = (1 − z·sgn ω_m)/x_0; or the load's
     friction τ_cl does, with θ_l      [dahl1968]
 
-    The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal.
+    The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal. Elements that
+    slip one after the other, τ_i after w_i, take any curve that the way from rest makes, and the same at twice the size
+    after a reversal      [iwan1966]
     """
 
     name: ClassVar[str] = "presliding_friction"
@@ -28,15 +31,17 @@ class PreslidingFriction(Effect):
         "x_0": "angle over which it builds up",
     }
     source: ClassVar[str] = "dahl1968"
-    shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0")
-    loose: ClassVar[tuple[bool, ...]] = (False, True)
+    shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0", "law")
+    loose: ClassVar[tuple[bool, ...]] = (False, True, False)
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
+    SPREAD: Final = (0.2, 0.6, 1.8, 5.4)  # of x_0: after which ways the elements slip
     TURNS: Final = 0.04  # rad/s of the motor: a run that turns faster when it begins has slid before
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Ways longer than the motor, and the load with it, goes between two samples of the slowest run."""
         ways = [x for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate]
-        return (*((MOTOR, x) for x in ways), *((LOAD, x / reach.ratio) for x in ways))
+        bristles = (*((MOTOR, x, BRISTLE) for x in ways), *((LOAD, x / reach.ratio, BRISTLE) for x in ways))
+        return (*bristles, *((MOTOR, x, ELEMENTS) for x in ways[::2]))
 
     def moved_by_noise(self) -> bool:
         """The friction of a motor that rests builds up with the way its encoder seems to go."""
@@ -47,23 +52,48 @@ class PreslidingFriction(Effect):
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column."""
-        side, x_0 = shape
+        """One column, or one an element."""
+        side, x_0, law = shape
         first = signals.omega_m[0] if signals.t.size else 0.0
         start = float(np.sign(first)) if abs(first) > self.TURNS else 0.0
         if side == LOAD:
             return {Port.LOAD_TORQUE: (presliding(signals.theta_l, x_0, start) - signals.way)[:, None]}
+        if law == ELEMENTS:
+            states = [_element(signals.theta_m, x_0 * share, start) for share in self.SPREAD]
+            return {Port.MOTOR_TORQUE: np.stack(states, 1) - np.sign(signals.omega_m)[:, None]}
         return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - np.sign(signals.omega_m))[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The friction that builds up, and over which way."""
-        torque, way = np.eye(3)[[0, 2], : fit.covariance.shape[0]]
+        if fit.shape[2] == ELEMENTS:
+            return self._of_elements(fit)
+        torque, way = np.eye(4)[[0, 2], : fit.covariance.shape[0]]
         whose = "_l" if fit.shape[0] == LOAD else ""
         return (
             parameter(f"tau_presliding{whose}", fit.coefficients[0], fit.half_width(torque), "N·m"),
             parameter("x_0", fit.shape[1], fit.half_width(way), "rad"),
         )
 
+    def _of_elements(self, fit: Fit) -> tuple[Parameter, ...]:
+        """All of it, and the way after which an element slips, on the average."""
+        share, c = np.array(self.SPREAD), fit.coefficients
+        total = float(c.sum()) or 1e-300
+        mean = float(share @ c) / total
+        torque, way = np.zeros((2, fit.covariance.shape[0]))
+        torque[: c.size] = 1.0
+        way[: c.size] = fit.shape[1] * (share - mean) / total
+        way[c.size + 1] = mean
+        return (
+            parameter("tau_presliding", total, fit.half_width(torque), "N·m"),
+            parameter("x_0", fit.shape[1] * mean, fit.half_width(way), "rad"),
+        )
+
     def plausible(self, fit: Fit) -> bool:
         """Friction opposes."""
-        return bool(fit.coefficients[0] > 0)
+        return bool(fit.coefficients.sum() > 0)
+
+
+def _element(theta: Array, way: float, start: float) -> Array:
+    """From −1 to 1 (n,): a spring that slips after `way` rad, `start` at first."""
+    gone = theta - theta[:1] + start * way
+    return np.asarray((gone - play(gone, way)) / way)

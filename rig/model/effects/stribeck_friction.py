@@ -12,19 +12,21 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 
 class StribeckFriction(Effect):
-    """τ_f gains (τ_s − τ_c)·exp(−|ω_m/ω_s|^δ)·sgn ω_m      [armstrong1994]"""
+    """τ_f gains (τ_s − τ_c)·exp(−|ω_m/ω_s|^δ)·sgn ω_m, or a τ_s − τ_c of its own each way      [armstrong1994]"""
 
     name: ClassVar[str] = "stribeck_friction"
     in_short: ClassVar[str] = "friction falls with speed near rest"
     glosses: ClassVar[Mapping[str, str]] = {
         "tau_s_minus_tau_c": "τ_s − τ_c, friction at rest beyond the constant one",
+        "tau_s_minus_tau_c_forward": "the same, when the motor turns forward",
+        "tau_s_minus_tau_c_backward": "the same, when the motor turns backward",
         "omega_s": "ω_s, Stribeck speed of the motor, over which that falls off",
         "delta": "δ, exponent of how it falls with speed",
     }
     source: ClassVar[str] = "armstrong1994"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta")
-    loose: ClassVar[tuple[bool, ...]] = (True, True)
+    shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta", "by_way")
+    loose: ClassVar[tuple[bool, ...]] = (True, True, False)
     usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"delta": (1.0, 2.0)})
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
     CREEP: Final = 0.2  # of the fastest speed
@@ -32,26 +34,31 @@ class StribeckFriction(Effect):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Speeds between half the slowest and the fastest."""
-        return tuple((v, d) for v in self.SPEEDS if 0.3 * reach.slowest < v < reach.fastest for d in self.EXPONENTS)
+        speeds = [v for v in self.SPEEDS if 0.3 * reach.slowest < v < reach.fastest]
+        both = tuple((v, d, 0.0) for v in speeds for d in self.EXPONENTS)
+        return (*both, *((v, self.EXPONENTS[0], 1.0) for v in speeds[::2]))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column."""
-        omega_s, delta = shape
-        x = np.abs(signals.omega_m) / omega_s
-        return {Port.MOTOR_TORQUE: (signals.way * np.exp(-(x**delta)))[:, None]}
+        """One column, or two: forward, backward."""
+        omega_s, delta, by_way = shape
+        falls = signals.way * np.exp(-((np.abs(signals.omega_m) / omega_s) ** delta))
+        forward = signals.way > 0
+        return {Port.MOTOR_TORQUE: np.stack([falls * forward, falls * ~forward], 1) if by_way else falls[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """τ_s − τ_c, ω_s and δ."""
-        excess, speed, delta = np.eye(3)[:, : fit.covariance.shape[0]]
+        """τ_s − τ_c, one or two, ω_s and δ."""
+        names = ("tau_s_minus_tau_c_forward", "tau_s_minus_tau_c_backward") if fit.shape[2] else ("tau_s_minus_tau_c",)
+        unit, k = np.eye(fit.covariance.shape[0]), len(names)
+        excess = (parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "N·m") for i, name in enumerate(names))
         return (
-            parameter("tau_s_minus_tau_c", fit.coefficients[0], fit.half_width(excess), "N·m"),
-            parameter("omega_s", fit.shape[0], fit.half_width(speed), "rad/s"),
-            parameter("delta", fit.shape[1], fit.half_width(delta), "1"),
+            *excess,
+            parameter("omega_s", fit.shape[0], fit.half_width(unit[k]), "rad/s"),
+            parameter("delta", fit.shape[1], fit.half_width(unit[k + 1]), "1"),
         )
 
     def plausible(self, fit: Fit) -> bool:
-        """Friction at rest is the larger one."""
-        return bool(fit.coefficients[0] > 0)
+        """Friction at rest is the larger one, whichever way the motor turns."""
+        return bool(np.all(fit.coefficients > 0))
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Also where the fall lies in a gap between the speeds of the runs, and no run tells how steep it is: that
@@ -63,5 +70,5 @@ class StribeckFriction(Effect):
         return shape[0] > self.SPEEDS[-1]
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
-        """Of ω_s, and of δ as it is reported."""
-        return (0.3 * self.SPEEDS[0], 2.0 * self.SPEEDS[-1]), (0.5, 3.0)
+        """Of ω_s, of δ as it is reported; one size or two is chosen."""
+        return (0.3 * self.SPEEDS[0], 2.0 * self.SPEEDS[-1]), (0.5, 3.0), (0.0, 1.0)

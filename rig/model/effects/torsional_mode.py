@@ -15,6 +15,7 @@ LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia h
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
 SOFT = 5.0  # or a coupling with its own resonance among the frequencies that are compared
 HUB = 4.0  # or an inertia between the gear and the spring of the torque sensor
+DRIVEN = 6.0  # the inertia on the load once more, its swing told by the torque
 SMALL = 1e-6  # rad: a twist by less has the tangent's slopes
 
 
@@ -41,6 +42,10 @@ class TorsionalMode(Effect):
     that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever
     is that of the other angle. Of a mode above what the equations are compared at that is all there is to see. A soft
     one swings: ψ = H·(τ/k + ω̇_m/ω²), J_2 = k/ω² being the wave generator's inertia, and the motor feels −J_2·ψ̈.
+
+    Where the load itself hardly moves because J_2 swings against it, ω̇ is encoder noise, and that is what H is largest
+    at. The torque that drives both tells the same: J_l·ω̇ = T + (1/ω² − 1/ω_p²)·s²·H_p·T, H_p being the two inertias
+    against each other, ω_p² = ω²·J_l/(J_l − J_2), J_l both of them.
 
     A hub before the torque sensor is turned by the gear and not by what the sensor reads: the gear carries
     J_2·(ω̇_l + T̈/k) more, k being the sensor's spring.
@@ -70,13 +75,14 @@ class TorsionalMode(Effect):
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
         modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR) for f in frequencies)
+        driven = tuple((DRIVEN, float(f), self.ZETA, 0.0) for f in frequencies[::2])
         soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
         top = float(max(reach.band, self.LOWEST))
-        return (*modes, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
+        return (*modes, *driven, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((LOAD, SOFT), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4), (0.0, self.SOFTEST))
+        return ((LOAD, DRIVEN), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4), (0.0, self.SOFTEST))
 
     def expands(self, shape: Shape) -> bool:
         """About the twist of a coupling."""
@@ -88,7 +94,7 @@ class TorsionalMode(Effect):
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
-        return shape[0] in (LOAD, MOTOR) and shape[1] > 1.15 * reach.band
+        return shape[0] in (LOAD, MOTOR, DRIVEN) and shape[1] > 1.15 * reach.band
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
@@ -102,10 +108,13 @@ class TorsionalMode(Effect):
             return self._stiff(signals, side, about)
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
-            alpha = np.ascontiguousarray(whole.alpha_m if side == MOTOR else whole.alpha_l)
-            # in slow runs there is nothing but encoder noise at such frequencies, which the mode would only amplify
-            alpha = np.where(np.abs(whole.omega_m) > self.EXCITED, alpha, 0.0)
-            return (resonated(alpha, whole.dt, 2.0 * np.pi * frequency, zeta),)
+            # in slow runs there is nothing but noise at such frequencies, which the mode would only amplify
+            turns, omega = np.abs(whole.omega_m) > self.EXCITED, 2.0 * np.pi * frequency
+            if side == DRIVEN:
+                torque = np.where(turns, np.nan_to_num(whole.tau_l), 0.0)
+                return (-resonance(torque, whole.dt, omega, zeta)[1],)
+            alpha = np.where(turns, whole.alpha_m if side == MOTOR else whole.alpha_l, 0.0)
+            return (resonated(alpha, whole.dt, omega, zeta),)
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: signals.states(swinging)[0][:, None]}
@@ -164,6 +173,8 @@ class TorsionalMode(Effect):
         by_frequency, by_zeta = by[fit.coefficients.size + 1], by[fit.coefficients.size + 2]
         if fit.shape[0] == HUB:
             return self._of_hub(fit, by)
+        if fit.shape[0] == DRIVEN:
+            return self._driven(fit, by[0], by_frequency, by_zeta)
         mode = (
             parameter("frequency", fit.shape[1], fit.half_width(by_frequency), "Hz"),
             parameter("zeta", fit.shape[2], fit.half_width(by_zeta), "1"),
@@ -172,6 +183,21 @@ class TorsionalMode(Effect):
             return (parameter("J_2", fit.coefficients[0], fit.half_width(by[0]), "kg·m²"), *mode)
         compliance = parameter("coupling_compliance", fit.coefficients[0], fit.half_width(by[0]), "rad/(N·m)")
         return (compliance, *mode) if fit.shape[0] == SOFT else (compliance,)
+
+    def _driven(self, fit: Fit, by: Array, by_frequency: Array, by_zeta: Array) -> tuple[Parameter, ...]:
+        """Of J_2 on its own spring, from how both inertias swing against each other."""
+        both, c = 2.0 * np.pi * fit.shape[1], max(fit.coefficients[0], 0.0)
+        x = c * both**2  # ω_p²/ω² − 1
+        slowed = 1.0 / np.sqrt(1.0 + x)  # ω/ω_p
+        by_x = both**2 * by + 2.0 * x / fit.shape[1] * by_frequency
+        frequency, zeta = fit.shape[1] * slowed, fit.shape[2] * slowed
+        return (
+            parameter("J_2", fit.known.J_l * x * slowed**2, fit.half_width(fit.known.J_l * slowed**4 * by_x), "kg·m²"),
+            parameter(
+                "frequency", frequency, fit.half_width(slowed * by_frequency - frequency / 2 * slowed**2 * by_x), "Hz"
+            ),
+            parameter("zeta", zeta, fit.half_width(slowed * by_zeta - zeta / 2 * slowed**2 * by_x), "1"),
+        )
 
     def _of_hub(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
         inertia, square = fit.coefficients[:2]

@@ -281,10 +281,10 @@ def test_a_lobe_once_a_turn_of_the_output_has_overtones_smaller_than_itself(effe
 def test_friction_that_builds_up_is_constant_friction_where_the_run_began_in_motion(side: float) -> None:
     """A run that begins in motion has slid before; one that begins at rest has all its friction to build up."""
     moving, effect = motion(n=200), PreslidingFriction()
-    (column,) = effect.columns(moving, (side, 0.2)).values()
+    (column,) = effect.columns(moving, (side, 0.2, 0.0)).values()
     np.testing.assert_array_equal(column, 0.0)
     resting = dataclasses.replace(moving, omega_m=moving.omega_m * np.linspace(0.0, 1.0, 200))
-    (column,) = effect.columns(resting, (side, 0.2)).values()
+    (column,) = effect.columns(resting, (side, 0.2, 0.0)).values()
     assert column[1:].max() < 0
     assert column[1, 0] < -0.5
 

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.model.effects.stribeck_friction import StribeckFriction
 
 WITHOUT, EFFECT = 1e6, 2e4  # gain of the model without it, and what the effect adds to that
-STRIBECK = Term(StribeckFriction(), (1.0, 1.0))
+STRIBECK = Term(StribeckFriction(), (1.0, 1.0, 0.0))
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop, EvenSpring
+from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop, EvenSpring, SensorWaves
+from rig.analysis.tracing.fit.footprint import footprint
 from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.analysis.tracing.trace import trace
-from rig.model.effect import Port
+from rig.model.effect import MEASURED, Port
 from rig.model.effects import LIBRARY
 from rig.model.effects.angle_dependent_stiffness import MOTOR, AngleDependentStiffness
+from rig.model.effects.cogging_torque import CoggingTorque
 from rig.model.references import REFERENCES
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
@@ -26,6 +29,14 @@ def test_a_shadow_bears_no_name_of_the_library_and_casts_on_one_that_does() -> N
         assert name not in LIBRARY
         assert shadow.of <= set(LIBRARY)
         assert shadow.effect.source in REFERENCES
+
+
+def test_a_sensor_that_feels_the_wave_generator_leaves_the_motor_an_nth_as_if_it_cogged() -> None:
+    s, smooth = motion(), Smoother(36.0, motion().dt, 1)
+    shown = footprint(SensorWaves().columns(s, ()), s, smooth, MEASURED)
+    cogging = footprint(CoggingTorque().columns(s, (2.0,)), s, smooth, MEASURED)["M"]
+    np.testing.assert_allclose(shown["M"][:, 2:4], -cogging / N, atol=1e-12)
+    np.testing.assert_allclose(shown["L"][:, 2:4], cogging, atol=1e-12)
 
 
 def test_creep_follows_a_step_of_torque_as_slowly_as_its_lags() -> None:

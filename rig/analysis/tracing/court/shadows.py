@@ -15,6 +15,7 @@ from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
 from rig.model.memory import follower, play
+from rig.model.waves import wave
 
 
 class Creep(Effect):
@@ -161,6 +162,30 @@ class SensorLoop(Effect):
         return ()
 
 
+class SensorWaves(Effect):
+    """The torque sensor feels the wave generator: it reads waves of the motor's angle too much      [taghirad1999]
+
+    The motor's torque has an Nth of them left over, as if it cogged; the load's inertia knows of none.
+    """
+
+    name: ClassVar[str] = "sensor_waves"
+    in_short: ClassVar[str] = "the torque sensor feels the wave generator"
+    source: ClassVar[str] = "taghirad1999"
+    ORDERS: Final = (1, 2, 4)  # of the motor: an eccentricity, the two lobes and their square
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is such a sensor."""
+        return ((),) if "tau_l" in reach.has else ()
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order in the reading."""
+        return {Port.READS_TAU_L: np.concatenate([wave(k * signals.theta_m) for k in self.ORDERS], 1)}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
 @dataclass(frozen=True)
 class Shadow:
     """A law, what it is taken for, the coordinate it lives in, and whether it is searched for by itself as well: not
@@ -194,6 +219,14 @@ SHADOWS: Final = {
         "memory",
         "The torque that is read stays behind the torque there is by more the longer it has swung, as a sensor with "
         "hysteresis does; a loop in the spring explains less, and no effect of the library explains it.",
+        searched=False,
+    ),
+    "sensor_waves": Shadow(
+        SensorWaves(),
+        frozenset({"cogging_torque"}),
+        "motor_angle",
+        "The torque sensor reads waves of the motor's angle that no inertia of the load goes with, as gauges do that "
+        "feel the wave generator; cogging of the motor explains less, and no effect of the library explains it.",
         searched=False,
     ),
     "even_spring": Shadow(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rig.analysis.tracing.court.judge import Worth, unseen
+from rig.analysis.tracing.court.one_sided import COGGING, one_sided
 from rig.analysis.tracing.court.own_work import own_work
 from rig.analysis.tracing.court.shadows import cast
 from rig.analysis.tracing.court.suspects import candidates
@@ -54,7 +55,8 @@ def report(
     own = own_work(p, s)
     shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
     work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
-    weighed = tuple(sorted(shares, key=lambda name: -work[name]))
+    one_way = one_sided(fitted)
+    weighed = tuple(sorted((n for n in shares if not (one_way and n == COGGING)), key=lambda name: -work[name]))
     fitted_runs = [p.eq.runs[i] for i in p.split.fitted]
     baseline = honest(parameters.baseline(empty), fitted_runs)
     ruling = decide(p, s, weighed, worths, before, after, floors, found)
@@ -102,7 +104,7 @@ def report(
         before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
-        notes=(*meant, *(r.sentence() for r in ripple), *p.campaign.notes),
+        notes=(*meant, *([one_way] if one_way else []), *(r.sentence() for r in ripple), *p.campaign.notes),
         ripple=ripple,
         curve=curve,
         read=len(p.campaign.runs),

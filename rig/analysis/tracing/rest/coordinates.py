@@ -119,6 +119,7 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
         lambda r: both(turned(r.at["load_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
     ),
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "load_angle": (lambda r: both(turned(r.at["load_angle"], 2 * BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
         lambda r: _steps(np.abs(r.at["speed"])),
         lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),

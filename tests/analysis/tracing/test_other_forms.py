@@ -1,0 +1,101 @@
+"""Forms that effects of the library take beside their textbook ones, against the same thing worked out another way."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rig.model.effect import Array, Fit, Port
+from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
+from rig.model.effects.presliding_friction import ELEMENTS, MOTOR, PreslidingFriction
+from rig.model.effects.stribeck_friction import StribeckFriction
+from rig.model.effects.torsional_mode import DRIVEN, TorsionalMode
+from tests.contract.test_effects import KNOWN, N, motion
+
+
+def left(columns: Array, wanted: Array) -> float:
+    """Of `wanted` (n,), what columns (n, k) fitted to it leave."""
+    c = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+    return float(np.std(wanted - columns @ c) / np.std(wanted))
+
+
+def test_elements_take_a_curve_that_no_bristle_takes() -> None:
+    """From rest, friction that builds up as x/(s + |x|); the same at twice the size after the motor turned back."""
+    t = 1e-3 * np.arange(6000)
+    theta = 2.0 * (1.0 - np.cos(np.pi * t / 3.0))  # to 4 rad and back
+    way = np.sign(np.gradient(theta, 1e-3))
+    back = theta.max() - theta
+    friction = np.where(t < 3.0, theta / (0.2 + theta), 4.0 / 4.2 - 2 * (back / 2) / (0.2 + back / 2))
+    s = dataclasses.replace(motion(n=t.size), t=t, theta_m=theta, omega_m=np.gradient(theta, 1e-3), way=way)
+    effect, slid = PreslidingFriction(), way[:, None]
+    elements = effect.columns(s, (MOTOR, 0.3, ELEMENTS))[Port.MOTOR_TORQUE]
+    bristles = [effect.columns(s, (MOTOR, x, 0.0))[Port.MOTOR_TORQUE] for x in (0.1, 0.2, 0.4, 0.8)]
+    assert left(np.hstack([elements, slid]), friction) < 0.04
+    assert min(left(np.hstack([bristle, slid]), friction) for bristle in bristles) > 0.05
+
+
+def test_of_elements_all_the_friction_is_told_and_the_way_after_which_one_slips() -> None:
+    fit = Fit(np.array([0.01, 0.02, 0.0, 0.01]), (MOTOR, 0.5, ELEMENTS), np.zeros((7, 7)), KNOWN, N)
+    told = {p.name: p.value for p in PreslidingFriction().parameters(fit)}
+    assert told == pytest.approx({"tau_presliding": 0.04, "x_0": 0.5 * (0.01 * 0.2 + 0.02 * 0.6 + 0.01 * 5.4) / 0.04})
+
+
+def test_a_gap_may_be_wider_at_one_angle() -> None:
+    s = motion()
+    gap = 2e-5 * (1 + 0.7 * np.cos(s.theta_m + 0.4)) * np.sign(s.spring_torque)
+    far = np.abs(s.spring_torque) > 1.0
+    columns = LostMotion().columns(s, (0.1, BY_ANGLE))[Port.WIND_UP]
+    assert left(columns[far], gap[far]) < 1e-6
+    fit = Fit(np.linalg.lstsq(columns[far], gap[far], rcond=None)[0], (0.1, BY_ANGLE), np.zeros((5, 5)), KNOWN, N)
+    told = {p.name: p.value for p in LostMotion().parameters(fit)}
+    assert told == pytest.approx({"gap": 4e-5, "gap_by_angle_amplitude": 2.8e-5, "gap_by_angle_phase": 0.4}, rel=1e-3)
+
+
+def test_friction_may_fall_by_more_one_way_than_the_other() -> None:
+    effect, shape = StribeckFriction(), (2.0, 1.0, 1.0)
+    forward, backward = (effect.columns(motion(sign), shape)[Port.MOTOR_TORQUE] for sign in (1.0, -1.0))
+    assert forward[:, 0].any()
+    assert not forward[:, 1].any()
+    np.testing.assert_allclose(backward[:, 1], -forward[:, 0], atol=1e-12)
+    fit = Fit(np.array([0.02, 0.009]), shape, np.zeros((5, 5)), KNOWN, N)
+    told = {p.name: p.value for p in effect.parameters(fit)}
+    assert told["tau_s_minus_tau_c_forward"] == 0.02
+    assert told["tau_s_minus_tau_c_backward"] == 0.009
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=np.array([0.02, -0.001])))
+
+
+def test_a_disc_on_a_hub_swings_as_the_torque_tells() -> None:
+    """Hub and disc of 0.4 and 0.45 kg·m² on a shaft of 4e4 N·m/rad, turned by a torque that sweeps to 60 Hz."""
+    hub, disc, k, c = 0.4, 0.45, 4e4, 4.0
+    dt = 4e-4
+    t = dt * np.arange(20_000)
+
+    def torque(at: float | Array) -> float | Array:
+        return 5.0 * np.sin(2 * np.pi * (5.0 + 3.5 * at) * at)
+
+    def rates(at: float, x: Array) -> list[float]:
+        through = k * (x[0] - x[1]) + c * (x[2] - x[3])
+        return [x[2], x[3], (float(torque(at)) - through) / hub, through / disc]
+
+    x = solve_ivp(rates, (0.0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-8, atol=1e-12).y
+    alpha = (torque(t) - k * (x[0] - x[1]) - c * (x[2] - x[3])) / hub
+    s = dataclasses.replace(
+        motion(n=t.size), t=t, dt=dt, omega_m=np.full(t.size, 30.0), tau_l=np.asarray(torque(t)), alpha_l=alpha
+    )
+    both = float(np.sqrt(k * (hub + disc) / (hub * disc)) / (2 * np.pi))
+    zeta = c * (hub + disc) / (hub * disc) / (2 * 2 * np.pi * both)
+    shape = (DRIVEN, both, zeta, 0.0)
+    column = TorsionalMode().columns(s, shape)[Port.LOAD_TORQUE]
+    columns = np.hstack([alpha[:, None], column])
+    coefficients = np.linalg.lstsq(columns, s.tau_l, rcond=None)[0]
+    assert float(np.std(s.tau_l - columns @ coefficients)) < 0.02 * float(np.std(s.tau_l))
+    known = dataclasses.replace(KNOWN, J_l=float(coefficients[0]))
+    told = {
+        p.name: p.value for p in TorsionalMode().parameters(Fit(coefficients[1:], shape, np.zeros((5, 5)), known, N))
+    }
+    assert told["J_2"] == pytest.approx(disc, rel=0.02)
+    assert told["frequency"] == pytest.approx(np.sqrt(k / disc) / (2 * np.pi), rel=0.01)
+    assert told["zeta"] == pytest.approx(c / (2 * np.sqrt(k * disc)), rel=0.02)
