@@ -88,5 +88,11 @@ def test_friction_that_wanders_has_most_of_its_power_at_the_lowest_frequencies_a
         assert look(red) is None
 
 
+@pytest.mark.parametrize("k", [1, 2, 3, 8, 9, 200, 201])
+def test_what_is_usual_around_a_frequency_is_the_median(k: int) -> None:
+    power = np.random.default_rng(k).standard_exponential((7, k))
+    np.testing.assert_array_equal(interference._median(power), np.median(power, axis=1))
+
+
 def test_a_faint_line_makes_no_floor_too_high_and_is_left() -> None:
     assert look(residuals(lambda w: 0.02 * np.sin(2 * np.pi * 3.7 * T))) is None

@@ -148,11 +148,13 @@ def around(power: Array, hz: npt.NDArray[np.floating], at: Array, wide: float) -
 
 
 def _median(x: Array) -> Array:
-    """Of every row of (n, k), (n,), without the looks for NaN that take half of numpy's own."""
-    upper = x.shape[1] // 2
-    lower = (x.shape[1] - 1) // 2
-    part = np.partition(x, sorted({lower, upper}), axis=1)
-    return np.asarray(0.5 * (part[:, lower] + part[:, upper]))
+    """Of every row of (n, k), (n,), without the looks for NaN that take half of numpy's own, and with one place of each
+    row found: for two at once numpy has no fast way."""
+    middle = x.shape[1] // 2
+    part = np.partition(x, middle, axis=1)
+    upper = part[:, middle]
+    lower = upper if x.shape[1] % 2 else part[:, :middle].max(axis=1)
+    return np.asarray(0.5 * (lower + upper))
 
 
 def _power(even: Array, start: npt.NDArray[np.int64], n: int) -> Array:
