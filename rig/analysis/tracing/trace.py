@@ -104,9 +104,10 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
     eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
-    own = find(fit(design(eq, (), parts.fitted)), parts)
-    with_own = replace(eq, own=own.columns())
-    s = fit(design(with_own, (), parts.fitted))
+    s = fit(design(eq, (), parts.fitted))
+    own = find(s, parts)
+    if columns := own.columns():
+        s = fit(design(replace(eq, own=columns), (), parts.fitted))
     return _built(campaign, parts, eq, measure(s, parts.fitted), own)
 
 
@@ -128,7 +129,10 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     eq = s.design.eq
     free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
     own = find(free, p.split)
-    with_own = fit(design(replace(eq, own=own.columns()), s.design.terms, runs))
+    columns = own.columns()
+    # what a rough search found was fitted to all rows just now
+    same = found.rough and not eq.own and not columns
+    with_own = s if same else fit(design(replace(eq, own=columns), s.design.terms, runs))
     measured = quieter(p.measured, measure(with_own, runs))
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))

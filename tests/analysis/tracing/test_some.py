@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.fit.some import laid_out
+from rig.analysis.tracing.fit.bank import fill, reach
+from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.fit.some import laid_out, search_some, some
+from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.smoothing import Smoother
+from rig.analysis.tracing.trace import prepare
+from rig.model.effects import CATALOGUE
+from tests.analysis.tracing.test_expected import RUNS
+from tests.analysis.tracing.test_few_channels import reduced
 
 SMOOTHER = Smoother(36.0, 0.004, 2)
 
@@ -43,3 +52,21 @@ def test_stretches_that_would_touch_are_one() -> None:
 def test_of_a_piece_nothing_is_asked_of_nothing_is_made() -> None:
     rows, here, local = laid_out(SMOOTHER, np.zeros(SMOOTHER.rows(4000), dtype=bool), 4000)
     assert (rows.size, int(here.sum()), local.size) == (0, 0, 0)
+
+
+@pytest.mark.slow
+def test_what_some_rows_brought_is_fitted_to_all_of_them(
+    tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`_looked_again` does not fit it once more."""
+    monkeypatch.setattr("rig.analysis.tracing.fit.some.MOST", 4000)
+    p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-5", RUNS, ())), ())
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    bank = fill(some(p.eq.afresh(), runs), [CATALOGUE["stribeck_friction"]], runs, covered)
+    found = search_some(design(p.eq, (), runs), bank, runs, covered, p.floors)
+    assert found.rough
+    assert found.names == ("stribeck_friction",)
+    d = found.solution.design
+    np.testing.assert_array_equal(found.solution.x, fit(design(d.eq, d.terms, runs)).x)
+    assert sum(y.size for y in d.y.values()) == sum(p.eq.rows[key].y.size for key in p.eq.of(runs))
