@@ -109,7 +109,7 @@ class Solution:
 
 def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
     """Columns of the baseline and of `terms` for those runs."""
-    spoilt = {(i, c): both for i in runs if i in eq.noisy for c, both in eq.spoilt(i).items()}
+    noisy = [i for i in runs if i in eq.noisy]
 
     def of(key: Key) -> tuple[Array, Part, tuple[Array, Array]]:
         r, noise = eq.rows[key], spoilt[key][1] if key in spoilt else None
@@ -117,6 +117,8 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
 
     keys = eq.of(runs)
     with ThreadPoolExecutor(WORKERS) as pool:
+        found = zip(noisy, pool.map(eq.spoilt, noisy), strict=True)
+        spoilt = {(i, c): both for i, by_channel in found for c, both in by_channel.items()}
         made = dict(zip(keys, pool.map(of, keys), strict=True))
     y = {key: y for key, (y, _, _) in made.items()}
     gram, right = np.zeros((len(BASELINE), len(BASELINE))), np.zeros(len(BASELINE))
