@@ -74,11 +74,10 @@ class TorsionalMode(Effect):
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
-        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR) for f in frequencies)
-        driven = tuple((DRIVEN, float(f), self.ZETA, 0.0) for f in frequencies[::2])
+        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)
         soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
         top = float(max(reach.band, self.LOWEST))
-        return (*modes, *driven, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
+        return (*modes, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
