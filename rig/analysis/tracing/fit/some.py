@@ -23,7 +23,7 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Reach
 
-MOST: Final = 82_000  # rows of the fitted runs in a channel: half an hour, and a bank of half a gigabyte
+MOST: Final = 77_000  # rows of the fitted runs in a channel: half an hour, and a bank of half a gigabyte
 PERIOD: Final = 12.0  # s from one stretch to the next: a slow motor turns twice
 FEWEST: Final = 2000  # rows of a run in all its channels: of fewer none are left out
 WORTH: Final = 0.9  # of a run's rows: a shortened one is a copy
