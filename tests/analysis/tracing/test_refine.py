@@ -35,7 +35,7 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_th
 
     def refined(d: Any, term: Term, runs: Any, covered: Any, free: list[int]) -> Any:
         tried.append((term.shape, free))
-        shape = (1.2, 2.7) if 1 in free else (1.3, term.shape[1])
+        shape = (1.2, 2.7, 0.0) if 1 in free else (1.3, *term.shape[1:])
         other = 0.0 if shape[1] in (better, 2.7) else -300.0
         found = SimpleNamespace(gain=WITHOUT + EFFECT + other + (more if 1 in free else 0.0))
         return SimpleNamespace(terms=(Term(term.effect, shape),)), found
@@ -47,4 +47,4 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_th
     d: Any = SimpleNamespace(y={(0, "M"): np.zeros(2 * rows)}, eq=SimpleNamespace(noise=noise))
     best, _ = refine.refine(d, STRIBECK, (), nothing)
     assert best.terms[-1].shape[1] == exponent
-    assert tried == [((1.0, 1.0), [0, 1]), ((1.2, 1.0), [0]), ((1.2, 2.0), [0])]
+    assert tried == [((1.0, 1.0, 0.0), [0, 1]), ((1.2, 1.0, 0.0), [0]), ((1.2, 2.0, 0.0), [0])]

@@ -19,6 +19,7 @@ VIBRATION = EACH_RUN["external_vibration"]
 ZOOM = 4  # finer than a run's own resolution
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
 AS_ONE = 0.7  # an interference in one sensor alone has 0
+CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
 
@@ -155,7 +156,7 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
         wave = _size(e[key], np.stack([np.cos(x), np.sin(x)], 1))
         noise = max(float(np.var(e[key])) - wave**2 / 2, 1e-300) * eq.noise.kappa[key[1]]
         information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
-    half_hz = 1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300)))
+    half_hz = float(np.hypot(1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300))), CRYSTAL * frequency))
     if keys:
         return Line(frequency, amplitude, half_hz, 1.96 * spread, float(np.median(sizes)))
     as_one, sizes = _as_one(eq, e, columns)
