@@ -284,7 +284,7 @@ class Effect(ABC):
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     modes_apart: ClassVar[float] = np.inf  # of its first loose shape parameter: so much higher, a term is another mode
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted
-    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({})  # exponents of textbook laws, by name
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({})  # shape of textbook laws, by name
 
     @abstractmethod
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import ClassVar, Final
 
 import numpy as np
@@ -33,6 +34,7 @@ class LostMotion(Effect):
     backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("epsilon", "kind")
     loose: ClassVar[tuple[bool, ...]] = (True, False)
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"kind": (EVEN,)})
     WIDTHS: Final = (0.08, 0.15, 0.4)  # N·m: noise of a torque sensor to the least that counts as soft wind-up
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import ClassVar, Final
 
 import numpy as np
@@ -33,6 +34,7 @@ class PreslidingFriction(Effect):
     source: ClassVar[str] = "dahl1968"
     shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0", "law")
     loose: ClassVar[tuple[bool, ...]] = (False, True, False)
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"law": (BRISTLE,)})
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
     SPREAD: Final = (0.2, 0.6, 1.8, 5.4)  # of x_0: after which ways the elements slip
     TURNS: Final = 0.04  # rad/s of the motor: a run that turns faster when it begins has slid before

@@ -27,7 +27,7 @@ class StribeckFriction(Effect):
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
     shape_names: ClassVar[tuple[str, ...]] = ("omega_s", "delta", "by_way")
     loose: ClassVar[tuple[bool, ...]] = (True, True, False)
-    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"delta": (1.0, 2.0)})
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"delta": (1.0, 2.0), "by_way": (0.0,)})
     SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)  # rad/s, octaves from creep to what a gear's oil film allows
     CREEP: Final = 0.2  # of the fastest speed
     EXPONENTS: Final = (1.0, 2.0)  # what is reported: 0.5 to 2; between these two the curves differ by a tenth

@@ -20,9 +20,9 @@ ROUNDS = 4
 
 
 def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:
-    """The design with `term` in the shape that fits best, and its solution. An exponent is a textbook's unless the
-    runs tell another one plainly: torques nobody measured move the motor a little, and bend what friction seems to do
-    with its speed."""
+    """The design with `term` in the shape that fits best, and its solution. A law is a textbook's, and its
+    exponent, unless the runs tell another one plainly: torques nobody measured move the motor a little, and bend what
+    friction seems to do with its speed."""
     free = [i for i, loose in enumerate(term.effect.loose) if loose]
     best = _refined(d, term, runs, covered, free)
     usual = term.effect.usual
