@@ -84,3 +84,5 @@ STEP_ALIKE: Final = 0.05  # rad of the motor: two repeats that jump so near each
 OWN: Final = 0.5  # of the excess of the runs that jump, which their jumps must take to be called lost counts
 WANDERS: Final = 1.3  # RMS over what neighbouring turns differ by: above it repeats are off by more than noise
 FORETOLD: Final = 0.4  # of that excess in unseen runs: what must be foretold to be said; on clean campaigns 0.03
+ONE_SIDED: Final = 0.5  # of friction along a turn: what keeps its sign is its difference between the ways, not cogging
+IN_PHASE: Final = 0.1  # rad between those two, beside their intervals: chance gets there in 6 of 100 orders

@@ -18,8 +18,8 @@ class LostMotion(Effect):
     """φ gains b·tanh(T_e/ε), T_e what the spring holds of T: the gap is crossed while the spring is slack, on either
     side K holds as before
 
-    In the gap the damper still drags, at 300 rpm a tenth of a newton metre: by T itself the crossing would come late. ε
-    only makes the jump finite. A law with a longer tail makes the gap 5 to 10 % too wide. The slop of an Oldham
+    In the gap the damper still drags, at 300 rpm a few tenths of a newton metre: by T itself the crossing would come
+    late. ε only makes the jump finite. A law with a longer tail makes the gap 5 to 10 % too wide. The slop of an Oldham
     coupling may be wider at one angle: b gains b_1·cos(θ_m + φ).
     """
 

@@ -25,7 +25,7 @@ def said(*cogging: tuple[int, float, float]) -> str:
 
 
 def test_waves_in_phase_with_the_friction_are_its_own_and_it_is_said_which_way_it_is_larger() -> None:
-    assert "larger forward: 0.0025 N·m of order 1" in said((1, 0.0025, -3.1), (2, 0.0019, 0.0))
+    assert "larger forward: 2.5 ± 0.025 mN·m of order 1" in said((1, 0.0025, -3.1), (2, 0.0019, 0.0))
     assert "larger backward" in said((1, 0.0025, 0.0), (2, 0.0019, 3.1))
 
 

@@ -5,22 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.thresholds import IN_PHASE, ONE_SIDED
 from rig.model.effect import Parameter
 
 FRICTION, COGGING = "position_dependent_friction", "cogging_torque"
-LARGEST: Final = 0.5  # of the friction: it is three times as large one way as the other then
-ALIKE: Final = 0.1  # rad between the two phases, beside what their intervals leave open: chance gets there in 6 of 100
 
 
 @dataclass(frozen=True)
 class _Wave:
-    amplitude: float
-    phase: float
-    half: float  # of the phase's interval
+    amplitude: float  # N·m
+    half_amplitude: float  # of its 95 % interval
+    phase: float  # rad
+    half: float  # of the phase's
 
 
 def one_sided(words: Mapping[str, Sequence[Parameter]]) -> str:
@@ -32,11 +31,13 @@ def one_sided(words: Mapping[str, Sequence[Parameter]]) -> str:
     shares = [_share(cogging[order], friction[order]) for order in cogging]
     if not (all(share > 0 for share in shares) or all(share < 0 for share in shares)):
         return ""
-    largest = max(cogging, key=lambda order: cogging[order].amplitude)
+    order = max(cogging, key=lambda order: cogging[order].amplitude)
+    wave = cogging[order]
     more = "forward" if shares[0] > 0 else "backward"
     return (
-        f"Friction along a turn of the motor is larger {more}: {cogging[largest].amplitude:.2g} N·m of order "
-        f"{largest} keep their sign when the motor turns back, in phase with it, and are not taken for cogging."
+        f"Friction along a turn of the motor is larger {more}: {1e3 * wave.amplitude:.3g} ± "
+        f"{1e3 * wave.half_amplitude:.2g} mN·m of order {order} keep their sign when the motor turns back, with its "
+        "phase or against it, and are not taken for cogging."
     )
 
 
@@ -46,18 +47,16 @@ def _share(even: _Wave, odd: _Wave) -> float:
     sign = 1.0 if abs(apart) < np.pi / 2 else -1.0
     away = abs(apart) if sign > 0 else np.pi - abs(apart)
     share = even.amplitude / odd.amplitude
-    return float(sign * share) if share < LARGEST and away < ALIKE + even.half + odd.half else 0.0
+    return float(sign * share) if share < ONE_SIDED and away < IN_PHASE + even.half + odd.half else 0.0
 
 
 def _waves(parameters: Sequence[Parameter]) -> dict[str, _Wave]:
     """By order."""
     by = {p.name: p for p in parameters}
     orders = [name.split("_")[1] for name in by if name.endswith("_amplitude")]
-    return {
-        n: _Wave(
-            by[f"order_{n}_amplitude"].value,
-            by[f"order_{n}_phase"].value,
-            (by[f"order_{n}_phase"].ci95[1] - by[f"order_{n}_phase"].ci95[0]) / 2,
-        )
-        for n in orders
-    }
+    return {n: _Wave(*_with_half(by[f"order_{n}_amplitude"]), *_with_half(by[f"order_{n}_phase"])) for n in orders}
+
+
+def _with_half(p: Parameter) -> tuple[float, float]:
+    """Value, and half its 95 % interval."""
+    return p.value, (p.ci95[1] - p.ci95[0]) / 2

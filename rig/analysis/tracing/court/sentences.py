@@ -13,6 +13,7 @@ FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
 
 
 def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
+    """Which effects the model lacks, and what they do to a channel's held-out RMS over floor."""
     them = "them" if len(names) > 1 else "it"
     return (
         f"The model lacks {in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
@@ -21,6 +22,7 @@ def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") 
 
 
 def of_the_rest(best: Home, total: float) -> str:
+    """How much is left, in floors, and where it lives."""
     where = best.coordinate.replace("_", " ")
     if best.share < FORETELLS_NOTHING:
         return (
@@ -43,6 +45,7 @@ def how_often(home: Home) -> str:
 
 
 def in_words(names: Sequence[str]) -> str:
+    """Effects, each with what it is in short."""
     return _listed([f"{name.replace('_', ' ')} ({_in_short(name)})" for name in names])
 
 

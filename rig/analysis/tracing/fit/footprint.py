@@ -53,8 +53,6 @@ def _reads_tau_l(c: Array, s: Signals) -> Iterator[Mark]:
     yield "L", c, 0
 
 
-Has = frozenset[str]
-
 FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
     Port.MOTOR_TORQUE: _motor_torque,
     Port.LOAD_TORQUE: _load_torque,
@@ -68,7 +66,7 @@ FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
 }
 
 
-def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) -> dict[str, Array]:
+def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: frozenset[str]) -> dict[str, Array]:
     """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`."""
     out: dict[str, Array] = {}
     for port, columns in ports.items():
@@ -79,7 +77,7 @@ def footprint(ports: Mapping[Port, Array], s: Signals, f: Smoother, has: Has) ->
     return out | ({"R": out["M"]} if "M" in out else {})
 
 
-def _passed_on(first: Mark, s: Signals, has: Has) -> Iterator[Mark]:
+def _passed_on(first: Mark, s: Signals, has: frozenset[str]) -> Iterator[Mark]:
     """A column, and where else it shows for want of a sensor; a fourth derivative would be noise alone.
 
     Without time a derivative has no size that runs could share.
