@@ -96,53 +96,69 @@ def _each(pieces: list[Sums], trend: Array, degree: int, order0: list[int]) -> t
     return coefficients, residual_square
 
 
+@dataclass(frozen=True)
+class _Fit:
+    """What is fitted to a stroke: a slow trend of Legendre polynomials up to `degree`, and `terms` orders."""
+
+    motion: Motion
+    base: float  # rad, the motor's angle at the stroke's start
+    span: float  # rad, half of how far it turns
+    zero: float  # arcsec, taken off θ̃: keeps the sums small, only differences matter
+    degree: int
+    terms: int
+    room: Array  # for the columns of every block: fresh memory would cost as much as they do
+
+    @staticmethod
+    def of(motion: Motion, stroke: Stroke, terms: int) -> _Fit:
+        base, span = (
+            motion.theta_m[stroke.start],
+            0.5 * (motion.theta_m[stroke.stop - 1] - motion.theta_m[stroke.start]),
+        )
+        degree = trend_degree(2 * abs(float(span)) / TURN, stroke.revolutions)
+        first = int(stroke.edges[0])
+        zero, room = motion.error_arcsec(first, first + 1)[0], np.empty((degree + 1 + 2 * terms, BLOCK))
+        return _Fit(motion, base, span, float(zero), degree, terms, room)
+
+    @property
+    def orders(self) -> range:
+        """Columns of the orders, after those of the trend."""
+        return range(self.degree + 1, self.degree + 1 + 2 * self.terms)
+
+    def slow_columns(self, theta: Array) -> Array:
+        """Legendre polynomials (degree + 1, n) at those angles of the motor."""
+        return legendre((theta - self.base) / self.span - 1.0, self.degree)
+
+    def sums(self, lo: int, hi: int) -> Sums:
+        """Of rows lo..hi, block by block."""
+        size = len(self.room)
+        total = Sums(np.zeros((size, size)), np.zeros(size), 0.0, 0)
+        for a in range(lo, hi, BLOCK):
+            b = min(a + BLOCK, hi)
+            theta = self.motion.theta_m[a:b]
+            columns = self.room[:, : b - a]
+            columns[: self.orders.start] = self.slow_columns(theta)
+            harmonics(theta, self.terms, columns[self.orders.start :])
+            total = total + Sums.of(columns, self.motion.error_arcsec(a, b) - self.zero)
+        return total
+
+
 def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
     """Fourier coefficients of every whole revolution, by least squares over all its rows, with one trend per stroke.
 
     The sums of each revolution are kept: the trend is solved from their total, the revolutions from their own, so the
     rows are read once for the numbers and once for the curves.
     """
-    edges = [int(e) for e in stroke.edges]
-    base, span = (
-        float(motion.theta_m[stroke.start]),
-        0.5 * float(motion.theta_m[stroke.stop - 1] - motion.theta_m[stroke.start]),
-    )
-    degree = trend_degree(2 * abs(span) / TURN, stroke.revolutions)
-    slow, fast = slice(0, degree + 1), slice(degree + 1, degree + 1 + 2 * terms)
-    zero = float(motion.error_arcsec(edges[0], edges[0] + 1)[0])  # keeps the sums small: only differences matter
-    order0 = [0, *range(fast.start, fast.stop)]
-
-    def slow_columns(theta: Array) -> Array:
-        return legendre((theta - base) / span - 1.0, degree)
-
-    room = np.empty((fast.stop, BLOCK))  # for the columns of every block: fresh memory would cost as much as they do
-
-    def sums(lo: int, hi: int) -> Sums:
-        """Of rows lo..hi, block by block."""
-        total = Sums(np.zeros((fast.stop, fast.stop)), np.zeros(fast.stop), 0.0, 0)
-        for a in range(lo, hi, BLOCK):
-            b = min(a + BLOCK, hi)
-            theta = motion.theta_m[a:b]
-            columns = room[:, : b - a]
-            columns[: fast.start] = slow_columns(theta)
-            harmonics(theta, terms, columns[fast])
-            total = total + Sums.of(columns, motion.error_arcsec(a, b) - zero)
-        return total
-
-    pieces = [sums(a, b) for a, b in pairwise(edges)]
-    whole = pieces[0]
-    for piece in pieces[1:]:
-        whole = whole + piece
+    fit, edges = _Fit.of(motion, stroke, terms), [int(e) for e in stroke.edges]
+    pieces = [fit.sums(a, b) for a, b in pairwise(edges)]
+    whole = sum(pieces[1:], start=pieces[0])
     if stroke.revolutions == 1:
-        whole = whole + sums(stroke.start, edges[0]) + sums(edges[-1], stroke.stop)
-    trend = whole.solve()[slow]
-
-    coefficients, residual_square = _each(pieces, trend, degree, order0)
-    slow_mean = np.array([p.gram[0, 1 : degree + 1] @ trend[1:] / max(p.count, 1) for p in pieces])
+        whole = whole + fit.sums(stroke.start, edges[0]) + fit.sums(edges[-1], stroke.stop)
+    trend = whole.solve()[: fit.degree + 1]
+    coefficients, residual_square = _each(pieces, trend, fit.degree, [0, *fit.orders])
+    slow_mean = np.array([p.gram[0, 1 : fit.degree + 1] @ trend[1:] / max(p.count, 1) for p in pieces])
     curves, (total, position, rows) = _curves(
-        motion, edges, lambda theta, error: error - zero - trend @ slow_columns(theta)
+        motion, edges, lambda theta, error: error - fit.zero - trend @ fit.slow_columns(theta)
     )
-
     theta_l = motion.theta_l
     assert theta_l is not None
     middle = np.array([(a + b) // 2 for a, b in pairwise(edges)])
@@ -150,7 +166,7 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
         direction=stroke.direction,
         cosine=coefficients[:, 1 : 1 + terms],
         sine=coefficients[:, 1 + terms :],
-        mean=coefficients[:, 0] + slow_mean + zero,
+        mean=coefficients[:, 0] + slow_mean + fit.zero,
         theta_l=theta_l[middle],
         middle=middle.astype(np.float64) if motion.t is None else motion.t[middle],
         speed_rpm=np.array([motion.speed_rpm(a, b) for a, b in pairwise(edges)]),

@@ -8,7 +8,6 @@ import numpy as np
 
 from rig.analysis.result import Array
 from rig.core.rows import room, stretches
-from rig.core.units import RPM
 
 STEP = 0.010  # s    one speed value this often: hunting up to 50 Hz stays visible
 FEWEST = 2  # rows in a mean
@@ -51,8 +50,3 @@ def motor_speed(t: Array, theta_m: Array, step: float = STEP) -> Speed:
         speed.omega[some] = (two_a[2:] - two_a[:-2]) / (two_t[2:] - two_t[:-2])
         speed.row[some] = rows.start + starts[2:-1]
     return speed
-
-
-def per_row_rpm(speed: Speed, t: Array) -> Array:
-    """The speed at any times `t` [s], rpm, linear between its values."""
-    return np.interp(t, speed.t, speed.omega) / RPM

@@ -26,12 +26,3 @@ def regular(path: Path | str) -> os.stat_result:
         kind = next((word for is_kind, word in KINDS if is_kind(found.st_mode)), "something else")
         raise OSError(errno.EINVAL, f"it is {kind}, expected a regular file", str(path))
     return found
-
-
-def is_regular(path: Path | str) -> bool:
-    """True when `path` leads to a regular file."""
-    try:
-        regular(path)
-    except (OSError, ValueError):
-        return False
-    return True

@@ -82,16 +82,3 @@ def _ramp(windup: Array, tau: Array, t: Array | None, turn: int, lo: int, hi: in
         whole=bool(np.ptp(tau[lo:hi]) >= WHOLE * span),
         on_loop=bool(direction * tau[turn] < -ON_LOOP * most),
     )
-
-
-def rates_of(ramps: list[Ramp]) -> list[list[Ramp]]:
-    """Ramps of about one rate together (within ±20 %), the rate of the first ramp first; one group without time."""
-    groups: list[list[Ramp]] = []
-    for ramp in ramps:
-        for group in groups:
-            if not abs(ramp.rate / group[0].rate - 1.0) > 0.2:
-                group.append(ramp)
-                break
-        else:
-            groups.append([ramp])
-    return groups

@@ -18,7 +18,8 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations,
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found, relawed, still
 from rig.analysis.tracing.fit.some import search_some, some
-from rig.analysis.tracing.floor.noise import Measured, floor_of, guess, measure, quieter
+from rig.analysis.tracing.floor.noise import Measured, guess, measure, quieter
+from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace

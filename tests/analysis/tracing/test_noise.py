@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
-from rig.analysis.tracing.floor.noise import Measured, floor_of, leniency, own_offset
+from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
+from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.thresholds import LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated

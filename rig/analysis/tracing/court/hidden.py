@@ -14,7 +14,7 @@ from rig.analysis.tracing.court.suspects import IN_WORDS
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.noise import leniency
+from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.rest.hidden_order import hidden_order

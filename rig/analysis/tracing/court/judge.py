@@ -11,7 +11,8 @@ from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE, known_of
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit, without
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
-from rig.analysis.tracing.floor.noise import Measured, floor_of, leniency
+from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.thresholds import (
     ABOUT,
     ALL,

@@ -28,6 +28,7 @@ from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.runs.cannot import cannot, together
@@ -49,46 +50,31 @@ def report(
     fitted: Mapping[str, tuple[Parameter, ...]],
 ) -> Trace:
     """All of it as one value; `fitted` are the parameters of the effects in `s`."""
-    empty = p.baseline
+    empty, fitted_runs = p.baseline, [p.eq.runs[i] for i in p.split.fitted]
     before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
-    floors = p.floors
-    own = own_work(p, s)
-    shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
-    work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
+    shares, weighed = _weighed(p, s, worths)
     one_way = one_sided(fitted)
-    weighed = tuple(sorted((n for n in shares if not (one_way and n == COGGING)), key=lambda name: -work[name]))
-    fitted_runs = [p.eq.runs[i] for i in p.split.fitted]
+    weighed = tuple(name for name in weighed if not (one_way and name == COGGING))
     baseline = honest(parameters.baseline(empty), fitted_runs)
-    ruling = decide(p, s, weighed, worths, before, after, floors, found)
+    ruling = decide(p, s, weighed, worths, before, after, p.floors, found)
     ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
-    final, curve = after, bool(cast(s))
-    if ruling.home is not None:
-        rest = {key: s.residual(key) for key in s.keys}
-        smooth = smooth_term(p.eq, rest, after, floors | p.court.floors, ruling.home)
-        # a curve that foretells nothing of unseen runs is not added
-        mine = [key for key in after if key[1] == ruling.home.channel]
-        curve = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
-        final = smooth if curve else after
+    final, curve = _with_a_curve(p, s, after, ruling.home)
     shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
     words, first = p.own.parameters | dict(fitted), errors(p.eq, p.court, before)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
-        lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), floors) if shares else ())
+        lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), p.floors) if shares else ())
         tried = candidates(p, found.ranking, before, ruling.verdict.effects, shadowed)
         tried = dismissed(tried, ruling.verdict, first.pooled)
         refitted, ripple = honest(parameters.baseline(s), fitted_runs), ripples(p.campaign.runs)
         simulated, drawn = shown()
-    meant = beside_the_numbers(name for name in ruling.verdict.effects if name in shares)
+    named = [name for name in ruling.verdict.effects if name in shares]
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
         fitted=tuple(p.eq.runs[i].name for i in p.split.fitted),
         held_out=tuple(p.eq.runs[i].name for i in p.split.held_out),
         held_out_how=p.split.how,
-        floors=tuple(
-            Floor(SENSORS[c][0], p.measured.noise.sigma[c], SENSORS[c][1], p.measured.how[c])
-            for c in WHOLE
-            if c in p.measured.how
-        ),
+        floors=_floors(p),
         baseline=baseline,
         baseline_after=refitted,
         cannot_be_told_apart=together(p.campaign.runs),
@@ -98,13 +84,16 @@ def report(
         lives_in=lives,
         candidates=tried,
         verdict=ruling.verdict,
-        effects=tuple(
-            Found(name, words.get(name, ()), shares[name]) for name in ruling.verdict.effects if name in shares
-        ),
+        effects=tuple(Found(name, words.get(name, ()), shares[name]) for name in named),
         before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.court, final), simulated, 1),
         next_run=ruling.next_run,
-        notes=(*meant, *([one_way] if one_way else []), *(r.sentence() for r in ripple), *p.campaign.notes),
+        notes=(
+            *beside_the_numbers(named),
+            *([one_way] if one_way else []),
+            *(r.sentence() for r in ripple),
+            *p.campaign.notes,
+        ),
         ripple=ripple,
         curve=curve,
         read=len(p.campaign.runs),
@@ -112,6 +101,34 @@ def report(
         cannot=(*ruling.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
+
+
+def _weighed(p: Prepared, s: Solution, worths: Sequence[Worth]) -> tuple[dict[str, float], tuple[str, ...]]:
+    """The share of the error that each effect of the model removes, and their names, the one that does most first."""
+    own = own_work(p, s)
+    shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
+    work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
+    return shares, tuple(sorted(shares, key=lambda name: -work[name]))
+
+
+def _with_a_curve(
+    p: Prepared, s: Solution, after: dict[Key, Array], home: Home | None
+) -> tuple[dict[Key, Array], bool]:
+    """What is left of held-out runs beside a curve along the coordinate where a rest without a name lives, and whether
+    a curve is in the model: one that foretells nothing of unseen runs is not added."""
+    if home is None:
+        return after, bool(cast(s))
+    rest = {key: s.residual(key) for key in s.keys}
+    smooth = smooth_term(p.eq, rest, after, p.floors | p.court.floors, home)
+    mine = [key for key in after if key[1] == home.channel]
+    foretells = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
+    return (smooth, True) if foretells else (after, False)
+
+
+def _floors(p: Prepared) -> tuple[Floor, ...]:
+    """Of the channels in which one was measured."""
+    noise, how = p.measured.noise, p.measured.how
+    return tuple(Floor(SENSORS[c][0], noise.sigma[c], SENSORS[c][1], how[c]) for c in WHOLE if c in how)
 
 
 def _shown(

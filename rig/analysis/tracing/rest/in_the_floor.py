@@ -15,7 +15,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.floor.noise import neighbours
+from rig.analysis.tracing.floor.neighbours import neighbours
 from rig.analysis.tracing.rest.binned import solved
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest, rest
