@@ -1,0 +1,49 @@
+"""The scatter of a run that was not repeated: one turn against the next, one stroke against the next of its way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.repeats import Scatter, autocorrelation, beside_a_row, compare, freedom, strokes
+from rig.analysis.tracing.thresholds import FLOOR_LEAST
+from rig.core.units import TURN
+from rig.model.effect import Array
+
+FEW = 25  # rows to compare: fewer have no spread worth the name
+
+
+def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
+    """One turn against the next, or one stroke against the next of its direction, of a single run."""
+    if key not in e:
+        return None
+    theta = eq.rows[key].theta_m
+    parts = strokes(theta)
+    if len(parts) >= 3:
+        made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
+    else:
+        made = [against_both(theta[p], e[key][p]) for p in parts]
+    d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
+    if d.size < FLOOR_LEAST / 4:
+        return None
+    return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d), freedom(d))
+
+
+def against_both(theta: Array, e: Array) -> Array:
+    """Differences of every row of one stroke to the mean of a motor turn before and one after, as if of one run; (n,).
+
+    What the output or the load does within a motor turn is nearly straight, and goes out.
+    """
+    x = np.maximum.accumulate(np.abs(theta - theta[0])) if theta.size else theta
+    inside = (x > TURN) & (x < x[-1:].sum() - TURN)
+    inside &= beside_a_row(x - TURN, x) & beside_a_row(x + TURN, x) if x.size > 1 else False
+    at = x[inside]
+    if at.size <= FEW:
+        return np.zeros(0)
+    both = 0.5 * (np.interp(at - TURN, x, e) + np.interp(at + TURN, x, e))
+    d = e[inside] - both
+    rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))
+    # interpolation between two rows of correlation rho leaves 2/3 + rho/3 of their variance, the mean of two half of it
+    return np.asarray(d / np.sqrt(1 + (2 / 3 + rho / 3) / 2))

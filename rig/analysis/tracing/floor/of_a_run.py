@@ -1,0 +1,126 @@
+"""The floor of one run, compared with a repeat or not, and by how much more than it a single run may leave."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.optimize import nnls
+from scipy.special import fdtri
+
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.offsets import ENOUGH
+from rig.analysis.tracing.thresholds import CHANCE, GAIN, LENIENT, MISSING
+from rig.model.effect import Array
+
+STAYS = 0.1  # of the rows of a locked run: fewer are left where it was read stay by stay
+
+
+def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
+    """RMS expected of one run: its repeats' where they were compared, else of the same procedure, else of all; where a
+    motor sticks and jumps, its encoder's rounding at least, which repeats share. And no less than all of its kind come
+    to: one pair tells little.
+    """
+    alone = float(np.hypot(_compared(measured, eq, key), _gain(measured, eq, key)))
+    return max(alone, float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
+
+
+def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
+    """Of all pairs; of those that turn freely alone where it does and enough were compared: under the torques of a lock
+    test a gain that is never twice the same makes many times what it does elsewhere."""
+    run, channel = key
+    free = [i for i, c in measured.by_run if c == channel and not eq.runs[i].locked and (i, c) in eq.rows]
+    if eq.runs[run].locked or len(free) < 2 * ENOUGH:
+        return measured.noise.sigma[channel]
+    rows = [eq.rows[i, channel].y.size for i in free]
+    pooled = float(np.sqrt(np.average([measured.by_run[i, channel] ** 2 for i in free], weights=rows)))
+    return min(pooled, measured.noise.sigma[channel])
+
+
+def leniency(measured: Measured, eq: Equations, key: Key) -> float:
+    """By how much more a single run may exceed its floor than where the floor is that of many independent rows: its
+    square over the floor's is F-distributed.
+    """
+    run, channel = key
+    known = {i: nu for (i, c), nu in measured.freedom.items() if c == channel}
+    like = [nu for i, nu in known.items() if eq.runs[i].procedure == eq.runs[run].procedure]
+    if not like:
+        return 1.0
+    nu = float(1 / np.mean(1 / np.array(like)))
+    limit = float(np.sqrt(fdtri(nu, nu * max(1, len(like) // 2), CHANCE)))
+    return float(np.clip(limit / MISSING, 1.0, LENIENT))
+
+
+def _gain(measured: Measured, eq: Equations, key: Key) -> float:
+    """What a torque sensor's gain, never twice quite the same, does to A [rad] where the torque swings further than in
+    all runs of its kind that were compared."""
+    run, channel = key
+    if channel != "A" or key in measured.by_run or "tau_l" not in eq.runs[run].has:
+        return 0.0
+    like = [i for i, c in measured.by_run if c == channel and eq.runs[i].said == eq.runs[run].said]
+    shown = max((_swing(eq, i) for i in like), default=0.0)
+    return GAIN * float(np.sqrt(max(_swing(eq, run) ** 2 - shown**2, 0.0))) / eq.runs[run].pieces[0].gear.K
+
+
+def _swing(eq: Equations, run: int) -> float:
+    """RMS of the torque about its mean, N·m."""
+    return float(np.nanstd(np.concatenate([p.torque for p in eq.runs[run].pieces])))
+
+
+def _rounding(eq: Equations, key: Key) -> float:
+    """RMS of the motor encoder's rounding at the output [rad] in A of a run read stay by stay; 0 in any other."""
+    run, r = eq.runs[key[0]], eq.rows[key]
+    read_by_stay = run.locked and run.counts_m > 0 and r.y.size < STAYS * r.keep.size
+    return 2 * np.pi / (run.counts_m * run.ratio * np.sqrt(12)) if key[1] == "A" and read_by_stay else 0.0
+
+
+def _compared(measured: Measured, eq: Equations, key: Key) -> float:
+    if key in measured.by_run:
+        return measured.by_run[key]
+    run, channel = key
+    known = {i: v for (i, c), v in measured.by_run.items() if c == channel}
+    said = [v for i, v in known.items() if eq.runs[i].said == eq.runs[run].said]
+    same = {i: v for i, v in known.items() if eq.runs[i].procedure == eq.runs[run].procedure}
+    if said:
+        return float(np.sqrt(np.mean(np.square(said))))
+    return _at_other_conditions(same, eq, run) if same else _elsewhere(measured, eq, key)
+
+
+def _at_other_conditions(same: Mapping[int, float], eq: Equations, run: int) -> float:
+    """From runs of the same kind at other speeds and loads: σ² = a + b·ω² + c·T², b of a clock that jitters and c of a
+    torque sensor's gain that wanders, each only where three speeds, three loads show it; else their mean."""
+    power, at = np.square(list(same.values())), np.array([_conditions(eq, i) for i in same])
+    shown = [j for j in (0, 1) if _differ(at[:, j]) >= ENOUGH]
+    if not shown:
+        return float(np.sqrt(np.mean(power)))
+    z = np.hstack([np.ones((power.size, 1)), at[:, shown]])
+    found, _ = nnls(z / z.max(0), power)
+    return float(np.sqrt(np.array([1.0, *np.array(_conditions(eq, run))[shown]]) / z.max(0) @ found))
+
+
+def _conditions(eq: Equations, run: int) -> tuple[float, float]:
+    """Mean |ω_m| and mean torque of a run, both squared."""
+    torque = np.concatenate([p.torque for p in eq.runs[run].pieces])
+    mean = float(np.nanmean(torque)) if np.isfinite(torque).any() else 0.0
+    return eq.runs[run].turning ** 2, mean**2
+
+
+def _differ(square: Array) -> int:
+    """How many conditions that are a tenth apart and more there are."""
+    return int(np.unique(np.round(np.log(np.maximum(square, 1e-9)), 1)).size)
+
+
+def _elsewhere(measured: Measured, eq: Equations, key: Key) -> float:
+    """From runs of other procedures, with this one's share of sensor noise in the place of theirs: a file of a quarter
+    of the rate averages it less.
+    """
+    run, channel = key
+    own = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure == eq.runs[run].procedure]
+    compared = {eq.runs[i].procedure for i, c in measured.by_run if c == channel}
+    theirs = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure in compared]
+    usual = measured.noise.sigma[channel]
+    if not own or not theirs:
+        return usual
+    mine = float(np.mean(np.square(own)))
+    return float(np.sqrt(max(usual**2 + mine - float(np.mean(np.square(theirs))), mine)))

@@ -1,0 +1,47 @@
+"""How far the offset of a run lies from those of others, read from repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.repeats import (
+    Scatter,
+)
+from rig.analysis.tracing.thresholds import ZERO
+
+ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
+
+
+def own_offset(s: Solution, channel: str, found: Sequence[Scatter], variance: float) -> float:
+    """How far a run's offset lies from the others', beyond what noise does to a mean."""
+    ratio = s.design.eq.runs[found[0].pair[0]].ratio
+    least = {"A": np.inf, "M": ZERO / ratio, "L": ZERO}[channel]
+    if not np.isfinite(least) or len(found) < ENOUGH or found[0].pair[0] == found[0].pair[1]:
+        return least
+    gaps = [offset(s, a, channel) - offset(s, b, channel) for a, b in (pair.pair for pair in found)]
+    excess = float(np.mean([gap**2 / 2 - variance / pair.rows for gap, pair in zip(gaps, found, strict=True)]))
+    return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
+
+
+def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> float:
+    """How far c_0 of a run lies from the others' [rad], read from repeats; infinite where fewer than three show it.
+
+    Where both encoders are homed once and for all, runs at any speed and load share it, and what shifts it from one
+    speed to another is an effect.
+    """
+    gaps = [offset(s, a, "A") - offset(s, b, "A") for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys]
+    if len(gaps) < ENOUGH:
+        return np.inf
+    return max(float(np.sqrt(np.mean(np.square(gaps)) / 2)), least)
+
+
+def offset(s: Solution, run: int, channel: str) -> float:
+    """What the baseline leaves in a channel of one run, in its unit, before any step of its own; repeats share what
+    effects add. From all rows, not from a residual: that has lost as much of it as the offset is believed to wander."""
+    eq, key = s.design.eq, (run, channel)
+    r, own = eq.rows[key], eq.own.get(key, np.zeros((eq.rows[key].y.size, 0)))
+    z = np.hstack([np.ones((r.y.size, 1)), own])
+    return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
