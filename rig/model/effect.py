@@ -331,6 +331,11 @@ class Effect(ABC):
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
         return False
 
+    def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
+        """Cosine and sine of an order of θ̃_p that each coefficient adds to the baseline's without load, (2, k) or, of
+        one that adds none, (2, 0)."""
+        return np.zeros((2, 0))
+
     def expands(self, shape: Shape) -> bool:
         """True when the columns are an expansion about a shape that should equal the coefficients."""
         return False

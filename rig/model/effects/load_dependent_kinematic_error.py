@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+from rig.model.effect import Array, Effect, Fit, Known, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.fourier import FourierSeries
 from rig.model.memory import follower
 from rig.model.waves import powers
@@ -83,6 +83,19 @@ class LoadDependentKinematicError(Effect):
             parameter("T_c", fit.shape[1], fit.half_width(unit[k + 1]), "N·m"),
             parameter("lag", fit.shape[2], fit.half_width(unit[k + 2]), "s"),
         )
+
+    def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
+        """What goes away under load: the baseline's series has what stays."""
+        wave = np.array(_wave(known.kinematic_error, order))
+        if shape[0] < EACH:
+            return wave[:, None]
+        made = np.zeros((2, 2 * len(ORDERS) + 1))
+        if order in ORDERS:
+            i = ORDERS.index(order)
+            made[0, i] = made[1, i + len(ORDERS)] = 1.0
+        else:
+            made[:, -1] = wave
+        return made
 
     def plausible(self, fit: Fit) -> bool:
         """It shrinks; as a whole it does not change its sign."""

@@ -183,15 +183,13 @@ def under_load(trace: Trace) -> str:
     p = {q.name: q for q in found.parameters}
     largest = max(orders, key=lambda q: q.value)
     stays = p.get(f"A_inf_{largest.name.removeprefix('theta_p_')}", p.get("A_inf"))
-    said = (
-        "Amplitudes after are those that stay under a load many times T_c; those before are a mean over the loads run."
-    )
+    said = "Amplitudes after are those without load; those before are a mean over the loads run."
     if stays is None or not stays.value > 0:
         return said
     n = largest.name.removeprefix(ORDER)
     return (
-        f"{said} Without load they are 1/A_inf times as large: order {n} is {plain(largest.value / stays.value, 3)} "
-        f"{largest.unit}."
+        f"{said} Under a load many times T_c A_inf of them is left: of order {n} "
+        f"{plain(largest.value * stays.value, 3)} {largest.unit}."
     )
 
 

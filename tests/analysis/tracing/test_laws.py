@@ -184,6 +184,17 @@ def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
         np.testing.assert_allclose(apart[port] @ alike, whole[port][:, 0], atol=1e-12)
 
 
+@pytest.mark.parametrize("of", [TORQUE, TORQUE + EACH])
+def test_orders_without_load_are_what_stays_and_what_goes_away(of: float) -> None:
+    effect, shape = LoadDependentKinematicError(), (of, 3.0, 3e-3, 1.0)
+    s = dataclasses.replace(motion(), torque=np.zeros(motion().t.size))
+    column = effect.columns(s, shape)[Port.KINEMATIC_ERROR]
+    c = np.linspace(0.4, 1.6, column.shape[1])
+    told = np.array([effect.unloaded(n, s.gear, shape) @ c for n in range(1, 16)])
+    series = FourierSeries(tuple(told[:, 0]), tuple(told[:, 1]))
+    np.testing.assert_allclose(series.value(s.theta_m), column @ c, atol=1e-12)
+
+
 def test_the_share_of_an_order_that_stays_is_told_with_its_interval_whatever_the_phase_of_what_goes() -> None:
     series = FourierSeries((0.0, 3e-5, 0.0, 1e-5), (0.0, 4e-5, 0.0, 0.0))
     known = dataclasses.replace(KNOWN, kinematic_error=series)

@@ -98,7 +98,7 @@ def explained() -> Trace:
         baseline_after=(
             parameter("K", 7300.0, 9.0, "N·m/rad"),
             baseline[1],
-            parameter("theta_p_order_2", 28.8, 0.06, "arcsec"),
+            parameter("theta_p_order_2", 62.4, 0.06, "arcsec"),
         ),
         cannot_be_told_apart=(("B_m", "B_ml"),),
         unexplained={"theta_l": 0.1},

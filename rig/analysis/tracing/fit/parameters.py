@@ -73,10 +73,15 @@ def _of_the_series(s: Solution, damping: float, stiffness: float) -> float:
 
 
 def _order(s: Solution, c: Array, n: int) -> Parameter:
-    a, b = s.value(f"a{n}"), s.value(f"b{n}")
-    size = max(float(np.hypot(a, b)), 1e-15)
-    along = (_unit(c, f"a{n}") * a + _unit(c, f"b{n}") * b) / size / ARCSEC
-    return _of(f"theta_p_order_{n}", size / ARCSEC, along, c, "arcsec")
+    """Amplitude of an order of θ̃_p, without load where an effect makes it shrink under one."""
+    waves = np.array([_unit(c, f"a{n}"), _unit(c, f"b{n}")])
+    for i, term in enumerate(s.design.terms):
+        more = term.effect.unloaded(n, s.design.eq.runs[0].pieces[0].gear, term.shape)
+        if more.size:
+            waves[:, s.design.place(i)] = more
+    both = waves @ s.x
+    size = max(float(np.hypot(*both)), 1e-15)
+    return _of(f"theta_p_order_{n}", size / ARCSEC, both @ waves / size / ARCSEC, c, "arcsec")
 
 
 def _unit(c: Array, name: str) -> Array:

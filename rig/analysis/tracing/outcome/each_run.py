@@ -18,8 +18,8 @@ def of_each_run(effects: Iterable[str]) -> str:
 
 LOADED: Final = "load_dependent_kinematic_error"
 AT_LOAD: Final = (
-    "The orders of the kinematic error after the refit are those that stay under a load many times T_c; without load "
-    "they are 1/A_inf times as large."
+    "The orders of the kinematic error after the refit are those without load; under a load many times T_c A_inf of "
+    "them is left."
 )
 
 
