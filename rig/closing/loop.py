@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from rig.analysis.tracing.court.next_run import along
 from rig.analysis.tracing.outcome.result import CHANNELS, NextRun, Status, Trace
+from rig.analysis.tracing.selection.next_run import along
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs

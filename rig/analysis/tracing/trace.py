@@ -7,10 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import beyond_doubt, heard, is_calm
-from rig.analysis.tracing.court.judge import Court, court
-from rig.analysis.tracing.court.second import heard_further
-from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
 from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.encoder_lines import with_lines
@@ -27,6 +23,10 @@ from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
+from rig.analysis.tracing.selection.further import select_further
+from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks
+from rig.analysis.tracing.selection.selected import is_calm, is_certain, select
 from rig.analysis.tracing.workers import give_back, one_heap
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
@@ -45,7 +45,7 @@ class Prepared:
     measured: Measured
     first: Measured  # the same beside the baseline alone
     baseline: Solution
-    court: Court
+    held_out: HeldOut
     own: Own
 
     @cached_property
@@ -65,23 +65,26 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     covered = with_lines(covered, start, runs)
-    suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values() if shadow.searched)]
+    candidates = [
+        *CATALOGUE.values(),
+        *(confounder.effect for confounder in CONFOUNDERS.values() if confounder.searched),
+    ]
     # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
-    bank = fill(some(p.eq.afresh(), runs), suspects, runs, covered)
+    bank = fill(some(p.eq.afresh(), runs), candidates, runs, covered)
     found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
     give_back()
     again, found = _looked_again(p, found, bank, covered)
     give_back()
-    case = heard(again, found, runs, covered)
+    selected = select(again, found, runs, covered)
     if not quiet:
-        case = heard_further(case, found, bank, runs, covered)
-    if (quiet or is_calm(p)) and not beyond_doubt(case):
+        selected = select_further(selected, found, bank, runs, covered)
+    if (quiet or is_calm(p)) and not is_certain(selected):
         found = Found(start, found.ranking)
-        case = heard(p, found, runs, covered)
+        selected = select(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes
     give_back()
     found = replace(found, ranking=of_the_library(found.ranking))
-    return report(case.p, found, case.solution, case.held, case.worths, case.words)
+    return report(selected.p, found, selected.solution, selected.held, selected.scores, selected.words)
 
 
 def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
@@ -116,7 +119,9 @@ def _built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured
     bare = replace(bare, noise=measured.noise, own={})
     eq = replace(bare, own=own.columns())
     baseline = fit(design(bare, (), parts.fitted))
-    return Prepared(campaign, parts, bare, eq, measured, measured, baseline, court(eq, measured, parts.held_out), own)
+    return Prepared(
+        campaign, parts, bare, eq, measured, measured, baseline, held_out_blocks(eq, measured, parts.held_out), own
+    )
 
 
 def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.court.expected import proposals
-from rig.analysis.tracing.court.next_run import _fitted
 from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.selection.expected import proposals
+from rig.analysis.tracing.selection.next_run import _fitted
 from rig.analysis.tracing.trace import Prepared, prepare
 from tests.analysis.tracing.test_few_channels import reduced
 

@@ -11,7 +11,7 @@ from rig.core.units import ARCSEC
 
 
 def dismissed(found: Sequence[Candidate], verdict: Verdict, pooled: Errors) -> tuple[Candidate, ...]:
-    """`found`, with what stays above its floor (`pooled`) beside a suspect that nothing else was preferred to."""
+    """`found`, with what stays above its floor (`pooled`) beside a candidate that nothing else was preferred to."""
     named = {*verdict.effects, *verdict.rivals}
     return tuple(c if named else _with_the_rest(c, pooled) for c in found)
 

@@ -59,7 +59,7 @@ def free(
 
 def _chosen(p: Prepared) -> list[Key]:
     runs = p.eq.runs
-    able = [k for k in ((i, "A") for i in p.court.runs) if k in p.eq.rows and not runs[k[0]].locked]
+    able = [k for k in ((i, "A") for i in p.held_out.runs) if k in p.eq.rows and not runs[k[0]].locked]
     able = [k for k in able if {"t", "theta_l"} <= runs[k[0]].has]
     fastest = max(able, key=lambda k: runs[k[0]].turning, default=None)
     loaded = max(able, key=lambda k: abs(float(runs[k[0]].pieces[0].tau_ext[0])), default=None)

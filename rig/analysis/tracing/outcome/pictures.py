@@ -59,7 +59,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         for key in keys:
             out |= close_up(p, key, before[key], after[key])
     out |= by_turn(p, before, after) | by_order(p, before, after)
-    for i in p.court.runs:
+    for i in p.held_out.runs:
         run = p.eq.runs[i]
         speed = float(np.mean([q.omega_m.mean() for q in run.pieces])) * 60 / TURN
         turning = float(np.mean([np.abs(q.omega_m).mean() for q in run.pieces])) * 60 / TURN
@@ -71,7 +71,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
 
 def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], channel: str) -> dict[str, Array]:
     """`where.*` and `share.*` of one channel."""
-    first, last = (rest(p.eq, e, p.court.floors, channel, beside=False) for e in (before, after))
+    first, last = (rest(p.eq, e, p.held_out.floors, channel, beside=False) for e in (before, after))
     out: dict[str, Array] = {}
     if first is None or last is None:
         return out
@@ -83,8 +83,8 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
         stem = f"where.{channel}.{name}"
         out[f"{stem}.x"] = middles
         out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
-    if np.mean(first.e**2) > 1 + EXCESS and (whole := rest(p.eq, before, p.court.floors, channel)) is not None:
-        out |= shares(whole, p.court.floors, channel)
+    if np.mean(first.e**2) > 1 + EXCESS and (whole := rest(p.eq, before, p.held_out.floors, channel)) is not None:
+        out |= shares(whole, p.held_out.floors, channel)
     return out
 
 
@@ -93,7 +93,7 @@ def by_order(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
     out: dict[str, Array] = {}
     for channel in ("M", "L"):
         for name, e in (("before", before), ("after", after)):
-            r = rest(p.eq, e, dict.fromkeys(p.court.floors, 1.0), channel, beside=False)
+            r = rest(p.eq, e, dict.fromkeys(p.held_out.floors, 1.0), channel, beside=False)
             if r is not None and np.isfinite(r.at["motor_angle"]).all():
                 out["orders.motor_order"] = ORDERS
                 out[f"orders.{channel}.{name}"] = 2 * np.sqrt(spectrum(r.at["motor_angle"], r.e, ORDERS)) / r.e.size
