@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins
 from rig.analysis.tracing.selection.held_out import unseen
-from rig.analysis.tracing.trace import prepare
 from tests.analysis.tracing.test_few_channels import reduced
 from tests.contract.test_effects import motion
 

@@ -8,21 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.outcome.honest import in_words, left_open
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.thresholds import ALONE, MISSING
 from rig.core.units import RPM
 from rig.model.effect import Array, Parameter
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.selection.conclusion import Conclusion
-    from rig.analysis.tracing.trace import Prepared
 
 FURTHER: Final = 1.3  # of the speeds and torques fitted: up to there a law is taken on
 LEAST: Final = 2.0  # N·m beyond the torques fitted: less is a motor that starts

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SHOWN = 3000  # points of a run: more than a page is wide
 

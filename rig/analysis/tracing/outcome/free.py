@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,12 +12,10 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, rung, shown
 from rig.analysis.tracing.outcome.result import Before
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.units import ARCSEC, TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 CLOSE_UP: Final = 2.0  # motor turns
 BACK: Final = 0.01  # motor turns: more than jitter

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -11,15 +11,13 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.outcome.errors import UNITS
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.analysis.tracing.rest.shares import shares
 from rig.core.units import TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.rest.unknown import smooth_term
@@ -35,9 +35,6 @@ from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.verdict import decide
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array, Parameter
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
 

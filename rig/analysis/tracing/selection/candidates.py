@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -13,12 +13,10 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, extended, fit
 from rig.analysis.tracing.fit.search import Scored
 from rig.analysis.tracing.outcome.result import AT_REVERSALS, Candidate
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": AT_REVERSALS, "L": "tau_l"}
 TAKEN: Final = "; what stands in its place explains more"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
@@ -27,9 +27,6 @@ from rig.analysis.tracing.selection.sentences import how_often
 from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:

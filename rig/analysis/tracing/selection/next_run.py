@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,14 +12,11 @@ from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.selection.expected import TWICE, Proposal, imagined, proposals, sigmas
 from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
-
 
 SIGMAS: Final = 3.0  # standard deviations, at least
 HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.held_out import unseen
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 
 def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:

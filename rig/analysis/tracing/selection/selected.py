@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
@@ -12,6 +11,7 @@ from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import backward_elimination, unresolved
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
@@ -19,10 +19,6 @@ from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
 from rig.model.effect import Array, Parameter, Reach
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
-
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
@@ -11,6 +10,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.selection.conclusion import Conclusion
@@ -22,9 +22,6 @@ from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_res
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 
 def decide(
