@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.led import Model, model_of, rung
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, rung, shown
+from rig.analysis.tracing.outcome.replay import GONE, replayed, shown
 from rig.analysis.tracing.outcome.result import Before
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
