@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.rest import in_the_floor
 from rig.analysis.tracing.rest.home import Home
@@ -154,4 +154,4 @@ def test_every_channel_is_listened_to_whoever_does_it(monkeypatch: pytest.Monkey
     p: Any = SimpleNamespace(eq=nothing, split=nothing, held_out=nothing)
     conclusion = hidden._in_the_floor(p, nothing, {}, {})
     assert conclusion is not None
-    assert hidden.IN_WORDS[loudest] in conclusion.verdict.sentence
+    assert CHANNEL[loudest].name in conclusion.verdict.sentence

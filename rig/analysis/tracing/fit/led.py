@@ -1,4 +1,4 @@
-"""A motor led along a motion, and the load that follows it: the fitted model integrated      [ghorbel2001, Eqs. 6-8]
+"""A motor led along a motion, and the load that follows it: the fitted model integrated      [ghorbel2001, Eqs. 6-7]
 
     J_l·θ̈_l = T + τ_ext − B_l·ω_l − τ_cl·sgn ω_m − l,   T = K·δ + B_sp·δ̇,   δ = θ_m/N − θ̃_p − a − θ_l
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rig.analysis.tracing.fit import parameters
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
@@ -19,7 +19,7 @@ from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.pictures import pictures
-from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
@@ -35,8 +35,6 @@ from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.verdict import decide
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array, Parameter
-
-SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
 
 
 def report(
@@ -126,7 +124,7 @@ def _with_a_curve(
 def _floors(p: Prepared) -> tuple[Floor, ...]:
     """Of the channels in which one was measured."""
     noise, how = p.measured.noise, p.measured.how
-    return tuple(Floor(SENSORS[c][0], noise.sigma[c], SENSORS[c][1], how[c]) for c in WHOLE if c in how)
+    return tuple(Floor(CHANNEL[c].key, noise.sigma[c], CHANNEL[c].unit, how[c]) for c in WHOLE if c in how)
 
 
 def _shown(
@@ -145,10 +143,10 @@ def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     """RMS over floor, by sensor, on held-out runs."""
     out = {}
-    for c, name in (*((c, sensor) for c, (sensor, _) in SENSORS.items()), ("R", AT_REVERSALS)):
+    for c in (*WHOLE, "R"):
         keys = [k for k in e if k[1] == c]
         if keys:
-            out[name] = p.held_out.ratio(e, keys)
+            out[CHANNEL[c].key] = p.held_out.ratio(e, keys)
     return out
 
 
@@ -160,5 +158,5 @@ def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
         total = sum(float(np.var(p.eq.rows[k].y) * p.eq.rows[k].y.size) for k in keys)
         left = sum(float(e[k] @ e[k]) - p.held_out.floors[k] ** 2 * e[k].size for k in keys)
         if total > 0:
-            out[SENSORS[c][0]] = float(np.clip(left / total, 0.0, 1.0))
+            out[CHANNEL[c].key] = float(np.clip(left / total, 0.0, 1.0))
     return out

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Final
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
-
-AT_REVERSALS: Final = "tau_m_at_reversals"  # beside the sensors' names: the motor torque where the motor turns back
-CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
-"""What is compared in each sensor, in words."""
 
 
 class Status(StrEnum):

@@ -8,19 +8,17 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNEL, CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, extended, fit
 from rig.analysis.tracing.fit.search import Scored
-from rig.analysis.tracing.outcome.result import AT_REVERSALS, Candidate
+from rig.analysis.tracing.outcome.result import Candidate
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
 
-SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": AT_REVERSALS, "L": "tau_l"}
 TAKEN: Final = "; what stands in its place explains more"
-IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "R": "motor torque at reversals", "L": "shaft torque"}
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ def candidates(
     out, held = [], unseen(p.baseline, p.held_out)
     for r in ranking:
         found = tried(p, r, held, before)
-        rms = {SENSORS[c]: value for c, value in found.rms.items()}
+        rms = {CHANNEL[c].key: value for c, value in found.rms.items()}
         why = reason(found, r.term.name, named) + (TAKEN if r.term.name in confounded else "")
         out.append(Candidate(r.term.name, r.evidence, why, rms))
     return tuple(out)
@@ -74,13 +72,12 @@ def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> 
 
 def reason(found: Tried, name: str, named: Sequence[str]) -> str:
     """One sentence on what it does alone, and beside the effects that were named."""
-    where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
+    quantity = CHANNEL[found.channel].name
+    where = f"of the excess in the held-out {quantity}"
     if abs(found.share) < 0.005:
         return f"alone it removes nothing {where}"
     if found.share < 0:
-        return (
-            f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-100 * found.share:.0f} % of its excess"
-        )
+        return f"alone it makes the held-out {quantity} worse, by {-100 * found.share:.0f} % of its excess"
     if found.share < NAMED:
         return f"alone it removes {100 * found.share:.0f} % {where}, {100 * NAMED:.0f} % would be asked for"
     needless = "" if name in named or not named else f"; beside {' and '.join(named)} it is not needed"

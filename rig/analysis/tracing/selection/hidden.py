@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
@@ -20,7 +20,6 @@ from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.holdout import whole_run
-from rig.analysis.tracing.selection.candidates import IN_WORDS
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.next_run import along
 from rig.analysis.tracing.selection.sentences import how_often
@@ -58,8 +57,8 @@ def _in_the_floor(
         what = f"something that comes back {home.order:.3f} times a turn of the motor"
     differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
     sentence = (
-        f"{differing} differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
-        "it is in the floor, and no effect of the library explains it."
+        f"{differing} differ in {CHANNEL[home.channel].name} because of {what} "
+        f"({min(home.share, 1.0):.0%} of {of_what}); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
@@ -78,7 +77,7 @@ def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
     quiet = [k for k, ratio in over.items() if ratio < MISSING] + [*p.held_out.floors]
     others = [p.eq.runs[i] for i, c in quiet if c == worst[1] and whole_run(p.eq.runs[i].name) != whole_run(run.name)]
     twins = [other for other in others if alike(other, run)]
-    left = f"{run.name} has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
+    left = f"{run.name} has {over[worst]:.1f} times the floor left in {CHANNEL[worst[1]].name}"
     if twins:
         coordinate = "time"
         what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
