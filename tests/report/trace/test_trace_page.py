@@ -229,7 +229,7 @@ def test_an_explanation_that_leaves_a_channel_above_its_floor_says_so() -> None:
     assert "Not all of it" not in read(base).words
 
 
-def test_every_suspect_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
+def test_every_candidate_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
     words = pages["explained"].words
     assert "Alone it removes 3 % of the excess, 60 % would be asked for." in words
     assert "No more than chance gives." in words  # 5 nats
