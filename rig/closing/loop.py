@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from rig.analysis.tracing.court.next_run import along
-from rig.analysis.tracing.outcome.result import CHANNELS, NextRun, Status, Trace
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
+from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
+from rig.analysis.tracing.selection.next_run import along
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
@@ -124,7 +125,7 @@ def words(found: Round) -> str:
     """A round in a few lines."""
     before, after = found.over_floor_before, found.over_floor_after
     errors = ", ".join(
-        f"{word} {before[c]:.2f} → {after[c]:.2f}" for c, word in CHANNELS.items() if c in before and c in after
+        f"{word} {before[c]:.2f} → {after[c]:.2f}" for c, word in SENSOR_NAMES.items() if c in before and c in after
     )
     runs = f"{counted(found.fitted, 'run')} fitted and {found.held_out} held out"
     return (

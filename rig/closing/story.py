@@ -9,8 +9,9 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import CHANNELS, Status, Trace
+from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.errors import NotReady, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
@@ -63,7 +64,7 @@ class Round:
 
 def left(found: Round) -> str:
     """What the trace's page calls not explained although the verdict has a name for most; "" where there is none."""
-    loud = {word: r for c, word in CHANNELS.items() if (r := found.over_floor_after.get(c, 0.0)) > EXPLAINED}
+    loud = {word: r for c, word in SENSOR_NAMES.items() if (r := found.over_floor_after.get(c, 0.0)) > EXPLAINED}
     said = " and ".join(f"the {word} stays at {ratio:.2f} times its floor" for word, ratio in loud.items())
     return f"Not all of it: {said}, and what that is, is not known." if said else ""
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rig.analysis.tracing.court.next_run import along
 from rig.analysis.tracing.rest.home import SIMPLE
+from rig.analysis.tracing.selection.next_run import along
 from rig.bench import read
 from rig.campaign.plan import parse_plan
 from rig.campaign.planner import planned

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.court.next_run import along
 from rig.analysis.tracing.outcome.result import Before, Errors, NextRun, Status, Trace, Verdict
+from rig.analysis.tracing.selection.next_run import along
 from rig.bench import read
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.plan import parse_plan

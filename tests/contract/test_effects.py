@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.shadows import SHADOWS
 from rig.analysis.tracing.fit.equations import Term, acting
 from rig.analysis.tracing.floor.steps import Steps
 from rig.analysis.tracing.floor.vibration import Line, Vibration
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
 from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY, missed_counts
 from rig.model.fourier import FourierSeries
@@ -28,7 +28,7 @@ REACH = Reach(
 WITHIN = dataclasses.replace(REACH, duration=3.0)  # instants that fall into `motion`
 FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}
 ANGLE_LOCKED = {"output_once_per_rev", "flexspline_frame_error", "tooth_mesh_error", "load_dependent_kinematic_error"}
-KNOWN_LAWS = (*LIBRARY.values(), *(shadow.effect for shadow in SHADOWS.values()))
+KNOWN_LAWS = (*LIBRARY.values(), *(confounder.effect for confounder in CONFOUNDERS.values()))
 every_effect = pytest.mark.parametrize("effect", LIBRARY.values(), ids=list(LIBRARY))
 
 

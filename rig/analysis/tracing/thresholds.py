@@ -1,4 +1,7 @@
-"""Every number that decides something in a trace, with its reason."""
+"""Thresholds and settings of a trace, each with its reason: of reading, floor, fit, search, selection and verdict.
+
+What belongs to one method alone (its bins, steps, draws, and now and then a limit of its own) stands in its module.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,8 @@ from typing import Final
 
 RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 orders at 400 rpm end at 100 Hz
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
-SLOWEST_TURNING: Final = (
-    0.04  # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
-)
+# rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
+SLOWEST_TURNING: Final = 0.04
 LOOSE: Final = 0.01  # s on both sides of a reversal in which the motor may stick: nothing is known of its friction
 SETTLING: Final = 0.05  # s left out of the torque equations on both sides of a reversal: what stuck has come loose
 
@@ -50,18 +52,16 @@ SEVERAL: Final = 3  # fitted runs, from which on one size in all of them says so
 ASTRAY: Final = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 ALIKE: Final = 0.8  # of the evidence of the effect that stands: a look-alike that may be what it is
 KNOWN: Final = 1 / 3  # of itself, half a 95 % interval: a second choice must know the number that scales it so well
-TRIED: Final = 2  # suspects heard again, each by itself: each costs a hearing
-TURNS: Final = 4  # effects the search found first, heard one after the other
+TRIED: Final = 2  # candidates tried again, each by itself: each costs a selection
+TURNS: Final = 4  # prefixes of what the search found, each selected from anew
 HARMFUL: Final = 1.1  # RMS of a loud channel over that without the effect: what explains one sensor spoils no other
-PLAIN_ENOUGH: Final = (
-    0.8  # of the best coordinate's share: a simpler one that does nearly as well is said instead: times and
-)
-# memories have many bins, and predict a part of whatever differs from run to run
+# of the best coordinate's share: a simpler one that does nearly as well is said instead: times and memories have many
+# bins, and predict a part of whatever differs from run to run
+PLAIN_ENOUGH: Final = 0.8
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
 TURNED: Final = 2.0  # the same at reversals beside what was named; presliding that was missed leaves five and more
-ALONE: Final = (
-    2.0  # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
-)
+# the same where nothing was found to explain any of it: the floor of one condition is that of one pair
+ALONE: Final = 2.0
 IN_ONE_RUN: Final = 2.5  # RMS over floor of a fitted run that is no noise any more, though unseen runs leave nothing
 LOCKS_DIFFER: Final = 3.0  # times as much as runs that turn freely: on clean campaigns 0.8 to 1.4
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
@@ -70,7 +70,7 @@ MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said
 PART: Final = 0.25  # of a channel's excess: names that take no more are none beside all the rest
 AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there it is not what it is called
 CLOSE: Final = 0.95  # of what an effect explains alone another one must reach to be called a rival
-STILL: Final = 1.02  # RMS over floor of a channel below which only what is beyond doubt is said
+STILL: Final = 1.02  # RMS over floor of a channel below which only what is certain is said
 STILL_RUN: Final = 1.25  # the same of a single run
 LINE: Final = 15.0  # power over its surroundings: chance gets there in one of three million lines
 LINE_RUNS: Final = 0.5  # of the runs that must show the line

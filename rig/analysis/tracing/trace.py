@@ -3,55 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 
-from rig.analysis.tracing.court.hearing import beyond_doubt, heard, is_calm
-from rig.analysis.tracing.court.judge import Court, court
-from rig.analysis.tracing.court.second import heard_further
-from rig.analysis.tracing.court.shadows import SHADOWS, of_the_library
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
-from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.encoder_lines import with_lines
-from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
-from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.fit.search import Found, relawed, still
 from rig.analysis.tracing.fit.some import search_some, some
-from rig.analysis.tracing.floor.noise import Measured, guess, measure, quieter
-from rig.analysis.tracing.floor.of_a_run import floor_of
-from rig.analysis.tracing.floor.own import Own, find
+from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.floor.own import find
 from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace
-from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
-from rig.analysis.tracing.runs.holdout import Split, split
-from rig.analysis.tracing.runs.scale import off_scale
-from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.prepared import Prepared, built, prepare
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
+from rig.analysis.tracing.selection.further import select_further
+from rig.analysis.tracing.selection.selected import is_calm, is_certain, select
 from rig.analysis.tracing.workers import give_back, one_heap
-from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """The baseline fitted and the floor measured. `eq` has the columns of the effects in `own`, which every run shows
-    in its own way; `bare` has none."""
-
-    campaign: Campaign
-    split: Split
-    bare: Equations
-    eq: Equations
-    measured: Measured
-    first: Measured  # the same beside the baseline alone
-    baseline: Solution
-    court: Court
-    own: Own
-
-    @cached_property
-    def floors(self) -> dict[Key, float]:
-        """Of the fitted blocks."""
-        return {key: floor_of(self.measured, self.eq, key) for key in self.eq.of(self.split.fitted)}
 
 
 def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
@@ -65,58 +36,26 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     covered = with_lines(covered, start, runs)
-    suspects = [*CATALOGUE.values(), *(shadow.effect for shadow in SHADOWS.values() if shadow.searched)]
+    candidates = [
+        *CATALOGUE.values(),
+        *(confounder.effect for confounder in CONFOUNDERS.values() if confounder.searched),
+    ]
     # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
-    bank = fill(some(p.eq.afresh(), runs), suspects, runs, covered)
+    bank = fill(some(p.eq.afresh(), runs), candidates, runs, covered)
     found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
     give_back()
     again, found = _looked_again(p, found, bank, covered)
     give_back()
-    case = heard(again, found, runs, covered)
+    selected = select(again, found, runs, covered)
     if not quiet:
-        case = heard_further(case, found, bank, runs, covered)
-    if (quiet or is_calm(p)) and not beyond_doubt(case):
+        selected = select_further(selected, found, bank, runs, covered)
+    if (quiet or is_calm(p)) and not is_certain(selected):
         found = Found(start, found.ranking)
-        case = heard(p, found, runs, covered)
+        selected = select(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes
     give_back()
     found = replace(found, ranking=of_the_library(found.ranking))
-    return report(case.p, found, case.solution, case.held, case.worths, case.words)
-
-
-def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
-    """Split, fit the baseline, measure the floor, look for what each run has to itself, fit again."""
-    parts = split(campaign.runs, hold_out)
-    eq = equations(parts.runs, Noise({}, {}, {}))
-    if not eq.of(parts.fitted) or not eq.of(parts.held_out):
-        raise UsageError(
-            f"{campaign.name}: no run to fit, or none to test with, has two angles or an angle and a torque"
-        )
-    refuse_odd_torques(campaign.runs, campaign.name)
-    if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
-        said = f" ({'; '.join(campaign.notes)[:300]})" if campaign.notes else ""
-        raise UsageError(
-            f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one{said}"
-        )
-    eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
-    s = fit(design(eq, (), parts.fitted))
-    refuse_negative(s, campaign.name)
-    campaign = replace(campaign, notes=(*campaign.notes, *off_scale(s, campaign.name)))
-    measured = measure(s, parts.fitted)
-    eq = replace(eq, noise=measured.noise)
-    eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
-    s = fit(design(eq, (), parts.fitted))
-    own = find(s, parts)
-    if columns := own.columns():
-        s = fit(design(replace(eq, own=columns), (), parts.fitted))
-    return _built(campaign, parts, eq, measure(s, parts.fitted), own)
-
-
-def _built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured, own: Own) -> Prepared:
-    bare = replace(bare, noise=measured.noise, own={})
-    eq = replace(bare, own=own.columns())
-    baseline = fit(design(bare, (), parts.fitted))
-    return Prepared(campaign, parts, bare, eq, measured, measured, baseline, court(eq, measured, parts.held_out), own)
+    return report(selected.p, found, selected.solution, selected.held, selected.scores, selected.words)
 
 
 def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
@@ -137,6 +76,6 @@ def _looked_again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tupl
     measured = quieter(p.measured, measure(with_own, runs))
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
-    again = replace(_built(p.campaign, p.split, eq, measured, own), first=p.first)
+    again = replace(built(p.campaign, p.split, eq, measured, own), first=p.first)
     s = relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
     return again, search_some(s.design, bank, runs, covered, again.floors, ranking=found.ranking)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from rig.analysis.tracing.outcome.result import CHANNELS
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.model.effect import Parameter
 from rig.report.numbers import ABSENT, counted
 from rig.report.trace.sizes import said
@@ -24,7 +24,7 @@ def changes(last: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     out += [f"Named now: {_listed(new)}."] if new else []
     out += [f"Named no more: {_listed(gone)}."] if gone else []
     before, after = last["over_floor_after"], now["over_floor_after"]
-    for sensor, word in CHANNELS.items():
+    for sensor, word in SENSOR_NAMES.items():
         if sensor in before and sensor in after and abs(after[sensor] - before[sensor]) > APART:
             on = counted(now["held_out"], "held-out run")
             on += f" instead of {last['held_out']}" if now["held_out"] != last["held_out"] else ""

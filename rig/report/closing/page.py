@@ -9,7 +9,7 @@ from typing import Any, Final
 import jinja2
 from markupsafe import Markup
 
-from rig.analysis.tracing.outcome.result import CHANNELS
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.core.errors import NotReady, UsageError
 from rig.report import page as run_page
 from rig.report import words as run_words
@@ -62,7 +62,7 @@ def render(story: Mapping[str, Any]) -> str:
         "ruling": RULINGS[story["end"]],
         "minutes": rounds[-1]["minutes"] if rounds else 0.0,
         "rounds": [_round(r, before) for r, before in zip(rounds, [None, *rounds], strict=False)],
-        "heads": [word for c, word in CHANNELS.items() if any(c in r["over_floor_after"] for r in rounds)],
+        "heads": [word for c, word in SENSOR_NAMES.items() if any(c in r["over_floor_after"] for r in rounds)],
         "drawn": drawn,
         "errors": _errors(rounds[-1]) if rounds else [],
         "css": Markup(f"{run_page._css(story['campaign'], origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
@@ -79,7 +79,7 @@ def render(story: Mapping[str, Any]) -> str:
 
 def _round(r: Mapping[str, Any], last: Mapping[str, Any] | None) -> dict[str, Any]:
     before, after = r["over_floor_before"], r["over_floor_after"]
-    ratios = [(word, before[c], after[c]) for c, word in CHANNELS.items() if c in before and c in after]
+    ratios = [(word, before[c], after[c]) for c, word in SENSOR_NAMES.items() if c in before and c in after]
     return {
         "number": r["number"],
         "status": r["status"].replace("_", " "),

@@ -9,13 +9,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
-from rig.analysis.tracing.outcome.result import CHANNELS
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.report.figures.canvas import Array, Curves, Drawing, Frame, foot, key, log_axis, sheet, title
 from rig.report.palette import LIGHT
 from rig.report.trace.figures.style import AFTER, BEFORE, FLOOR, handle
 
-NAMES: Final = {sensor: word.capitalize() for sensor, word in CHANNELS.items()}
+NAMES: Final = {sensor: word.capitalize() for sensor, word in SENSOR_NAMES.items()}
 ROOM: Final = 0.35  # of a round, left and right of the first and the last
 
 

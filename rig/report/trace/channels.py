@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.outcome.result import Errors, Trace
 from rig.core.units import ARCSEC
 
@@ -30,11 +31,16 @@ class Channel(NamedTuple):
         return None if found is None else found * self.scale
 
 
+def _shown(letter: str, short: str, unit: str, factor: float, scale: float) -> Channel:
+    of = CHANNEL[letter]
+    return Channel(letter, of.key, of.name.capitalize(), short, unit, factor, scale)
+
+
 CHANNELS = (
-    Channel("A", "theta_l", "Kinematic error", "θ̃", "arcsec", 1 / ARCSEC, 1.0),
+    _shown("A", "θ̃", "arcsec", 1 / ARCSEC, 1.0),
     # the motor's friction is a few hundredths of a N·m, its floor a few thousandths
-    Channel("M", "tau_m", "Motor torque", "τ_m", "mN·m", 1e3, 1e3),
-    Channel("L", "tau_l", "Shaft torque", "τ_l", "N·m", 1.0, 1.0),
+    _shown("M", "τ_m", "mN·m", 1e3, 1e3),
+    _shown("L", "τ_l", "N·m", 1.0, 1.0),
 )
 
 

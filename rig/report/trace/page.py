@@ -47,7 +47,7 @@ def render(trace: Trace, source: Provenance) -> str:
     """The page as text. The same arguments give the same text: no clock and no random number is asked."""
     origin = _origin(trace, source)
     curves = drawn(trace)
-    lines, silent = tables.suspects(trace)
+    lines, silent = tables.candidates(trace)
     heads, each = tables.each_run(trace)
     physical, orders = tables.moved(trace)
     plots = _plots((*WHERE, *BEFORE_AFTER), curves, origin.mark)
@@ -72,7 +72,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "floors": tables.floors(trace),
         "told": home.told(curves),
         "lives": [words.place(c) for c in trace.lives_in],
-        "suspects": lines,
+        "candidates": lines,
         "silent": listed(silent),
         "added": words.added(trace),
         "own": words.of_each_run(trace),

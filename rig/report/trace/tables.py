@@ -1,4 +1,4 @@
-"""The tables of a trace: baseline, floor, suspects, what was added, held-out runs."""
+"""The tables of a trace: baseline, floor, candidates, what was added, held-out runs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Moved(NamedTuple):
     far: bool  # the intervals do not meet
 
 
-class Suspect(NamedTuple):
+class CandidateRow(NamedTuple):
     """One effect of the library and what became of it."""
 
     name: str
@@ -75,14 +75,14 @@ def _moved(a: Parameter, b: Parameter) -> Moved:
     return Moved(symbol, meaning, said(a), said(b), percent, times, far)
 
 
-def suspects(trace: Trace) -> tuple[list[Suspect], list[str]]:
+def candidates(trace: Trace) -> tuple[list[CandidateRow], list[str]]:
     """Effects that explained anything, best first; and the names of those that explained nothing beyond chance."""
-    shown = [_suspect(trace, c) for c in sorted(trace.candidates, key=lambda c: -c.evidence)]
-    heard = {c.effect for c in trace.candidates}
-    return shown, [words.named(n).lower() for n in CATALOGUE if n not in heard]
+    shown = [_row(trace, c) for c in sorted(trace.candidates, key=lambda c: -c.evidence)]
+    tried = {c.effect for c in trace.candidates}
+    return shown, [words.named(n).lower() for n in CATALOGUE if n not in tried]
 
 
-def _suspect(trace: Trace, c: Candidate) -> Suspect:
+def _row(trace: Trace, c: Candidate) -> CandidateRow:
     v = trace.verdict
     in_model = {e.effect for e in trace.effects} | set(v.effects)
     equals = {*v.rivals, *v.effects} if v.status is Status.AMBIGUOUS else set(v.rivals)
@@ -95,7 +95,9 @@ def _suspect(trace: Trace, c: Candidate) -> Suspect:
     why = " ".join(
         f"{part.rstrip('.')}." for part in (_ruled(trace, c, ruling), _capital(words.plainly(c.why))) if part
     )
-    return Suspect(words.named(c.effect), words.in_short(c.effect), plain(c.evidence, 3), errors, ruling, why or ABSENT)
+    return CandidateRow(
+        words.named(c.effect), words.in_short(c.effect), plain(c.evidence, 3), errors, ruling, why or ABSENT
+    )
 
 
 def _ruled(trace: Trace, c: Candidate, ruling: str) -> str:

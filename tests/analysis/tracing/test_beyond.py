@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.ruling import Ruling
 from rig.analysis.tracing.outcome.beyond import Beyond, beyond, undecided
 from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Parameter, parameter
 from tests.analysis.tracing.test_few_channels import reduced
@@ -28,15 +28,15 @@ def run(rpm: float, torque: float = 5.0, locked: bool = False) -> Any:
 
 
 def prepared(fitted: list[Any], held: list[Any], loud: set[int] = frozenset()) -> Any:  # type: ignore[assignment]
-    """As much of a trace as is asked: runs, and a court to which the runs `loud` are too loud."""
+    """As much of a trace as is asked: runs, and held-out blocks of which the runs `loud` are too loud."""
     n = len(fitted)
-    court = SimpleNamespace(
+    held_out = SimpleNamespace(
         runs=tuple(range(n, n + len(held))),
         loud=lambda e, one: any(i in loud for i, _ in e),
         worst=lambda e: (27.5, 30.0),
     )
     split = SimpleNamespace(fitted=tuple(range(n)))
-    return SimpleNamespace(eq=SimpleNamespace(runs=(*fitted, *held)), split=split, court=court)
+    return SimpleNamespace(eq=SimpleNamespace(runs=(*fitted, *held)), split=split, held_out=held_out)
 
 
 def found(p: Any, *baseline: Parameter) -> Beyond:
@@ -84,7 +84,7 @@ def test_the_sentence_names_runs_numbers_and_what_they_do_not_determine() -> Non
     )
 
 
-UNKNOWN = Ruling(
+UNKNOWN = Conclusion(
     Verdict(Status.UNKNOWN, (), (), "load", None, None, "What is left lives in load."),
     Home("load", "M", 1.77),
     ("load",),
@@ -95,19 +95,21 @@ AFTER: Any = {(1, "M"): np.ones(3), (2, "M"): np.ones(3)}
 
 def test_what_stands_outside_alone_decides_nothing() -> None:
     p = prepared([run(10.0)], [run(10.0), run(400.0)], loud={2})
-    ruling, decided = undecided(p, UNKNOWN, AFTER, found(p))
+    conclusion, decided = undecided(p, UNKNOWN, AFTER, found(p))
     assert not decided
-    assert ruling.verdict.status is Status.AMBIGUOUS
-    assert ruling.verdict.sentence.startswith("Not decided: the held-out runs are 27.5 times the floor off, but 1 of 2")
-    assert (ruling.home, ruling.next_run, ruling.lives_in) == (None, None, ())
+    assert conclusion.verdict.status is Status.AMBIGUOUS
+    assert conclusion.verdict.sentence.startswith(
+        "Not decided: the held-out runs are 27.5 times the floor off, but 1 of 2"
+    )
+    assert (conclusion.home, conclusion.next_run, conclusion.lives_in) == (None, None, ())
 
 
 def test_what_stands_inside_too_is_left_and_the_range_is_a_word_beside_it() -> None:
     p = prepared([run(10.0)], [run(10.0), run(400.0)], loud={1, 2})
-    ruling, decided = undecided(p, UNKNOWN, AFTER, found(p))
+    conclusion, decided = undecided(p, UNKNOWN, AFTER, found(p))
     assert decided
-    assert ruling.verdict == UNKNOWN.verdict
-    assert ruling.cannot == (found(p).sentence(),)
+    assert conclusion.verdict == UNKNOWN.verdict
+    assert conclusion.cannot == (found(p).sentence(),)
     assert undecided(p, UNKNOWN, AFTER, None) == (UNKNOWN, True)
 
 

@@ -11,8 +11,8 @@ import pytest
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.trace import Prepared, prepare
 
 pytestmark = pytest.mark.xdist_group("encoder lines")  # what the module makes is made once, not for every worker
 

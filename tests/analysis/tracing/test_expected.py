@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.expected import proposals, sigmas, unexplained
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.trace import prepare
+from rig.analysis.tracing.selection.expected import proposals, sigmas, unexplained
 from rig.model.effects import CATALOGUE
 from tests.analysis.tracing.test_few_channels import reduced
 

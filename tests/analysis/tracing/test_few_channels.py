@@ -11,9 +11,10 @@ import pytest
 
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Trace
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.cannot import cannot, together
-from rig.analysis.tracing.trace import prepare, trace
+from rig.analysis.tracing.trace import trace
 from rig.core.errors import UsageError
 
 pytestmark = pytest.mark.xdist_group("few channels")  # what the module makes is made once, not for every worker

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit.led import Model, rung
 from rig.analysis.tracing.outcome.free import _one_way, together
 from rig.analysis.tracing.outcome.free_told import free_told, over_floor
-from rig.analysis.tracing.outcome.replay import Model, rung
 from rig.analysis.tracing.outcome.result import Before, Errors, Status, Trace
 from rig.model.effect import Known, parameter
 from rig.model.fourier import FourierSeries

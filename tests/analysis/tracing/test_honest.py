@@ -1,4 +1,4 @@
-"""Parameters are given as far as the runs tell them, and a suspect that does most is dismissed with a reason."""
+"""Parameters are given as far as the runs tell them, and a candidate that does most is dismissed with a reason."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ GRAVITY = Candidate(
 )
 
 
-def test_a_suspect_that_removes_all_of_one_channel_is_dismissed_with_what_it_leaves() -> None:
+def test_a_candidate_that_removes_all_of_one_channel_is_dismissed_with_what_it_leaves() -> None:
     unknown = Verdict(Status.UNKNOWN, (), (), "load_angle", None, None, "")
     (found,) = dismissed([GRAVITY], unknown, FLOORS)
     assert found.why == (

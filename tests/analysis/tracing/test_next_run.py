@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.court.expected import proposals
-from rig.analysis.tracing.court.next_run import _fitted
+from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.trace import Prepared, prepare
+from rig.analysis.tracing.selection.expected import proposals
+from rig.analysis.tracing.selection.next_run import _fitted
 from tests.analysis.tracing.test_few_channels import reduced
 
 RUNS = [f"{name}_{k}" for name in ("slow_ke", "speed_120rpm", "speed_300rpm", "speed_400rpm") for k in (1, 2)]

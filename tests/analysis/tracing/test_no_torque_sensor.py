@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.judge import unseen
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins
-from rig.analysis.tracing.trace import prepare
+from rig.analysis.tracing.selection.held_out import unseen
 from tests.analysis.tracing.test_few_channels import reduced
 from tests.contract.test_effects import motion
 
@@ -39,7 +39,7 @@ def test_stiffness_and_inertia_are_right_and_the_fast_runs_at_the_floor(tmp_path
     p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-1", RUNS, ("tau_l",))), ())
     assert 1 / p.baseline.value("compliance") == pytest.approx(truth["K"], rel=6e-3)
     assert p.baseline.value("J_m") == pytest.approx(truth["Jm"], rel=5e-3)
-    left = p.court.residuals(p.baseline, unseen(p.baseline, p.court))
-    fast = {key: p.court.ratio(left, [key]) for key in left if "400" in p.eq.runs[key[0]].name}
+    left = p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out))
+    fast = {key: p.held_out.ratio(left, [key]) for key in left if "400" in p.eq.runs[key[0]].name}
     assert fast
     assert max(fast.values()) < 1.1, fast

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rig.analysis.tracing.court.one_sided import one_sided
+from rig.analysis.tracing.selection.one_sided import one_sided
 from rig.model.effect import Parameter, parameter
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from rig.analysis.tracing.fit.channels import AT_REVERSALS
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import AT_REVERSALS
 from rig.analysis.tracing.trace import trace
 
 pytestmark = pytest.mark.slow

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.suspects import Tried, reason
 from rig.analysis.tracing.outcome.pictures import interval
 from rig.analysis.tracing.rest.binned import folds
 from rig.analysis.tracing.rest.bins import BINNED, rms
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, score_of_orders, shares
+from rig.analysis.tracing.selection.candidates import Tried, reason
 
 SLOW, FAST = 0.6, 20.0  # output rad seen in a run
 
@@ -123,7 +123,7 @@ def test_an_interval_covers_the_truth_as_often_as_it_says() -> None:
     assert hits >= 50  # of 60; 57 are expected, and 50 or fewer come by once in some hundred tries
 
 
-def test_the_reason_says_how_much_a_suspect_removes_and_what_would_be_asked_for() -> None:
+def test_the_reason_says_how_much_a_candidate_removes_and_what_would_be_asked_for() -> None:
     assert reason(Tried({}, 0.05, "A"), "lost_motion", ("cogging_torque",)) == (
         "alone it removes 5 % of the excess in the held-out kinematic error, 60 % would be asked for"
     )

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.outcome.replay import Anderson, Model, _kinematic_error
+from rig.analysis.tracing.fit.led import Model
+from rig.analysis.tracing.outcome.replay import Anderson, _kinematic_error
 from rig.model.effect import Known, Signals
 from rig.model.effects import CATALOGUE
 from rig.model.fourier import FourierSeries

@@ -11,9 +11,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.units import odd_angles
-from rig.analysis.tracing.trace import prepare
 from rig.core.errors import UsageError
 
 RUNS = ("slow_ke_1", "slow_ke_2", "load_10nm_1", "load_10nm_2", "speed_200rpm_1", "speed_200rpm_2")

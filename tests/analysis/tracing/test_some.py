@@ -10,9 +10,9 @@ import pytest
 from rig.analysis.tracing.fit.bank import fill, reach
 from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.fit.some import laid_out, search_some, some
+from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.smoothing import Smoother
-from rig.analysis.tracing.trace import prepare
 from rig.model.effects import CATALOGUE
 from tests.analysis.tracing.test_expected import RUNS
 from tests.analysis.tracing.test_few_channels import reduced

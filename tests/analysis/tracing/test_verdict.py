@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rig.analysis.tracing.court.judge import Worth
-from rig.analysis.tracing.court.verdict import _share as share
-from rig.analysis.tracing.court.verdict import _standing as standing
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.verdict import _share as share
+from rig.analysis.tracing.selection.verdict import _standing as standing
 from rig.analysis.tracing.thresholds import PART
 
-CLEAN = Worth("cogging_torque", 0.7, 3.0, 1.1, 1.0, (), anywhere=1.1)
-PLAIN = Worth("hysteretic_stiffness", 0.9, 30.0, 6.0, 1.0, (), anywhere=6.0)
-NEITHER = Worth("lost_motion", 0.7, 3.0, 2.0, 1.0, (), anywhere=2.0)
+CLEAN = HeldOutScore("cogging_torque", 0.7, 3.0, 1.1, 1.0, (), anywhere=1.1)
+PLAIN = HeldOutScore("hysteretic_stiffness", 0.9, 30.0, 6.0, 1.0, (), anywhere=6.0)
+NEITHER = HeldOutScore("lost_motion", 0.7, 3.0, 2.0, 1.0, (), anywhere=2.0)
 ALL = [CLEAN, PLAIN, NEITHER]
 
 
-def named(coordinate: str, told: bool, *worths: Worth) -> tuple[str, ...]:
-    return standing(coordinate, [w.name for w in worths], worths, {w.name for w in worths if w.plain}, told)
+def named(coordinate: str, told: bool, *scores: HeldOutScore) -> tuple[str, ...]:
+    return standing(
+        coordinate, [score.name for score in scores], scores, {score.name for score in scores if score.plain}, told
+    )
 
 
 def test_what_is_plain_to_see_stands_and_what_leaves_nothing_where_it_acts() -> None:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court import hidden as court
-from rig.analysis.tracing.court.next_run import Alone, _as_good
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.rest import in_the_floor
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves
 from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.selection import hidden
+from rig.analysis.tracing.selection.next_run import Alone, _as_good
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 
 PERIOD = 230.0  # s, between the shortest run and the campaign
@@ -147,11 +147,11 @@ def test_every_channel_is_listened_to_whoever_does_it(monkeypatch: pytest.Monkey
         found = [Home("time_periodic", c, 0.9 if c == loudest else 0.5, frequency_hz=0.5) for c in channels]
         return max(found, key=lambda home: home.share)
 
-    monkeypatch.setattr(court, "ticking", ticking)
-    monkeypatch.setattr(court, "in_the_floor", lambda *_: None)
-    monkeypatch.setattr(court, "repeats", lambda *_: [])
+    monkeypatch.setattr(hidden, "ticking", ticking)
+    monkeypatch.setattr(hidden, "in_the_floor", lambda *_: None)
+    monkeypatch.setattr(hidden, "repeats", lambda *_: [])
     nothing: Any = SimpleNamespace(runs=(), fitted=(), floors={}, keys=())
-    p: Any = SimpleNamespace(eq=nothing, split=nothing, court=nothing)
-    ruling = court._in_the_floor(p, nothing, {}, {})
-    assert ruling is not None
-    assert court.IN_WORDS[loudest] in ruling.verdict.sentence
+    p: Any = SimpleNamespace(eq=nothing, split=nothing, held_out=nothing)
+    conclusion = hidden._in_the_floor(p, nothing, {}, {})
+    assert conclusion is not None
+    assert CHANNEL[loudest].name in conclusion.verdict.sentence

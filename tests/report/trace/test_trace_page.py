@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit.channels import AT_REVERSALS
 from rig.analysis.tracing.outcome.each_run import AT_LOAD, beside_the_numbers, of_each_run
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import AT_REVERSALS, Before, Candidate, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import Before, Candidate, Floor, Found, Trace
 from rig.analysis.tracing.outcome.told import PARAMETERS
 from rig.model.effect import parameter
 from rig.model.effects import LIBRARY
@@ -228,7 +229,7 @@ def test_an_explanation_that_leaves_a_channel_above_its_floor_says_so() -> None:
     assert "Not all of it" not in read(base).words
 
 
-def test_every_suspect_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
+def test_every_candidate_is_shown_with_the_reason_it_was_dismissed(pages: dict[str, Reader]) -> None:
     words = pages["explained"].words
     assert "Alone it removes 3 % of the excess, 60 % would be asked for." in words
     assert "No more than chance gives." in words  # 5 nats

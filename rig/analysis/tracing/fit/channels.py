@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -40,9 +40,31 @@ from rig.model.fourier import FourierSeries
 from rig.model.waves import powers
 
 ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
-CHANNELS: Final = ("A", "M", "R", "L")
+
+
+class Channel(NamedTuple):
+    """What one of the equations says: the sensor's column it is compared in, by which key a trace tells of it, what
+    that is in words, and its unit."""
+
+    sensor: str
+    key: str
+    name: str
+    unit: str
+
+
+AT_REVERSALS: Final = "tau_m_at_reversals"  # beside the sensors' names: the motor torque where the motor turns back
+CHANNEL: Final = {
+    "A": Channel("theta_l", "theta_l", "kinematic error", "rad"),
+    "M": Channel("tau_m", "tau_m", "motor torque", "N·m"),
+    "R": Channel("tau_m", AT_REVERSALS, "motor torque at reversals", "N·m"),
+    "L": Channel("tau_l", "tau_l", "shaft torque", "N·m"),
+}
+"""By letter."""
+CHANNELS: Final = tuple(CHANNEL)
 WHOLE: Final = ("A", "M", "L")
 """Those that hold all along a run; R is M where the motor has just turned back."""
+SENSOR_NAMES: Final = {CHANNEL[c].key: CHANNEL[c].name for c in WHOLE}
+"""What is compared in each sensor, in words."""
 SERIES: Final = tuple(f"{c}{n}" for n in range(1, ORDERS + 1) for c in "ab")
 BASELINE: Final = (
     *SERIES,

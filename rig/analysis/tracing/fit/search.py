@@ -54,10 +54,10 @@ class Search:
     runs: tuple[int, ...]
     keys: tuple[Key, ...]
     covered: Reach
-    refused: frozenset[str]
+    excluded: frozenset[str]
 
     def ranked(self, s: Solution, u: dict[str, Array]) -> list[Scored]:
-        """All terms by evidence, best first; refused ones and those with an impossible sign are left out."""
+        """All terms by evidence, best first; excluded ones and those with an impossible sign are left out."""
         n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in self.keys)
         tried: dict[str, int] = {}
         for term in self.bank.terms:
@@ -69,7 +69,7 @@ class Search:
             evidence = found.drop / 2 - k / 2 * np.log(n) - np.log(tried[term.name])
             out.append((evidence, found, term))
         out.sort(key=lambda item: -item[0])
-        out = [item for item in out if item[2].name not in self.refused]
+        out = [item for item in out if item[2].name not in self.excluded]
         likely = [(e, f, term) for e, f, term in out if e > 0 and possible(s, term, f.coefficients)]
         return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in likely[:60]]
 
@@ -92,14 +92,14 @@ def search(
     covered: Reach,
     floors: Mapping[Key, float],
     ranking: tuple[Scored, ...] = (),
-    refused: frozenset[str] = frozenset(),
+    excluded: frozenset[str] = frozenset(),
     quiet: bool = False,
 ) -> Found:
     """Add the best term again and again, then drop what the later ones made needless. `ranking` is that of the first
-    round when this is no first search; effects `refused` are not tried; `quiet`: one term is tried even if nothing is
+    round when this is no first search; effects `excluded` are not tried; `quiet`: one term is tried even if nothing is
     above the floor."""
     s = fit(d)
-    fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, refused)
+    fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, excluded)
     first, of_baseline = len(BASELINE), dict[str, Array]()
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):

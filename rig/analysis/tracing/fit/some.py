@@ -1,7 +1,7 @@
 """The search on a bounded number of rows: stretches of every run, evenly over it.
 
 What the search asks is which laws explain most, and a law that is worth its name shows in a quarter of an hour of rows.
-A longer campaign costs no more to search; what is found is fitted, judged and reported on all of its rows. Within a
+A longer campaign costs no more to search; what is found is fitted, selected and reported on all of its rows. Within a
 stretch rows are what they were, so that floors, and how alike neighbouring rows are, stay as measured.
 """
 

@@ -115,7 +115,7 @@ def _never_compared(
 ) -> dict[Key, float]:
     """In M, locked runs of which no two were compared: all that is left of them counts as noise.
 
-    A motor that creeps against a spring sticks and slips: its friction is no other run's, and judges nothing.
+    A motor that creeps against a spring sticks and slips: its friction is no other run's, and tells nothing of theirs.
     """
     compared = {eq.runs[i].procedure for s in found for i in s.pair}
     rest = [i for i in among if eq.runs[i].locked and eq.runs[i].procedure not in compared]

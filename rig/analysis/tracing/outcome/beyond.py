@@ -8,21 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.outcome.honest import in_words, left_open
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.thresholds import ALONE, MISSING
 from rig.core.units import RPM
 from rig.model.effect import Array, Parameter
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.court.ruling import Ruling
-    from rig.analysis.tracing.trace import Prepared
 
 FURTHER: Final = 1.3  # of the speeds and torques fitted: up to there a law is taken on
 LEAST: Final = 2.0  # N·m beyond the torques fitted: less is a motor that starts
@@ -80,9 +78,9 @@ def _both(covered: tuple[float, float], asked: tuple[float, float], unit: str) -
 
 def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
     """None where every held-out run lies within what was fitted."""
-    fitted, held = ([p.eq.runs[i] for i in some] for some in (p.split.fitted, p.court.runs))
+    fitted, held = ([p.eq.runs[i] for i in some] for some in (p.split.fitted, p.held_out.runs))
     covered, asked = reach(fitted), reach(held)
-    outside = tuple(i for i in p.court.runs if _is_outside(p.eq.runs[i], covered))
+    outside = tuple(i for i in p.held_out.runs if _is_outside(p.eq.runs[i], covered))
     if not outside:
         return None
     names, far = tuple(run.name for run in fitted), tuple(p.eq.runs[i].name for i in outside)
@@ -116,20 +114,22 @@ def _is_outside(run: Recording, covered: Range) -> bool:
     return torques[0] < low - margin or torques[1] > high + margin
 
 
-def undecided(p: Prepared, ruling: Ruling, after: Mapping[Key, Array], out: Beyond | None) -> tuple[Ruling, bool]:
-    """The ruling; where what is left stands in runs outside the fitted range alone, that nothing can be said of it, and
-    False."""
+def undecided(
+    p: Prepared, conclusion: Conclusion, after: Mapping[Key, Array], out: Beyond | None
+) -> tuple[Conclusion, bool]:
+    """The conclusion; where what is left stands in runs outside the fitted range alone, that nothing can be said of it,
+    and False."""
     if out is None:
-        return ruling, True
+        return conclusion, True
     inside = {key: e for key, e in after.items() if key[0] not in out.outside}
-    one = MISSING if ruling.verdict.effects else ALONE
-    guessed = ruling.home is not None and ruling.home.coordinate != "time_periodic"
-    if ruling.verdict.status is not Status.UNKNOWN or not guessed or (inside and p.court.loud(inside, one)):
-        return replace(ruling, cannot=(*ruling.cannot, out.sentence())), True
-    total, _ = p.court.worst(after)
+    one = MISSING if conclusion.verdict.effects else ALONE
+    guessed = conclusion.home is not None and conclusion.home.coordinate != "time_periodic"
+    if conclusion.verdict.status is not Status.UNKNOWN or not guessed or (inside and p.held_out.loud(inside, one)):
+        return replace(conclusion, cannot=(*conclusion.cannot, out.sentence())), True
+    total, _ = p.held_out.worst(after)
     sentence = (
         f"Not decided: the held-out runs are {total:.1f} times the floor off, but {out.sentence()} Hold out some runs "
         "of every speed and load, and fit the others."
     )
     verdict = Verdict(Status.AMBIGUOUS, (), (), None, None, None, sentence)
-    return replace(ruling, verdict=verdict, home=None, lives_in=(), next_run=None), False
+    return replace(conclusion, verdict=verdict, home=None, lives_in=(), next_run=None), False

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SHOWN = 3000  # points of a run: more than a page is wide
 
@@ -22,7 +19,7 @@ SHOWN = 3000  # points of a run: more than a page is wide
 def curves(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> dict[str, Array]:
     """See `Trace`."""
     out: dict[str, Array] = {}
-    one = dict.fromkeys(p.court.floors, ARCSEC)
+    one = dict.fromkeys(p.held_out.floors, ARCSEC)
     pair = [(name, rest(p.eq, e, one, "A", beside=False)) for name, e in (("before", before), ("after", after))]
     orders = np.arange(0.02, 40.0, 0.02)
     for name, r in pair:
@@ -64,6 +61,6 @@ def _means(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
         out[f"runs.{channel}.speed_rpm"] = np.array([np.mean([q.omega_m.mean() for q in r]) for r in pieces]) / RPM
         out[f"runs.{channel}.load_Nm"] = np.array([-r[0].tau_ext[0] for r in pieces])
         out[f"runs.{channel}.time_s"] = np.array([r[0].t[0] for r in pieces])
-        out[f"runs.{channel}.before_over_floor"] = np.array([p.court.ratio(before, [k]) for k in keys])
-        out[f"runs.{channel}.after_over_floor"] = np.array([p.court.ratio(after, [k]) for k in keys])
+        out[f"runs.{channel}.before_over_floor"] = np.array([p.held_out.ratio(before, [k]) for k in keys])
+        out[f"runs.{channel}.after_over_floor"] = np.array([p.held_out.ratio(after, [k]) for k in keys])
     return out

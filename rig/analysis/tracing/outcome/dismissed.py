@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rig.analysis.tracing.outcome.result import CHANNELS, Candidate, Errors, Verdict
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
+from rig.analysis.tracing.outcome.result import Candidate, Errors, Verdict
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.units import ARCSEC
 
 
 def dismissed(found: Sequence[Candidate], verdict: Verdict, pooled: Errors) -> tuple[Candidate, ...]:
-    """`found`, with what stays above its floor (`pooled`) beside a suspect that nothing else was preferred to."""
+    """`found`, with what stays above its floor (`pooled`) beside a candidate that nothing else was preferred to."""
     named = {*verdict.effects, *verdict.rivals}
     return tuple(c if named else _with_the_rest(c, pooled) for c in found)
 
@@ -23,7 +24,7 @@ def _with_the_rest(c: Candidate, pooled: Errors) -> Candidate:
         "tau_l": pooled.floor_tau_l,
     }
     ratios = {s: c.heldout_rms[s] / floor for s, floor in floors.items() if floor and s in c.heldout_rms}
-    loud = [f"the {CHANNELS[s]} at {ratio:.1f}" for s, ratio in ratios.items() if ratio > EXPLAINED]
+    loud = [f"the {SENSOR_NAMES[s]} at {ratio:.1f}" for s, ratio in ratios.items() if ratio > EXPLAINED]
     if not loud or not c.why.startswith("alone it removes") or "would be asked for" in c.why or "nothing" in c.why:
         return c
     return replace(c, why=f"{c.why}, but leaves {' and '.join(loud)} times its floor, so that it is not named")

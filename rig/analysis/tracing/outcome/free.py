@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.led import Model, model_of, rung
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.outcome.replay import GONE, Model, model_of, replayed, rung, shown
+from rig.analysis.tracing.outcome.replay import GONE, replayed, shown
 from rig.analysis.tracing.outcome.result import Before
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.units import ARCSEC, TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 CLOSE_UP: Final = 2.0  # motor turns
 BACK: Final = 0.01  # motor turns: more than jitter
@@ -59,7 +58,7 @@ def free(
 
 def _chosen(p: Prepared) -> list[Key]:
     runs = p.eq.runs
-    able = [k for k in ((i, "A") for i in p.court.runs) if k in p.eq.rows and not runs[k[0]].locked]
+    able = [k for k in ((i, "A") for i in p.held_out.runs) if k in p.eq.rows and not runs[k[0]].locked]
     able = [k for k in able if {"t", "theta_l"} <= runs[k[0]].has]
     fastest = max(able, key=lambda k: runs[k[0]].turning, default=None)
     loaded = max(able, key=lambda k: abs(float(runs[k[0]].pieces[0].tau_ext[0])), default=None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -11,15 +11,13 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.outcome.errors import UNITS
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.analysis.tracing.rest.shares import shares
 from rig.core.units import TURN
 from rig.model.effect import Array
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 SHOWN_TURNS: Final = 2.0  # of a close-up: one turn, and that it repeats
 DRAWS: Final = 1000  # of the bootstrap: its 2.5 % points then stand on 25 draws
@@ -59,7 +57,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
         for key in keys:
             out |= close_up(p, key, before[key], after[key])
     out |= by_turn(p, before, after) | by_order(p, before, after)
-    for i in p.court.runs:
+    for i in p.held_out.runs:
         run = p.eq.runs[i]
         speed = float(np.mean([q.omega_m.mean() for q in run.pieces])) * 60 / TURN
         turning = float(np.mean([np.abs(q.omega_m).mean() for q in run.pieces])) * 60 / TURN
@@ -71,7 +69,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
 
 def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], channel: str) -> dict[str, Array]:
     """`where.*` and `share.*` of one channel."""
-    first, last = (rest(p.eq, e, p.court.floors, channel, beside=False) for e in (before, after))
+    first, last = (rest(p.eq, e, p.held_out.floors, channel, beside=False) for e in (before, after))
     out: dict[str, Array] = {}
     if first is None or last is None:
         return out
@@ -83,8 +81,8 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
         stem = f"where.{channel}.{name}"
         out[f"{stem}.x"] = middles
         out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
-    if np.mean(first.e**2) > 1 + EXCESS and (whole := rest(p.eq, before, p.court.floors, channel)) is not None:
-        out |= shares(whole, p.court.floors, channel)
+    if np.mean(first.e**2) > 1 + EXCESS and (whole := rest(p.eq, before, p.held_out.floors, channel)) is not None:
+        out |= shares(whole, p.held_out.floors, channel)
     return out
 
 
@@ -93,7 +91,7 @@ def by_order(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
     out: dict[str, Array] = {}
     for channel in ("M", "L"):
         for name, e in (("before", before), ("after", after)):
-            r = rest(p.eq, e, dict.fromkeys(p.court.floors, 1.0), channel, beside=False)
+            r = rest(p.eq, e, dict.fromkeys(p.held_out.floors, 1.0), channel, beside=False)
             if r is not None and np.isfinite(r.at["motor_angle"]).all():
                 out["orders.motor_order"] = ORDERS
                 out[f"orders.{channel}.{name}"] = 2 * np.sqrt(spectrum(r.at["motor_angle"], r.e, ORDERS)) / r.e.size

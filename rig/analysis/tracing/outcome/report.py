@@ -3,18 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rig.analysis.tracing.court.judge import Worth, unseen
-from rig.analysis.tracing.court.one_sided import COGGING, one_sided
-from rig.analysis.tracing.court.own_work import own_work
-from rig.analysis.tracing.court.shadows import cast
-from rig.analysis.tracing.court.suspects import candidates
-from rig.analysis.tracing.court.verdict import decide
 from rig.analysis.tracing.fit import parameters
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
@@ -26,19 +19,22 @@ from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.pictures import pictures
-from rig.analysis.tracing.outcome.result import AT_REVERSALS, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.runs.cannot import cannot, together
+from rig.analysis.tracing.selection.candidates import candidates
+from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.held_out import unseen
+from rig.analysis.tracing.selection.one_sided import COGGING, one_sided
+from rig.analysis.tracing.selection.own_scores import own_scores
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.verdict import decide
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array, Parameter
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
-
-SENSORS = {"A": ("theta_l", "rad"), "M": ("tau_m", "N·m"), "L": ("tau_l", "N·m")}
 
 
 def report(
@@ -46,28 +42,28 @@ def report(
     found: Searched,
     s: Solution,
     held: Design,
-    worths: Sequence[Worth],
+    scores: Sequence[HeldOutScore],
     fitted: Mapping[str, tuple[Parameter, ...]],
 ) -> Trace:
     """All of it as one value; `fitted` are the parameters of the effects in `s`."""
     empty, fitted_runs = p.baseline, [p.eq.runs[i] for i in p.split.fitted]
-    before, after = p.court.residuals(empty, unseen(empty, p.court)), p.court.residuals(s, held)
-    shares, weighed = _weighed(p, s, worths)
+    before, after = p.held_out.residuals(empty, unseen(empty, p.held_out)), p.held_out.residuals(s, held)
+    shares, ranked = _ranked(p, s, scores)
     one_way = one_sided(fitted)
-    weighed = tuple(name for name in weighed if not (one_way and name == COGGING))
+    ranked = tuple(name for name in ranked if not (one_way and name == COGGING))
     baseline = honest(parameters.baseline(empty), fitted_runs)
-    ruling = decide(p, s, weighed, worths, before, after, p.floors, found)
-    ruling, decided = undecided(p, ruling, after, beyond(p, baseline))
-    final, curve = _with_a_curve(p, s, after, ruling.home)
-    shadowed = frozenset(name for shadow in cast(s) for name in shadow.of)
-    words, first = p.own.parameters | dict(fitted), errors(p.eq, p.court, before)
+    conclusion = decide(p, s, ranked, scores, before, after, p.floors, found)
+    conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
+    final, curve = _with_a_curve(p, s, after, conclusion.home)
+    confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)
+    words, first = p.own.parameters | dict(fitted), errors(p.eq, p.held_out, before)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
-        lives = ruling.lives_in or (lives_in(p.eq, _left(p, empty), p.floors) if shares else ())
-        tried = candidates(p, found.ranking, before, ruling.verdict.effects, shadowed)
-        tried = dismissed(tried, ruling.verdict, first.pooled)
+        lives = conclusion.lives_in or (lives_in(p.eq, _left(p, empty), p.floors) if shares else ())
+        tried = candidates(p, found.ranking, before, conclusion.verdict.effects, confounded)
+        tried = dismissed(tried, conclusion.verdict, first.pooled)
         refitted, ripple = honest(parameters.baseline(s), fitted_runs), ripples(p.campaign.runs)
         simulated, drawn = shown()
-    named = [name for name in ruling.verdict.effects if name in shares]
+    named = [name for name in conclusion.verdict.effects if name in shares]
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -83,11 +79,11 @@ def report(
         ratios_after=ratios(p, final),
         lives_in=lives,
         candidates=tried,
-        verdict=ruling.verdict,
+        verdict=conclusion.verdict,
         effects=tuple(Found(name, words.get(name, ()), shares[name]) for name in named),
         before=with_free(first, simulated, 0),
-        after=with_free(errors(p.eq, p.court, final), simulated, 1),
-        next_run=ruling.next_run,
+        after=with_free(errors(p.eq, p.held_out, final), simulated, 1),
+        next_run=conclusion.next_run,
         notes=(
             *beside_the_numbers(named),
             *([one_way] if one_way else []),
@@ -98,16 +94,16 @@ def report(
         curve=curve,
         read=len(p.campaign.runs),
         left_out=p.campaign.left_out,
-        cannot=(*ruling.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
+        cannot=(*conclusion.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
 
 
-def _weighed(p: Prepared, s: Solution, worths: Sequence[Worth]) -> tuple[dict[str, float], tuple[str, ...]]:
+def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:
     """The share of the error that each effect of the model removes, and their names, the one that does most first."""
-    own = own_work(p, s)
-    shares = {w.name: w.share for w in worths} | {name: share for name, (share, _) in own.items()}
-    work = {w.name: w.work for w in worths} | {name: removed for name, (_, removed) in own.items()}
+    own = own_scores(p, s)
+    shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
+    work = {score.name: score.work for score in scores} | {name: removed for name, (_, removed) in own.items()}
     return shares, tuple(sorted(shares, key=lambda name: -work[name]))
 
 
@@ -117,18 +113,18 @@ def _with_a_curve(
     """What is left of held-out runs beside a curve along the coordinate where a rest without a name lives, and whether
     a curve is in the model: one that foretells nothing of unseen runs is not added."""
     if home is None:
-        return after, bool(cast(s))
+        return after, bool(confounders_in(s))
     rest = {key: s.residual(key) for key in s.keys}
-    smooth = smooth_term(p.eq, rest, after, p.floors | p.court.floors, home)
+    smooth = smooth_term(p.eq, rest, after, p.floors | p.held_out.floors, home)
     mine = [key for key in after if key[1] == home.channel]
-    foretells = p.court.ratio(smooth, mine) < p.court.ratio(after, mine)
+    foretells = p.held_out.ratio(smooth, mine) < p.held_out.ratio(after, mine)
     return (smooth, True) if foretells else (after, False)
 
 
 def _floors(p: Prepared) -> tuple[Floor, ...]:
     """Of the channels in which one was measured."""
     noise, how = p.measured.noise, p.measured.how
-    return tuple(Floor(SENSORS[c][0], noise.sigma[c], SENSORS[c][1], how[c]) for c in WHOLE if c in how)
+    return tuple(Floor(CHANNEL[c].key, noise.sigma[c], CHANNEL[c].unit, how[c]) for c in WHOLE if c in how)
 
 
 def _shown(
@@ -147,10 +143,10 @@ def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
 def ratios(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     """RMS over floor, by sensor, on held-out runs."""
     out = {}
-    for c, name in (*((c, sensor) for c, (sensor, _) in SENSORS.items()), ("R", AT_REVERSALS)):
+    for c in (*WHOLE, "R"):
         keys = [k for k in e if k[1] == c]
         if keys:
-            out[name] = p.court.ratio(e, keys)
+            out[CHANNEL[c].key] = p.held_out.ratio(e, keys)
     return out
 
 
@@ -160,7 +156,7 @@ def unexplained(p: Prepared, e: Mapping[Key, Array]) -> dict[str, float]:
     for c in WHOLE:
         keys = [k for k in e if k[1] == c]
         total = sum(float(np.var(p.eq.rows[k].y) * p.eq.rows[k].y.size) for k in keys)
-        left = sum(float(e[k] @ e[k]) - p.court.floors[k] ** 2 * e[k].size for k in keys)
+        left = sum(float(e[k] @ e[k]) - p.held_out.floors[k] ** 2 * e[k].size for k in keys)
         if total > 0:
-            out[SENSORS[c][0]] = float(np.clip(left / total, 0.0, 1.0))
+            out[CHANNEL[c].key] = float(np.clip(left / total, 0.0, 1.0))
     return out

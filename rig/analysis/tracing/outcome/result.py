@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Final
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
-
-AT_REVERSALS: Final = "tau_m_at_reversals"  # beside the sensors' names: the motor torque where the motor turns back
-CHANNELS: Final = {"theta_l": "kinematic error", "tau_m": "motor torque", "tau_l": "shaft torque"}
-"""What is judged in each sensor, in words."""
 
 
 class Status(StrEnum):
@@ -36,7 +31,7 @@ class Floor:
 
 @dataclass(frozen=True)
 class Candidate:
-    """One effect of the library, as judged."""
+    """One effect of the library, as scored."""
 
     effect: str
     evidence: float  # nats by which it beats having nothing more, after paying for its parameters

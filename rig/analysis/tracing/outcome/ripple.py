@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import MEASURED, Array
 
@@ -72,7 +73,7 @@ class Ripple:
 
     def sentence(self) -> str:
         """For people."""
-        name = {"tau_l": "shaft torque", "tau_m": "motor torque"}[self.channel]
+        name = SENSOR_NAMES[self.channel]
         runs = f"{self.runs} run{'' if self.runs == 1 else 's'}"
         said = [f"Ripple of the {name} at order {self.order} of the motor, {runs}: {self.constant:.3g} N·m"]
         if self.per_load is not None:

@@ -3,73 +3,70 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING
 
-from rig.analysis.tracing.court.hidden import hidden
-from rig.analysis.tracing.court.judge import Worth
-from rig.analysis.tracing.court.next_run import along, deciding
-from rig.analysis.tracing.court.ruling import Ruling
-from rig.analysis.tracing.court.sentences import in_words, lacks, of_the_rest
-from rig.analysis.tracing.court.shadows import SHADOWS, Shadow, cast
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.selection.conclusion import Conclusion
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, Confounder, confounders_in
+from rig.analysis.tracing.selection.hidden import hidden
+from rig.analysis.tracing.selection.next_run import along, deciding
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_rest
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
 
 def decide(
     p: Prepared,
     s: Solution,
-    weighed: Sequence[str],
-    worths: Sequence[Worth],
+    ranked: Sequence[str],
+    scores: Sequence[HeldOutScore],
     before: Mapping[Key, Array],
     after: Mapping[Key, Array],
     floors: Mapping[Key, float],
     found: Found,
-) -> Ruling:
-    """From held-out ratios and the effects that may be named, `weighed`, the one that does most first; those shared by
-    all runs have `worths`."""
-    total, _ = p.court.worst(after)
-    first, _ = p.court.worst(before)
+) -> Conclusion:
+    """From held-out ratios and the effects that may be named, `ranked`, the one that does most first; those shared by
+    all runs have `scores`."""
+    total, _ = p.held_out.worst(after)
+    first, _ = p.held_out.worst(before)
     line = p.own.line
-    names = tuple(name for name in weighed if name not in SHADOWS)
+    names = tuple(name for name in ranked if name not in CONFOUNDERS)
     one = MISSING if names else ALONE
-    loud = p.court.loud(after, one, bool(names)) or line is not None
-    plain = {w.name for w in worths if w.plain}
-    if shadows := [shadow for shadow in cast(s) if not loud or shadow.effect.name in plain]:
-        return _cast(shadows[0], _standing(shadows[0].coordinate, names, worths, plain))
+    loud = p.held_out.loud(after, one, bool(names)) or line is not None
+    plain = {score.name for score in scores if score.plain}
+    if confounders := [confounder for confounder in confounders_in(s) if not loud or confounder.effect.name in plain]:
+        return _confounded(confounders[0], _standing(confounders[0].coordinate, names, scores, plain))
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         inside = None if names else hidden(p, s, after, floors)
         return inside or _settled(p, names, found, *_falls(p, before, after))
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
-    mostly = done > MOSTLY and total < 2 * EXPLAINED and max((w.left for w in worths), default=0.0) < AMISS
-    sure = known or (bool(plain) and all(w.name in plain for w in worths))
+    mostly = done > MOSTLY and total < 2 * EXPLAINED and max((score.left for score in scores), default=0.0) < AMISS
+    sure = known or (bool(plain) and all(score.name in plain for score in scores))
     if line is None and names and sure and mostly:
-        ruling = _settled(p, names, found, first, total)
-        return Ruling(ruling.verdict, None, _lives(where), ruling.next_run)
+        conclusion = _settled(p, names, found, first, total)
+        return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     shared = [name for name in names if name not in p.own.made]
     told = line is None and (known or total <= EXPLAINED)
     best, taken = where[0], _share(*_most(p, before, after))
-    stand = _standing(best.coordinate, shared, worths, plain, told) if taken > PART else ()
+    stand = _standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
         sentence = f"{lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
     verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
-    return Ruling(verdict, best, _lives(where), along(best.coordinate))
+    return Conclusion(verdict, best, _lives(where), along(best.coordinate))
 
 
 def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float], one: float) -> list[Home]:
@@ -78,7 +75,7 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     line = p.own.line
     elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
     where = [WHERE_IT_TURNS_BACK]
-    if line is not None or p.court.loud(elsewhere, one):
+    if line is not None or p.held_out.loud(elsewhere, one):
         where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
@@ -88,24 +85,24 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
 def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
     """RMS over floor of the worst channel without and with what was found; without reversals where they have a little
     left."""
-    total, _ = p.court.worst(after)
+    total, _ = p.held_out.worst(after)
     if total > EXPLAINED:
         before, after = ({key: x for key, x in e.items() if key[1] != "R"} for e in (before, after))
-    return p.court.worst(before)[0], p.court.worst(after)[0]
+    return p.held_out.worst(before)[0], p.held_out.worst(after)[0]
 
 
-def _cast(shadow: Shadow, names: tuple[str, ...]) -> Ruling:
+def _confounded(confounder: Confounder, names: tuple[str, ...]) -> Conclusion:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
-    verdict = Verdict(Status.UNKNOWN, names, (), shadow.coordinate, None, None, shadow.sentence)
-    return Ruling(verdict, None, (shadow.coordinate,), along(shadow.coordinate))
+    verdict = Verdict(Status.UNKNOWN, names, (), confounder.coordinate, None, None, confounder.sentence)
+    return Conclusion(verdict, None, (confounder.coordinate,), along(confounder.coordinate))
 
 
 def _standing(
-    coordinate: str, names: Sequence[str], worths: Sequence[Worth], plain: Collection[str], told: bool = True
+    coordinate: str, names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str], told: bool = True
 ) -> tuple[str, ...]:
     """Names that stand beside a rest: those `plain` to see; and where it can be `told` what much is, those beside which
     nothing is left in any channel they act in, nor in the runs they act in most."""
-    amiss = {w.name for w in worths if max(w.anywhere, w.left) > MISSING}
+    amiss = {score.name for score in scores if max(score.anywhere, score.left) > MISSING}
     clean = _beside(coordinate, [name for name in names if name not in amiss]) if told else ()
     return tuple(name for name in names if name in plain or name in clean)
 
@@ -121,7 +118,7 @@ def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
 def _most(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
     """RMS over floor without and with what was found, of the channel that gains most."""
     keys = [[k for k in after if k[1] == c] for c in CHANNELS]
-    pairs = [(p.court.ratio(before, mine), p.court.ratio(after, mine)) for mine in keys if mine]
+    pairs = [(p.held_out.ratio(before, mine), p.held_out.ratio(after, mine)) for mine in keys if mine]
     return max(pairs, key=lambda pair: pair[0] - pair[1])
 
 
@@ -134,16 +131,16 @@ def _lives(where: Sequence[Home]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
 
 
-def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Ruling:
+def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Conclusion:
     """Nothing loud remains."""
     if not names:
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
-        return Ruling(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
+        return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
     sentence = lacks(names, before, after)
-    if all(name in p.own.made and not p.own.made[name].keys() & p.court.floors.keys() for name in names):
+    if all(name in p.own.made and not p.own.made[name].keys() & p.held_out.floors.keys() for name in names):
         sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED
-    return Ruling(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)
+    return Conclusion(Verdict(status, names, rivals, None, None, None, sentence), None, (), next_run)

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rig.analysis.tracing.court.next_run import along
-from rig.analysis.tracing.court.ruling import Ruling
-from rig.analysis.tracing.court.sentences import how_often
-from rig.analysis.tracing.court.suspects import IN_WORDS
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
@@ -24,24 +20,26 @@ from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.holdout import whole_run
+from rig.analysis.tracing.selection.conclusion import Conclusion
+from rig.analysis.tracing.selection.next_run import along
+from rig.analysis.tracing.selection.sentences import how_often
 from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
 
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
-
-def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
+def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:
     """What unseen runs leave is no more than their floor, but there is something all the same; None where not. What
     foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
     return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after)
 
 
-def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Ruling | None:
+def _in_the_floor(
+    p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Conclusion | None:
     """Nothing is above the floor, but the floor itself can be foretold; None where it cannot."""
     left = {key: s.residual(key) for key in s.keys}
-    floors = {**floors, **p.court.floors}
+    floors = {**floors, **p.held_out.floors}
     of_what = "what unseen runs have beyond what neighbouring turns differ by"
     *most, last = WHOLE  # a channel takes as long as all that is asked first
     with meanwhile(lambda: ticking(p.eq, left, after, most)) as ticks:  # most campaigns ask for both
@@ -59,14 +57,14 @@ def _in_the_floor(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: 
         what = f"something that comes back {home.order:.3f} times a turn of the motor"
     differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
     sentence = (
-        f"{differing} differ in {IN_WORDS[home.channel]} because of {what} ({min(home.share, 1.0):.0%} of {of_what}); "
-        "it is in the floor, and no effect of the library explains it."
+        f"{differing} differ in {CHANNEL[home.channel].name} because of {what} "
+        f"({min(home.share, 1.0):.0%} of {of_what}); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
-    return Ruling(verdict, home, (home.coordinate,), along(home.coordinate))
+    return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
 
 
-def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
+def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
     """Unseen runs leave nothing, but a fitted one has far more left than its floor; None where there is none.
 
     A run like it that has nothing left says that something happened in the one; a part of itself says nothing.
@@ -76,10 +74,10 @@ def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
     if over[worst] < IN_ONE_RUN * leniency(p.measured, p.eq, worst):
         return None
     run = p.eq.runs[worst[0]]
-    quiet = [k for k, ratio in over.items() if ratio < MISSING] + [*p.court.floors]
+    quiet = [k for k, ratio in over.items() if ratio < MISSING] + [*p.held_out.floors]
     others = [p.eq.runs[i] for i, c in quiet if c == worst[1] and whole_run(p.eq.runs[i].name) != whole_run(run.name)]
     twins = [other for other in others if alike(other, run)]
-    left = f"{run.name} has {over[worst]:.1f} times the floor left in {IN_WORDS[worst[1]]}"
+    left = f"{run.name} has {over[worst]:.1f} times the floor left in {CHANNEL[worst[1]].name}"
     if twins:
         coordinate = "time"
         what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
@@ -89,10 +87,10 @@ def _in_one_run(p: Prepared, s: Solution) -> Ruling | None:
         what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
     sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
     verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
-    return Ruling(verdict, None, (coordinate,), along(coordinate))
+    return Conclusion(verdict, None, (coordinate,), along(coordinate))
 
 
-def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruling | None:
+def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conclusion | None:
     left = {key: s.residual(key) for key in s.keys}
     found = lock_tests_differ(p.eq, p.measured, {**left, **after})
     if found is None:
@@ -104,4 +102,4 @@ def _in_lock_tests(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Ruli
         f"and {what} ({min(home.share, 1.0):.0%} of it); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, home.frequency_hz, sentence)
-    return Ruling(verdict, None, (home.coordinate,), along(home.coordinate))
+    return Conclusion(verdict, None, (home.coordinate,), along(home.coordinate))

@@ -15,8 +15,8 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS, is_measured, rows
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.led import follow, lead, model_of
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, solve
-from rig.analysis.tracing.outcome.replay import _led, _moved, model_of
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.sliding import direction
 from rig.core.units import RPM
@@ -82,7 +82,7 @@ def imagined(proposal: Proposal, like: Recording, s: Solution, start: float) -> 
         omega = np.convolve(proposal.speed, window / window.sum(), mode="same")
         theta = np.cumsum(omega) * dt
         turned = replace(bare, theta_m=theta, omega_m=omega, alpha_m=np.gradient(omega, dt), way=direction(omega, dt))
-        made = _moved(turned, model, _led(turned, model, nothing), nothing, nothing)
+        made = follow(turned, model, lead(turned, model, nothing), nothing, nothing)
     return replace(
         like, name=proposal.procedure, procedure=proposal.procedure, said="imagined", pieces=(made,), start=start,
         locked=proposal.locked is not None, has=MEASURED, counts_m=0.0, counts_l=0.0,

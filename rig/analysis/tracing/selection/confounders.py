@@ -1,5 +1,5 @@
-"""Laws that are no effect of the library and look like one of it: none is ever named, but where one explains more, the
-effect it was taken for is not named either. They are searched for beside the library's.
+"""Confounders: laws that are no effect of the library and look like one of it. None is ever named, but where one
+explains more, the effect it was taken for is not named either. They are searched for beside the library's.
 """
 
 from __future__ import annotations
@@ -187,33 +187,33 @@ class SensorWaves(Effect):
 
 
 @dataclass(frozen=True)
-class Shadow:
+class Confounder:
     """A law, what it is taken for, the coordinate it lives in, and whether it is searched for by itself as well: not
     one that a friction of the load would be taken for."""
 
     effect: Effect
-    of: frozenset[str]
+    mimics: frozenset[str]
     coordinate: str
     sentence: str
     searched: bool = True
 
 
-SHADOWS: Final = {
-    "creep": Shadow(
+CONFOUNDERS: Final = {
+    "creep": Confounder(
         Creep(),
         frozenset({"hysteretic_stiffness"}),
         "memory",
         "A part of the wind-up follows the torque seconds late, as creep does; a loop that does not depend on the rate "
         "explains less, and no effect of the library explains it.",
     ),
-    "coupling_play": Shadow(
+    "coupling_play": Confounder(
         CouplingPlay(),
         frozenset({"hysteretic_stiffness", "lost_motion"}),
         "direction",
         "The load angle stays behind by the same whichever way the motor turns and whatever the torque, as an encoder "
         "does whose coupling has play; a loop in the spring explains less, and no effect of the library explains it.",
     ),
-    "sensor_loop": Shadow(
+    "sensor_loop": Confounder(
         SensorLoop(),
         frozenset({"hysteretic_stiffness"}),
         "memory",
@@ -221,7 +221,7 @@ SHADOWS: Final = {
         "hysteresis does; a loop in the spring explains less, and no effect of the library explains it.",
         searched=False,
     ),
-    "sensor_waves": Shadow(
+    "sensor_waves": Confounder(
         SensorWaves(),
         frozenset({"cogging_torque"}),
         "motor_angle",
@@ -229,14 +229,14 @@ SHADOWS: Final = {
         "feel the wave generator; cogging of the motor explains less, and no effect of the library explains it.",
         searched=False,
     ),
-    "even_spring": Shadow(
+    "even_spring": Confounder(
         EvenSpring(),
         frozenset({"angle_dependent_stiffness"}),
         "load",
         "The gear winds up less one way than the other, with the square of the torque; a stiffness that changes with "
         "the angle explains no more, and no effect of the library is so.",
     ),
-    "droop": Shadow(
+    "droop": Confounder(
         Droop(),
         frozenset({"load_dependent_friction"}),
         "load",
@@ -246,24 +246,24 @@ SHADOWS: Final = {
 }
 
 
-def unmasked(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
-    """With the shadow in the place of its look-alike, wherever it explains more of the fitted runs, or as much with
+def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
+    """With the confounder in the place of its look-alike, wherever it explains more of the fitted runs, or as much with
     fewer coefficients."""
     n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in s.keys)
-    for shadow in SHADOWS.values():
-        mine = [i for i, term in enumerate(s.design.terms) if term.name in shadow.of]
-        if mine and shadow.effect.shapes(covered):
-            other = fit(extended(reduced(s.design, mine), Term(shadow.effect, ()), runs))
+    for confounder in CONFOUNDERS.values():
+        mine = [i for i, term in enumerate(s.design.terms) if term.name in confounder.mimics]
+        if mine and confounder.effect.shapes(covered):
+            other = fit(extended(reduced(s.design, mine), Term(confounder.effect, ()), runs))
             saved = (s.design.size - other.design.size) * np.log(n)
             s = other if other.gain + saved > s.gain else s
     return s
 
 
 def of_the_library(ranking: Sequence[Scored]) -> tuple[Scored, ...]:
-    """A ranking without shadows."""
-    return tuple(r for r in ranking if r.term.name not in SHADOWS)
+    """A ranking without confounders."""
+    return tuple(r for r in ranking if r.term.name not in CONFOUNDERS)
 
 
-def cast(s: Solution) -> list[Shadow]:
-    """The shadows in a model."""
-    return [SHADOWS[term.name] for term in s.design.terms if term.name in SHADOWS]
+def confounders_in(s: Solution) -> list[Confounder]:
+    """The confounders in a model."""
+    return [CONFOUNDERS[term.name] for term in s.design.terms if term.name in CONFOUNDERS]

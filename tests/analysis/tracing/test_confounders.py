@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.shadows import SHADOWS, CouplingPlay, Creep, Droop, EvenSpring, SensorWaves
 from rig.analysis.tracing.fit.footprint import footprint
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.runs.smoothing import Smoother
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, CouplingPlay, Creep, Droop, EvenSpring, SensorWaves
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import MEASURED, Port
 from rig.model.effects import LIBRARY
@@ -23,12 +23,12 @@ from tests.blind.generate import write_case
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 
-def test_a_shadow_bears_no_name_of_the_library_and_casts_on_one_that_does() -> None:
-    for name, shadow in SHADOWS.items():
-        assert name == shadow.effect.name
+def test_a_confounder_bears_no_name_of_the_library_and_mimics_one_that_does() -> None:
+    for name, confounder in CONFOUNDERS.items():
+        assert name == confounder.effect.name
         assert name not in LIBRARY
-        assert shadow.of <= set(LIBRARY)
-        assert shadow.effect.source in REFERENCES
+        assert confounder.mimics <= set(LIBRARY)
+        assert confounder.effect.source in REFERENCES
 
 
 def test_a_sensor_that_feels_the_wave_generator_leaves_the_motor_an_nth_as_if_it_cogged() -> None:

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.court import own_work
 from rig.analysis.tracing.runs.holdout import HELD_PART
+from rig.analysis.tracing.selection import own_scores
 
 KEY = (0, "A")
 
@@ -25,7 +25,7 @@ KEY = (0, "A")
 def test_only_a_repeat_that_has_none_speaks_for_it(
     monkeypatch: pytest.MonkeyPatch, other: str, alike: bool, has_some: bool, told: bool
 ) -> None:
-    monkeypatch.setattr(own_work, "alike", lambda a, b: alike)
+    monkeypatch.setattr(own_scores, "alike", lambda a, b: alike)
     p: Any = SimpleNamespace(eq=SimpleNamespace(runs=[SimpleNamespace(name="speed_1"), SimpleNamespace(name=other)]))
     mine: Any = {KEY: None} | ({(1, "A"): None} if has_some else {})
-    assert own_work._has_repeat_without(p, KEY, mine) is told
+    assert own_scores._has_repeat_without(p, KEY, mine) is told

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.court.judge import Worth, unresolved, unsteadiness
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.selection.elimination import unresolved
+from rig.analysis.tracing.selection.score import HeldOutScore, unsteadiness
 from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
 from tests.contract.test_effects import REACH
@@ -51,8 +52,8 @@ def test_a_run_in_which_it_hardly_shows_does_not_say_how_large_it_is(rng: np.ran
     assert solved(rng, wrong, 0.3, {KEYS[0]: 0.3}) > 1.0
 
 
-def test_a_worth_is_fair_within_a_fifth() -> None:
-    plain = Worth("stribeck_friction", 1.0, 1.2, 0.9, 1.1, (), unsteady=0.1, apart=0.15)
+def test_a_score_is_fair_within_a_fifth() -> None:
+    plain = HeldOutScore("stribeck_friction", 1.0, 1.2, 0.9, 1.1, (), unsteady=0.1, apart=0.15)
     assert plain.fairly
     assert not replace(plain, true=1.3).fairly
     assert not replace(plain, unsteady=0.25).fairly
@@ -60,7 +61,7 @@ def test_a_worth_is_fair_within_a_fifth() -> None:
 
 
 def test_a_name_beside_a_loud_rest_takes_what_it_should() -> None:
-    edge = Worth("torsional_mode", 0.81, 1.97, 1.39, 1.1, (), unsteady=0.15, apart=0.15)
+    edge = HeldOutScore("torsional_mode", 0.81, 1.97, 1.39, 1.1, (), unsteady=0.15, apart=0.15)
     assert edge.named
     assert not replace(edge, true=1.21).named
     assert not replace(edge, unsteady=0.21).named
@@ -68,8 +69,8 @@ def test_a_name_beside_a_loud_rest_takes_what_it_should() -> None:
     assert replace(edge, true=1.21, share=0.95).named
 
 
-def test_a_worth_is_plain_however_many_floors_its_law_leaves() -> None:
-    plain = Worth("presliding_friction", 0.89, 46.0, 8.6, 0.99, (), unsteady=0.06, apart=0.06)
+def test_a_score_is_plain_however_many_floors_its_law_leaves() -> None:
+    plain = HeldOutScore("presliding_friction", 0.89, 46.0, 8.6, 0.99, (), unsteady=0.06, apart=0.06)
     assert plain.plain
     assert not replace(plain, runs=2).plain  # which have one size for want of others
     assert not replace(plain, share=0.75).plain

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.court.expected import TWICE, Proposal, imagined, proposals, sigmas
-from rig.analysis.tracing.court.judge import unseen
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import split
+from rig.analysis.tracing.selection.expected import TWICE, Proposal, imagined, proposals, sigmas
+from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
-
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
-
 
 SIGMAS: Final = 3.0  # standard deviations, at least
 HALF: Final = 0.5  # of the evidence, in the bank's coarse shapes: with less no refit catches up
@@ -42,7 +39,7 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
 
 @dataclass(frozen=True)
 class Alone:
-    """One suspect alone beside the baseline, its shape fitted: what it explains of the fitted runs, and the RMS over
+    """One candidate alone beside the baseline, its shape fitted: what it explains of the fitted runs, and the RMS over
     floor it leaves in the worst channel and the worst single run of the held-out ones."""
 
     gain: float
@@ -50,15 +47,15 @@ class Alone:
     single: float
 
 
-def _alone(p: Prepared, suspect: Scored) -> Alone | None:
+def _alone(p: Prepared, candidate: Scored) -> Alone | None:
     """None where its law cannot be such an effect's."""
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
-    s = refine(p.baseline.design, suspect.term, runs, covered)[1]
+    s = refine(p.baseline.design, candidate.term, runs, covered)[1]
     term = s.design.terms[0]
     if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
         return None
-    worst = p.court.worst(p.court.residuals(s, unseen(s, p.court)))
+    worst = p.held_out.worst(p.held_out.residuals(s, unseen(s, p.held_out)))
     return Alone(s.gain - p.baseline.gain, *worst)
 
 

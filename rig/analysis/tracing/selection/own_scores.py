@@ -1,35 +1,32 @@
-"""What it is worth that every run has phases or steps of its own."""
+"""What phases or steps that every run has to itself do for the error: their scores."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rig.analysis.tracing.court.judge import unseen
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import whole_run
+from rig.analysis.tracing.selection.held_out import unseen
 from rig.model.effect import Array
 
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
 
-
-def own_work(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
+def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
     """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and how
     much that is, in squares of the floor. Where no held-out run has any, of the fitted runs' excess, as far as they
     have repeats that show none of it: it is read from single runs in any case, and nothing is foretold."""
-    held, out = unseen(s, p.court), {}
+    held, out = unseen(s, p.held_out), {}
     for name, mine in p.own.made.items():
         if keys := [key for key in held.y if key in mine]:
-            out[name] = _taken(p, s, held, name, keys, p.court.floors)
+            out[name] = _taken(p, s, held, name, keys, p.held_out.floors)
         else:
             keys = [key for key in s.design.y if key in mine and _has_repeat_without(p, key, mine)]
-            out[name] = _taken(p, s, s.design, name, keys, p.court.seen)
+            out[name] = _taken(p, s, s.design, name, keys, p.held_out.seen)
     return out
 
 

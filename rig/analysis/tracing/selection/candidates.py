@@ -1,33 +1,29 @@
-"""Every suspect tried alone beside the baseline: what it leaves on held-out runs, and the reason in words."""
+"""Every candidate tried alone beside the baseline: what it leaves on held-out runs, and the reason in words."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.court.judge import unseen
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNEL, CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, extended, fit
 from rig.analysis.tracing.fit.search import Scored
-from rig.analysis.tracing.outcome.result import AT_REVERSALS, Candidate
+from rig.analysis.tracing.outcome.result import Candidate
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
 
-if TYPE_CHECKING:
-    from rig.analysis.tracing.trace import Prepared
-
-SENSORS: Final = {"A": "theta_l", "M": "tau_m", "R": AT_REVERSALS, "L": "tau_l"}
 TAKEN: Final = "; what stands in its place explains more"
-IN_WORDS: Final = {"A": "kinematic error", "M": "motor torque", "R": "motor torque at reversals", "L": "shaft torque"}
 
 
 @dataclass(frozen=True)
 class Tried:
-    """One suspect alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`."""
+    """One candidate alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`."""
 
     rms: dict[str, float]
     share: float
@@ -35,15 +31,19 @@ class Tried:
 
 
 def candidates(
-    p: Prepared, ranking: Sequence[Scored], before: Mapping[Key, Array], named: Sequence[str], shadowed: Collection[str]
+    p: Prepared,
+    ranking: Sequence[Scored],
+    before: Mapping[Key, Array],
+    named: Sequence[str],
+    confounded: Collection[str],
 ) -> tuple[Candidate, ...]:
     """The first round's ranking, each tried on the held-out runs whose baseline residuals are `before`. In the place of
-    effects that are `shadowed` a law beside the library explains more."""
-    out, held = [], unseen(p.baseline, p.court)
+    effects that are `confounded` a law beside the library explains more."""
+    out, held = [], unseen(p.baseline, p.held_out)
     for r in ranking:
         found = tried(p, r, held, before)
-        rms = {SENSORS[c]: value for c, value in found.rms.items()}
-        why = reason(found, r.term.name, named) + (TAKEN if r.term.name in shadowed else "")
+        rms = {CHANNEL[c].key: value for c, value in found.rms.items()}
+        why = reason(found, r.term.name, named) + (TAKEN if r.term.name in confounded else "")
         out.append(Candidate(r.term.name, r.evidence, why, rms))
     return tuple(out)
 
@@ -52,7 +52,7 @@ def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> 
     """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs, whose design
     without any effect is `held`."""
     s = fit(extended(p.baseline.design, r.term, p.split.fitted))
-    after = p.court.residuals(s, extended(held, r.term, p.court.runs))
+    after = p.held_out.residuals(s, extended(held, r.term, p.held_out.runs))
     rms: dict[str, float] = {}
     shares: dict[str, float] = {}
     changes: dict[str, float] = {}
@@ -62,7 +62,7 @@ def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> 
         if not keys:
             continue
         rms[c] = float(np.sqrt(np.mean(np.concatenate([after[k] for k in keys]) ** 2)))
-        (first, n), (left, _) = p.court.excess(before, keys), p.court.excess(after, keys)
+        (first, n), (left, _) = p.held_out.excess(before, keys), p.held_out.excess(after, keys)
         changes[c], excess[c] = abs(first - left), first / n
         shares[c] = (first - left) / max(first - n, 0.02 * n)
     loud = {c: change for c, change in changes.items() if excess[c] > QUIET**2} or changes
@@ -72,13 +72,12 @@ def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> 
 
 def reason(found: Tried, name: str, named: Sequence[str]) -> str:
     """One sentence on what it does alone, and beside the effects that were named."""
-    where = f"of the excess in the held-out {IN_WORDS[found.channel]}"
+    quantity = CHANNEL[found.channel].name
+    where = f"of the excess in the held-out {quantity}"
     if abs(found.share) < 0.005:
         return f"alone it removes nothing {where}"
     if found.share < 0:
-        return (
-            f"alone it makes the held-out {IN_WORDS[found.channel]} worse, by {-100 * found.share:.0f} % of its excess"
-        )
+        return f"alone it makes the held-out {quantity} worse, by {-100 * found.share:.0f} % of its excess"
     if found.share < NAMED:
         return f"alone it removes {100 * found.share:.0f} % {where}, {100 * NAMED:.0f} % would be asked for"
     needless = "" if name in named or not named else f"; beside {' and '.join(named)} it is not needed"

@@ -9,7 +9,7 @@ from rig.analysis.tracing.rest.home import Home
 
 
 @dataclass(frozen=True)
-class Ruling:
+class Conclusion:
     """The verdict, and what follows from it."""
 
     verdict: Verdict

@@ -1,0 +1,79 @@
+"""What a trace begins with: the runs split, the baseline fitted, the floor measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.floor.noise import Measured, guess, measure
+from rig.analysis.tracing.floor.of_a_run import floor_of
+from rig.analysis.tracing.floor.own import Own, find
+from rig.analysis.tracing.runs.campaign import Campaign
+from rig.analysis.tracing.runs.holdout import Split, split
+from rig.analysis.tracing.runs.scale import off_scale
+from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
+from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks
+from rig.core.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The baseline fitted and the floor measured. `eq` has the columns of the effects in `own`, which every run shows
+    in its own way; `bare` has none."""
+
+    campaign: Campaign
+    split: Split
+    bare: Equations
+    eq: Equations
+    measured: Measured
+    first: Measured  # the same beside the baseline alone
+    baseline: Solution
+    held_out: HeldOut
+    own: Own
+
+    @cached_property
+    def floors(self) -> dict[Key, float]:
+        """Of the fitted blocks."""
+        return {key: floor_of(self.measured, self.eq, key) for key in self.eq.of(self.split.fitted)}
+
+
+def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
+    """Split, fit the baseline, measure the floor, look for what each run has to itself, fit again."""
+    parts = split(campaign.runs, hold_out)
+    eq = equations(parts.runs, Noise({}, {}, {}))
+    if not eq.of(parts.fitted) or not eq.of(parts.held_out):
+        raise UsageError(
+            f"{campaign.name}: no run to fit, or none to test with, has two angles or an angle and a torque"
+        )
+    refuse_odd_torques(campaign.runs, campaign.name)
+    if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
+        said = f" ({'; '.join(campaign.notes)[:300]})" if campaign.notes else ""
+        raise UsageError(
+            f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one{said}"
+        )
+    eq = spoiling(replace(eq, noise=guess(eq)), parts.fitted)
+    s = fit(design(eq, (), parts.fitted))
+    refuse_negative(s, campaign.name)
+    campaign = replace(campaign, notes=(*campaign.notes, *off_scale(s, campaign.name)))
+    measured = measure(s, parts.fitted)
+    eq = replace(eq, noise=measured.noise)
+    eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
+    s = fit(design(eq, (), parts.fitted))
+    own = find(s, parts)
+    if columns := own.columns():
+        s = fit(design(replace(eq, own=columns), (), parts.fitted))
+    return built(campaign, parts, eq, measure(s, parts.fitted), own)
+
+
+def built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured, own: Own) -> Prepared:
+    """With baseline and held-out blocks beside the floor `measured`; `bare` are the equations without any `own`."""
+    bare = replace(bare, noise=measured.noise, own={})
+    eq = replace(bare, own=own.columns())
+    baseline = fit(design(bare, (), parts.fitted))
+    return Prepared(
+        campaign, parts, bare, eq, measured, measured, baseline, held_out_blocks(eq, measured, parts.held_out), own
+    )

@@ -1,0 +1,78 @@
+"""Backward elimination on the held-out runs: effects go, the least first, until all that stay may be named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.model import Design, Solution, design, fit
+from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
+from rig.analysis.tracing.selection.held_out import HeldOut, unseen
+from rig.analysis.tracing.selection.score import HeldOutScore, scores
+from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL
+from rig.model.effect import Parameter, Reach
+
+
+def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, list[HeldOutScore]]:
+    """The model with the effects alone that may be named; the one that does least goes first, all are scored anew."""
+    d = unseen(s, at)
+    while True:
+        scored = scores(s, d, at)
+        failing = [score for score in scored if not score.named or not _can_be(s, score.name)]
+        if not failing:
+            return s, d, scored
+        # what spoils a channel spoils the others' sizes with it
+        worst = min(failing, key=lambda score: (-max(score.harm, HARMFUL), min(score.share, 1.0) * score.size))
+        gone = [i for i, t in enumerate(d.terms) if t.name == worst.name]
+        s, d = fit(reduced(s.design, gone)), reduced(d, gone)
+        if (again := _put_right(s)) is not s:
+            s, d = again, unseen(again, at)
+
+
+def _put_right(s: Solution) -> Solution:
+    """With columns that lean on what the fit says now, where an eliminated effect had led them astray: beside a spring
+    half as stiff as it is even a true effect has the wrong size."""
+    for _ in range(ROUNDS):
+        eq = s.design.eq
+        before = eq.runs[0].pieces[0].gear
+        now = known_of(s.values, before)
+        if change(before, now) < ASTRAY:
+            break
+        s = fit(design(eq.knowing(now), s.design.terms, sorted({run for run, _ in s.design.y})))
+    return s
+
+
+def _can_be(s: Solution, name: str) -> bool:
+    """Whether the terms of an effect have the signs and sizes such an effect can have, now that all are fitted; where
+    they make one sum, whether that has."""
+    d = s.design
+    fits = [(t, as_fit(s, t, s.x[d.place(i)])) for i, t in enumerate(d.terms) if t.name == name]
+    sums = [p.value for t, f in fits for p in t.effect.parameters(f) if p.name in t.effect.adds]
+    return sum(sums) > 0 if len(fits) > 1 and sums else all(t.effect.plausible(f) for t, f in fits)
+
+
+def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: Reach) -> list[str]:
+    """Effects of whose law the data say nothing, in any term: the interval of the number that scales it (a Stribeck
+    speed, a torque, a time) contains zero, or it is a resonance beyond all that was excited. What is left of them is a
+    difference between some runs and others, which many laws make.
+    """
+    names = dict.fromkeys(term.name for term in s.design.terms)
+    zero = [name for name in names if (found := scales(s, name, words)) and not _is_scaled(s, name, found, covered)]
+    return [*zero, *(name for name in names if name not in zero and _out_of_reach(s, name, covered))]
+
+
+def scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:
+    """The first shape parameter that is fitted, of every term of an effect: the second one's is numbered."""
+    effect = next(term.effect for term in s.design.terms if term.name == name)
+    first = [n for n, free in zip(effect.shape_names, effect.loose, strict=True) if free][:1]
+    return [p for p in words.get(name, ()) for n in first if p.name == n or p.name.removeprefix(f"{n}_").isdigit()]
+
+
+def _is_scaled(s: Solution, name: str, found: Sequence[Parameter], covered: Reach) -> bool:
+    effect = next(term.effect for term in s.design.terms if term.name == name)
+    return any(effect.is_scaled(p, covered) for p in found)
+
+
+def _out_of_reach(s: Solution, name: str, covered: Reach) -> bool:
+    terms = [term for term in s.design.terms if term.name == name]
+    return all(term.effect.beyond(term.shape, covered) for term in terms)

@@ -1,0 +1,130 @@
+"""Further selections, where the first explained little or left something uncertain.
+
+The search takes the best candidate first. A look-alike that comes before the true effect is eliminated on unseen runs,
+and the true one was never tried; late terms that chase a rest take a true one's size with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.bank import Bank
+from rig.analysis.tracing.fit.model import fit
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, reduced, settled
+from rig.analysis.tracing.fit.some import search_some
+from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.elimination import scales
+from rig.analysis.tracing.selection.selected import Selected, select
+from rig.analysis.tracing.thresholds import ALIKE, KNOWN, MISSING, MOSTLY, TRIED, TURNS
+from rig.model.effect import Reach
+
+
+def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
+    """All of them, one after the other: each has its own reason, and most campaigns none."""
+    selected = try_prefixes(selected, found, runs, covered)
+    selected = try_without_eliminated(selected, found, bank, runs, covered)
+    selected = try_each_added(selected, found, runs, covered)
+    return try_each_instead(selected, found, runs, covered)
+
+
+def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where much is left and something was eliminated: what the search found first, without what came later. A true
+    effect whose law is a little off leaves a rest that late terms chase, and beside those it has not its size any more.
+    What leaves least on unseen runs counts, where no name is lost by it."""
+    terms = found.solution.design.terms
+    stay = {term.name for term in selected.solution.design.terms}
+    if selected.p.own.line is not None or not selected.loud or not found.names or stay >= set(found.names):
+        return selected
+    ends = [i for i in range(1, len(terms)) if terms[i].name != terms[i - 1].name][:TURNS]
+    for end in ends:
+        s = fit(reduced(found.solution.design, range(end, len(terms))))
+        other = select(selected.p, replace(found, solution=s), runs, covered)
+        if stay < {term.name for term in other.solution.design.terms} and _left(other) < _left(selected):
+            selected, stay = other, {term.name for term in other.solution.design.terms}
+    return selected
+
+
+def try_without_eliminated(
+    selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach
+) -> Selected:
+    """Where much is left, those that were not tried for want of room: all but the eliminated ones. They count when they
+    explain everything; else the first selection stands."""
+    stay = {term.name for term in selected.solution.design.terms}
+    eliminated = frozenset(name for name in found.names if name not in stay)
+    if not eliminated or selected.p.own.line is not None or not selected.loud:
+        return selected
+    d = selected.solution.design
+    others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=eliminated)
+    if not set(others.names) - stay:
+        return selected
+    other = select(selected.p, others, runs, covered)
+    return other if _settles(other, stay) or _stands_alone(other, stay) else selected
+
+
+def try_each_added(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where much is left: the candidates with most evidence, each alone beside what stands. Many small ones that the
+    search put beside the true effect can drive it out. One of them counts when it explains everything."""
+    if selected.p.own.line is not None or not selected.loud:
+        return selected
+    stay = {term.name for term in selected.solution.design.terms}
+    for scored in [r for r in found.ranking[:TRIED] if r.term.name not in stay]:
+        s = settled(refine(selected.solution.design, scored.term, runs, covered)[1], runs, covered)
+        other = select(selected.p, replace(found, solution=s), runs, covered)
+        more = stay < {term.name for term in other.solution.design.terms}
+        if more and (_settles(other, stay) or _stands_alone(other, stay)):
+            return other
+    return selected
+
+
+def try_each_instead(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where the one effect that stands wants another size from run to run: look-alikes that explained nearly as much,
+    each in its place. One that is steadier and leaves less of unseen runs is rather what it is."""
+    names = {term.name for term in selected.solution.design.terms}
+    if len(names) != 1 or len(selected.scores) != 1 or selected.scores[0].fairly:
+        return selected
+    mine = next((r.evidence for r in found.ranking if r.term.name in names), np.inf)
+    alike = [r for r in found.ranking if r.term.name not in names and r.evidence > ALIKE * mine]
+    for scored in alike[:TRIED]:
+        s = settled(refine(selected.p.baseline.design, scored.term, runs, covered)[1], runs, covered)
+        other = select(selected.p, replace(found, solution=s), runs, covered)
+        if len(other.scores) == 1 and _steadier(other, selected) and _in_all(other) < _in_all(selected):
+            selected = other
+    return selected
+
+
+def _settles(other: Selected, stay: Collection[str]) -> bool:
+    """Whether a second choice explains everything, and the numbers that scale its laws (a frequency, a torque) are
+    known to a third of themselves: more is asked of it than that they are not zero."""
+    return not other.loud and _known(other, stay)
+
+
+def _known(other: Selected, stay: Collection[str]) -> bool:
+    new = {term.name for term in other.solution.design.terms if term.name not in stay}
+    known = [p for name in new for p in scales(other.solution, name, other.words)]
+    return all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
+
+
+def _stands_alone(other: Selected, stay: Collection[str]) -> bool:
+    """Whether a second choice, where nothing had a name, explains nearly all of what it acts on with one size in all
+    runs: it is named though something is left beside it."""
+    plain = all(score.share > MOSTLY and score.fairly and score.left < MISSING for score in other.scores)
+    return not stay and bool(other.scores) and plain and not confounders_in(other.solution) and _known(other, stay)
+
+
+def _steadier(one: Selected, other: Selected) -> bool:
+    return max(one.scores[0].unsteady, one.scores[0].apart) < max(other.scores[0].unsteady, other.scores[0].apart)
+
+
+def _in_all(selected: Selected) -> float:
+    """RMS over floor of all channels of unseen runs together."""
+    left = selected.p.held_out.residuals(selected.solution, selected.held)
+    return selected.p.held_out.ratio(left, list(left))
+
+
+def _left(selected: Selected) -> float:
+    """RMS over floor of the worst channel on unseen runs."""
+    return selected.p.held_out.worst(selected.p.held_out.residuals(selected.solution, selected.held))[0]

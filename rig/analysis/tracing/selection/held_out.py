@@ -1,0 +1,72 @@
+"""The held-out runs: what a model leaves there, beside the floor of each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
+from rig.analysis.tracing.thresholds import EXPLAINED, TURNED
+from rig.model.effect import Array
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Held-out blocks with their floors. Nothing here goes back into the fit."""
+
+    runs: tuple[int, ...]
+    floors: dict[Key, float]
+    seen: dict[Key, float]  # floors of the fitted blocks
+    lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
+
+    def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
+        """Of a solution on the held-out design `d`."""
+        return {key: d.residual(key, s.x) for key in d.y}
+
+    def excess(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> tuple[float, int]:
+        """Sum of squares over squared floors, and rows."""
+        return (
+            float(sum(e[k] @ e[k] / self.floors[k] ** 2 for k in keys)),
+            sum(e[k].size for k in keys),
+        )
+
+    def ratio(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
+        """RMS over floor of some blocks."""
+        total, n = self.excess(e, keys)
+        return float(np.sqrt(total / max(n, 1)))
+
+    def loud(self, e: Mapping[Key, Array], single: float, named: bool = True) -> bool:
+        """Whether a channel, or by more than `single` one run beside what chance does to it, has more left than may be.
+        Reversals are few rows, whose floor no repeats tell: beside what is `named` they may have a little left."""
+        turned = {key: x for key, x in e.items() if key[1] == "R"}
+        if named and turned and self.worst(turned)[0] < TURNED:
+            e = {key: x for key, x in e.items() if key[1] != "R"}
+        most, one = self.worst(e)
+        return most > EXPLAINED or one > single
+
+    def worst(self, e: Mapping[Key, Array]) -> tuple[float, float]:
+        """Largest RMS over floor of a channel, and of a single run in a channel beside what chance does to it."""
+        by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
+        return max(self.ratio(e, keys) for keys in by_channel if keys), max(
+            self.ratio(e, [k]) / self.lenient[k] for k in e
+        )
+
+
+def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> HeldOut:
+    """The held-out blocks, each with the floor of its condition."""
+    floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
+    held = set(eq.of(runs))
+    seen = {key: floor for key, floor in floors.items() if key not in held}
+    lenient = {key: leniency(measured, eq, key) for key in held}
+    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient)
+
+
+def unseen(s: Solution, at: HeldOut) -> Design:
+    """The model's columns on the held-out runs."""
+    return design(replace(s.design.eq, noisy={}), s.design.terms, at.runs)

@@ -1,0 +1,172 @@
+"""What each effect does on runs the fit has not seen: the score by which it may be named or not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Design, Solution, without
+from rig.analysis.tracing.selection.held_out import HeldOut
+from rig.analysis.tracing.thresholds import (
+    ABOUT,
+    ALL,
+    APART,
+    EXPLAINED,
+    FAINT,
+    FAIR,
+    FAIRLY,
+    HARMFUL,
+    LOOSELY,
+    MISSING,
+    MOSTLY,
+    NAMED,
+    PLAINLY,
+    QUIET,
+    REAL,
+    SEVERAL,
+    SMALLEST,
+    UNREAL,
+    UNSTEADY,
+)
+from rig.model.effect import Array
+
+
+@dataclass(frozen=True)
+class HeldOutScore:
+    """One effect on held-out runs: share of the excess it removes where it acts, its RMS over the floor there, and the
+    ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
+    the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
+    same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
+    largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's. `runs`
+    fitted ones show it."""
+
+    name: str
+    share: float
+    size: float
+    left: float
+    true: float
+    ground: tuple[Key, ...]
+    unsteady: float = 0.0
+    apart: float = 0.0
+    harm: float = 1.0
+    anywhere: float = 0.0
+    work: float = 0.0
+    runs: int = SEVERAL
+
+    @property
+    def named(self) -> bool:
+        """Whether it may be named."""
+        real = self.size > SMALLEST and REAL < self.true < UNREAL and self.harm < HARMFUL
+        loose = LOOSELY if self._explains_all else 1.0
+        real = real and self.unsteady < loose * UNSTEADY and self.apart < loose * APART
+        # a law that leaves a loud rest may be another's: it must then at least take what it should, in one size
+        loud = self.left > EXPLAINED and self.share < MOSTLY
+        real = real and (self.fairly or not loud)
+        return real and (self.share > NAMED or (self.left < QUIET and self.share > NAMED / 2))
+
+    @property
+    def fairly(self) -> bool:
+        """Whether it takes away what it should, and wants one size in all runs, to a fifth."""
+        return abs(self.true - 1.0) < FAIRLY and max(self.unsteady, self.apart) < FAIRLY
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is plainly what acts there, whatever its law leaves: most of the excess goes with it, with one
+        size in all runs, of which there are a few: in one or two a size is the same for want of others. How large the
+        rest is in floors says nothing against it: that of a law a little off grows with the effect."""
+        one = max(self.unsteady, self.apart) < ABOUT and self.runs >= SEVERAL
+        return self.share > PLAINLY and abs(self.true - 1.0) < ABOUT and one
+
+    @property
+    def _explains_all(self) -> bool:
+        """Where next to nothing is left of it on unseen runs, sizes differ from run to run by less than the noise of a
+        run's mean."""
+        return self.share > ALL and self.left < MISSING and abs(self.true - 1.0) < FAIRLY
+
+
+def scores(s: Solution, d: Design, at: HeldOut) -> list[HeldOutScore]:
+    """Every effect in the model, scored by taking it away."""
+    whole = at.residuals(s, d)
+    return [score(s, d, at, whole, name) for name in dict.fromkeys(t.name for t in d.terms)]
+
+
+def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name: str) -> HeldOutScore:
+    """One effect: the others are fitted again without it."""
+    mine = [i for i, t in enumerate(d.terms) if t.name == name]
+    rest = without(s, mine)
+    bare = at.residuals(rest, d)
+    places = {int(d.place(i).start) for i in mine}
+    size: dict[Key, float] = {}
+    for key in d.y:
+        if any(int(part.at[0]) in places for part in d.parts[key]):
+            f = bare[key] - whole[key]
+            size[key] = float(np.sqrt(np.mean(f**2))) / at.floors[key]
+    if not size:
+        return HeldOutScore(name, 0.0, 0.0, 1.0, 0.0, ())
+    most = max(size.values())
+    ground = tuple(key for key, r in size.items() if r >= 0.5 * most)
+    before, n = at.excess(bare, ground)
+    after, _ = at.excess(whole, ground)
+    share = (before - after) / max(before - n, 0.02 * n)
+    own = sum(size[key] ** 2 * whole[key].size for key in ground)
+    true = float((before - after) / own)
+    held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
+    unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
+    # at reversals stands what no effect that acts while the motor turns can be held to
+    acts = [[k for k in size if k[1] == c] for c in CHANNELS if c != "R" or {"R"} == {k[1] for k in size}]
+    return HeldOutScore(
+        name,
+        float(share),
+        most,
+        float(np.sqrt(after / n)),
+        true,
+        ground,
+        unsteady,
+        apart,
+        harm(at, bare, whole),
+        max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
+        sum(r**2 * whole[key].size for key, r in size.items()),
+        seen[2],
+    )
+
+
+def harm(at: HeldOut, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
+    """Over the channels that are not quiet: largest RMS with the effect over that without it. What reversals have left
+    says nothing: they are few rows, and what stands there beside a true effect is friction."""
+    found = [1.0]
+    for channel in WHOLE:
+        keys = [key for key in whole if key[1] == channel]
+        if keys and (now := at.ratio(whole, keys)) > EXPLAINED:
+            found.append(now / max(at.ratio(bare, keys), 1e-9))
+    return max(found)
+
+
+def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> tuple[float, float, int]:
+    """How much an effect's size differs from run to run: RMS, relative, weighted by what it does there, what noise
+    makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. And how many
+    runs show it plainly. `rest` is the fit without the effect.
+
+    A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
+    like an effect has its size from a compromise between runs; a real one has the same in each.
+    """
+    spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
+    shown = set()
+    for key in d.y:
+        e = d.residual(key, s.x) / floors[key]
+        f = d.residual(key, rest.x) / floors[key] - e
+        own = float(f @ f)
+        if own > FAINT**2 * e.size:
+            spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
+            work[key[1]] += own
+        if own > SMALLEST**2 * e.size:
+            shown.add(key[0])
+    total = sum(work.values())
+    fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
+    apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
+    # a channel it hardly shows in says nothing of it: what is left there is something else's
+    whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
+    return float(whole), float(apart), len(shown)

@@ -1,0 +1,141 @@
+"""What of the search's effects is selected on the held-out runs, and whether what is found at the floor may be said."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from rig.analysis.tracing.fit.covariance import covariance, scatter
+from rig.analysis.tracing.fit.model import Design, Solution, design, fit
+from rig.analysis.tracing.fit.parameters import effects
+from rig.analysis.tracing.fit.search import Found, polished, reduced
+from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
+from rig.analysis.tracing.selection.elimination import backward_elimination, unresolved
+from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
+from rig.analysis.tracing.selection.own_scores import own_scores
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
+from rig.model.effect import Array, Parameter, Reach
+
+Words = dict[str, tuple[Parameter, ...]]
+"""Parameters by effect."""
+
+
+@dataclass(frozen=True)
+class Selected:
+    """The model with the effects that may be named, on the held-out runs, and their parameters in words."""
+
+    p: Prepared
+    solution: Solution
+    held: Design
+    scores: list[HeldOutScore]
+    words: Words
+
+    @property
+    def loud(self) -> bool:
+        """Whether more is left on the held-out runs than may be."""
+        return is_loud(self.p.held_out, self.solution, self.held)
+
+
+def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Effects are eliminated until all that are left may be named; their laws are fitted again beside each other."""
+    solution, held, scores = backward_elimination(found.solution, p.held_out)
+    if len(solution.design.terms) < len(found.solution.design.terms):
+        p = _floored(p, solution, runs)
+        solution, held, scores = backward_elimination(solution, p.held_out)
+    fewer = len(solution.design.terms) < len(found.solution.design.terms)
+    if fewer or found.rough or len(solution.design.terms) > 1:
+        solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
+    p, solution = _own_kept(p, solution)
+    solution, held, scores = backward_elimination(with_confounders(solution, runs, covered), p.held_out)
+    while vague := unresolved(solution, _in_words(solution, runs, scatter), covered):
+        # one at a time: without it another one's law may be plain
+        candidates = [score for score in scores if score.name in vague]
+        least = min(candidates, key=lambda score: min(score.share, 1.0) * score.size).name
+        gone = [i for i, term in enumerate(solution.design.terms) if term.name == least]
+        solution, held, scores = backward_elimination(
+            polished(fit(reduced(solution.design, gone)), runs, covered), p.held_out
+        )
+    selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
+    return _without_insignificant(selected, runs, covered)
+
+
+def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without names whose size may as well be zero, unless something is left to explain without them."""
+    insignificant = [
+        score for score in selected.scores if (words := selected.words.get(score.name)) and words[0].holds_zero
+    ]
+    if not insignificant:
+        return selected
+    least = min(insignificant, key=lambda score: score.work).name
+    s = selected.solution
+    gone = [i for i, term in enumerate(s.design.terms) if term.name == least]
+    s, held, scores = backward_elimination(polished(fit(reduced(s.design, gone)), runs, covered), selected.p.held_out)
+    other = Selected(selected.p, s, held, scores, _in_words(s, runs, covariance))
+    if other.loud or len(scores) < len(selected.scores) - 1:
+        return selected
+    return _without_insignificant(other, runs, covered)
+
+
+def is_certain(selected: Selected) -> bool:
+    """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
+    few repeats, and can be too high. Every name must be large, of one size in all runs and what it acts on must be
+    explained, and nothing unnamed be needed beside it."""
+    plain = selected.scores and not confounders_in(selected.solution) and not selected.loud
+    return bool(plain) and all(score.size > PLAIN_TO_SEE and score.fairly for score in selected.scores)
+
+
+def is_calm(p: Prepared) -> bool:
+    """Whether the baseline is at the floor on the held-out runs."""
+    most, one = p.held_out.worst(p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out)))
+    return most < QUIET and one < MISSING
+
+
+Kept = tuple[Solution, Design, list[HeldOutScore]]
+"""As `backward_elimination` gives it."""
+
+
+def _polished(p: Prepared, s: Solution, so_far: Kept, runs: Sequence[int], covered: Reach) -> Kept:
+    """Laws fitted again beside those that stayed; as they were where that loses one: two terms of one effect can trade
+    what single runs show, and foretell nonsense of others."""
+    again = backward_elimination(polished(s, runs, covered), p.held_out)
+    kept = {term.name for term in again[0].design.terms}
+    return again if kept >= {term.name for term in s.design.terms} else so_far
+
+
+def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
+    return effects(s, runs, spread) if s.design.terms else {}
+
+
+def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
+    """With the floor measured beside the effects that stayed: eliminated ones may have taken noise with them.
+
+    Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
+    nothing is left over that larger floor either.
+    """
+    measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    again = replace(p, measured=measured, held_out=held_out_blocks(p.eq, measured, p.split.held_out))
+    known = repeats(p.eq.runs, runs) or not is_loud(again.held_out, s, unseen(s, again.held_out))
+    return again if known else p
+
+
+def is_loud(at: HeldOut, s: Solution, held: Design) -> bool:
+    """Whether more is left on the held-out runs than may be."""
+    return at.loud(at.residuals(s, held), MISSING, bool(s.design.terms))
+
+
+def _own_kept(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
+    """Without effects of each run's own that take too little of the held-out excess to be named."""
+    failing = [name for name, (share, _) in own_scores(p, s).items() if share < NAMED]
+    if not failing:
+        return p, s
+    left = p.own.without(failing)
+    again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
+    eq = replace(s.design.eq, own=left.columns())
+    again = replace(again, held_out=held_out_blocks(again.eq, again.measured, p.split.held_out))
+    return again, fit(design(eq, s.design.terms, p.split.fitted))

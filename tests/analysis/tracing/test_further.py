@@ -1,0 +1,96 @@
+"""Further selections: what is tried again, and what of it counts."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rig.analysis.tracing.selection import further
+from rig.analysis.tracing.selection.score import HeldOutScore
+
+
+def selected(name: str, unsteady: float, left: float) -> Any:
+    """One effect stands; `left` is what unseen runs have over their floor."""
+    terms = (SimpleNamespace(name=name),)
+    score = HeldOutScore(name, 0.9, 1.5, 1.0, 1.0, (), unsteady=unsteady, apart=unsteady)
+    p = SimpleNamespace(baseline=SimpleNamespace(design=None))
+    return SimpleNamespace(
+        p=p, solution=SimpleNamespace(design=SimpleNamespace(terms=terms)), scores=[score], left=left
+    )
+
+
+def instead(monkeypatch: pytest.MonkeyPatch, stands: Any, other: Any, evidence: float) -> tuple[str, int]:
+    """What stands in the end where `stands` had evidence 100 and `other` the given one, and how many were tried."""
+    tried: list[str] = []
+
+    def selected_again(*_: object) -> Any:
+        tried.append(other.scores[0].name)
+        return other
+
+    monkeypatch.setattr(further, "select", selected_again)
+    monkeypatch.setattr(further, "refine", lambda *_: (None, None))
+    monkeypatch.setattr(further, "settled", lambda *_: None)
+    monkeypatch.setattr(further, "replace", lambda found, **_: found)
+    monkeypatch.setattr(further, "_in_all", lambda one: one.left)
+    ranking = tuple(
+        SimpleNamespace(term=SimpleNamespace(name=one.scores[0].name), evidence=e)
+        for one, e in ((stands, 100.0), (other, evidence))
+    )
+    found: Any = SimpleNamespace(ranking=ranking)
+    return further.try_each_instead(stands, found, (), None).scores[0].name, len(tried)  # type: ignore[arg-type]
+
+
+def test_a_steadier_look_alike_that_leaves_less_takes_the_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    support, mode = selected("support_compliance", 0.4, 0.95), selected("torsional_mode", 0.3, 0.9)
+    assert instead(monkeypatch, support, mode, 90.0) == ("torsional_mode", 1)
+
+
+@pytest.mark.parametrize(("unsteady", "left"), [(0.5, 0.9), (0.3, 1.0)])
+def test_one_that_is_less_steady_or_leaves_more_does_not(
+    monkeypatch: pytest.MonkeyPatch, unsteady: float, left: float
+) -> None:
+    support, mode = selected("support_compliance", 0.4, 0.95), selected("torsional_mode", unsteady, left)
+    assert instead(monkeypatch, support, mode, 90.0) == ("support_compliance", 1)
+
+
+def test_nothing_else_is_tried_where_one_size_suits_all_runs_or_nothing_else_explained_as_much(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mode = selected("torsional_mode", 0.1, 0.5)
+    assert instead(monkeypatch, selected("support_compliance", 0.1, 0.95), mode, 99.0) == ("support_compliance", 0)
+    assert instead(monkeypatch, selected("support_compliance", 0.4, 0.95), mode, 70.0) == ("support_compliance", 0)
+
+
+@pytest.mark.parametrize(
+    ("stands", "left", "expected"),
+    [
+        ((), {1: 1.5, 2: 1.2, 3: 1.4}, {"a", "b"}),  # the least, though a third is kept as well
+        (("c",), {1: 1.5, 2: 1.2, 3: 1.4}, {"a", "b", "c"}),  # no name is lost
+        (("a",), {1: 9.0, 2: 9.0, 3: 9.0}, {"a"}),  # nothing better
+    ],
+)
+def test_what_came_first_counts_where_it_leaves_less_and_loses_no_name(
+    monkeypatch: pytest.MonkeyPatch, stands: tuple[str, ...], left: dict[int, float], expected: set[str]
+) -> None:
+    """The search found a (twice), b, c and d; in prefixes, of which nothing is eliminated."""
+
+    def model(names: tuple[str, ...]) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in names)
+        return SimpleNamespace(design=SimpleNamespace(terms=terms))
+
+    def selected_again(p: Any, found: Any, *_: object) -> Any:
+        names = {term.name for term in found.solution.design.terms}
+        return SimpleNamespace(p=p, solution=found.solution, loud=True, left=left[len(names)])
+
+    monkeypatch.setattr(further, "select", selected_again)
+    monkeypatch.setattr(further, "fit", lambda design: SimpleNamespace(design=design))
+    monkeypatch.setattr(further, "reduced", lambda d, gone: SimpleNamespace(terms=d.terms[: min(gone)]))
+    monkeypatch.setattr(further, "replace", lambda found, solution: SimpleNamespace(solution=solution))
+    monkeypatch.setattr(further, "_left", lambda one: one.left)
+    p = SimpleNamespace(own=SimpleNamespace(line=None))
+    selected: Any = SimpleNamespace(p=p, solution=model(stands), loud=True, left=2.0)
+    found: Any = SimpleNamespace(solution=model(("a", "a", "b", "c", "d")), names=("a", "b", "c", "d"))
+    kept = further.try_prefixes(selected, found, (), None)  # type: ignore[arg-type]
+    assert {term.name for term in kept.solution.design.terms} == expected
