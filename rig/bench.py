@@ -309,7 +309,7 @@ def twin_parameters(f: BenchFile) -> Any:
     import numpy as np
 
     from rig.model.fourier import FourierSeries
-    from rig.model.gear import Gear
+    from rig.model.gear import Gear, sigma_of
     from sim.effects import Effects
     from sim.parameters import TwinParameters
 
@@ -318,7 +318,7 @@ def twin_parameters(f: BenchFile) -> Any:
     error = FourierSeries.from_polar(np.radians(twin.kinematic_error.C_deg), np.radians(twin.kinematic_error.psi_deg))
     model = Gear(
         ratio=gear.N, J_m=gear.J_m, J_l=gear.J_l, K=gear.K, B_m=gear.B_m, B_l=gear.B_l, B_ml=gear.B_ml, B_sp=gear.B_sp,
-        kinematic_error=error, sigma=1 if gear.output == "flexspline" else 0,
+        kinematic_error=error, sigma=sigma_of(gear.output),
         tau_c=twin.tau_c, tau_s=twin.tau_s, omega_s=twin.omega_s, F_cl=twin.F_cl,
     )  # fmt: skip
     return TwinParameters(

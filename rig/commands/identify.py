@@ -91,9 +91,7 @@ def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
     gear = runs[0].manifest.get("gear") or {}
     if found.undetermined:
         print(f"  {said_open(found.undetermined, found.parameters)}")
-    file = found.gear_file(
-        str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
-    )
+    file = found.gear_file(str(gear.get("serial") or ""), simulated, made_with(runs))
     tell(comparison(predictions(recordings, file.gear(), terms)))
     tell(coasting(runs, found))
     file = replace(file, characteristics=characteristics, covered=covered(found))

@@ -20,11 +20,10 @@ import numpy.typing as npt
 from rig.core.errors import DataError, UsageError
 from rig.core.regular import regular
 from rig.model.fourier import FourierSeries
-from rig.model.gear import Gear
+from rig.model.gear import SIGMA, USUAL, Gear, sigma_of
 
 SCHEMA = "hdrig.gear/1"
 ORIGINS = ("measured", "declared", "assumed")
-SIGMA = {"flexspline": 1, "circular_spline": 0}  # which part is the output, as in the bench file
 UNITS = {
     "N": "1",
     "J_m": "kg·m²",
@@ -115,7 +114,7 @@ class GearFile:
 
     parameters: Mapping[str, Parameter]
     kinematic_error: MeasuredSeries
-    output: str = "flexspline"
+    output: str = USUAL
     serial: str = ""
     simulated: bool = False
     made: str = ""  # when and with what, for people
@@ -131,7 +130,7 @@ class GearFile:
         return Gear(
             ratio=self.parameters["N"].value,
             kinematic_error=self.kinematic_error.series,
-            sigma=SIGMA[self.output],
+            sigma=sigma_of(self.output),
             **numbers,
         )
 
