@@ -83,3 +83,5 @@ class Result:
     limits: Mapping[str, str] = field(default_factory=dict)
     former: tuple[Former, ...] = ()
     rejected: bool = False
+    broke_off: str = ""  # the traceback of an analysis that broke off, "" of one that came to its end
+    defect: bool = False  # it broke off on an error of ours, not on what the run holds

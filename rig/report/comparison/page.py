@@ -74,7 +74,8 @@ def _backend(runs: tuple[Row, ...]) -> str | None:
 def _curves(folder: Path) -> tuple[Curves | None, str]:
     """What the analysis draws; or why it cannot."""
     try:
-        return analyse(Run.open(folder), None).curves, ""
+        found = analyse(Run.open(folder), None)
+        return (None, found.sentence) if found.broke_off else (found.curves, "")
     except HdrigError as error:
         return None, str(error)
 
