@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import DataError, UsageError
+from rig.core.numbers import number
 from rig.core.regular import regular
 from rig.model.fourier import FourierSeries
 from rig.model.gear import SIGMA, USUAL, Gear, sigma_of
@@ -313,10 +314,10 @@ def _table(raw: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def _number(raw: Mapping[str, Any], key: str, where: str) -> float:
-    value = raw.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise DataError(f"{where}.{key} = {value!r}: expected a finite number")
-    return float(value)
+    found = number(raw.get(key))
+    if math.isnan(found):
+        raise DataError(f"{where}.{key} = {raw.get(key)!r}: expected a finite number")
+    return found
 
 
 def _numbers(raw: Mapping[str, Any], key: str, where: str) -> list[float]:

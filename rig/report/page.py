@@ -16,11 +16,12 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from rig.analysis.result import Array, Result
+from rig.core.numbers import number as number_of
 from rig.report import rows, words
 from rig.report.cards import cards
 from rig.report.figures import CATALOGUE, Drawing, Frame, styled, svg
 from rig.report.history import told
-from rig.report.numbers import duration, number_of
+from rig.report.numbers import duration
 from rig.report.palette import DARK, LIGHT, variables
 from rig.report.provenance import provenance
 from rig.report.tables import Table, number, tables
