@@ -14,10 +14,10 @@ from typing import Any, Literal
 from rig.bench_places import check_keys, check_places
 from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
-from rig.control.pid import Gains
 from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
+from rig.core.gains import Gains
 from rig.core.nearest import nearest
 from rig.core.procedure import Setting
 from rig.core.sample import Mode

@@ -44,7 +44,11 @@ STUMBLES = (OSError, MemoryError, ArithmeticError, AssertionError, AttributeErro
             RecursionError, TypeError, ValueError)  # fmt: skip
 """What the report of a run can break off with, an analysis that does telling it by itself; the campaign goes on."""
 OUTSIDE = (OSError, MemoryError)  # of the machine; the others are defects of ours, for the run was read and analysed
-LATER = "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec' judges those of one kind when made"
+HINTS = {
+    "--limit": "a limit judges runs once they are made, and only those of one kind: "
+    "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec'"
+}
+"""What is said of options that are looked for here and are elsewhere."""
 SEEDS = 2**31  # of the order, drawn when none is given
 
 
@@ -60,16 +64,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--skip", type=_numbers, default=[], metavar="N,…", help="with --resume: runs, by number, that are not made"
     )
-    parser.add_argument(
-        "--limit", action="append", dest="limits", metavar="NAME=LIMIT", help=f"not here, for runs differ: {LATER}"
-    )
     parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
 
 
 def run(args: argparse.Namespace) -> int:
     """Plan, then dry run, or everything that is still to be made."""
-    if args.limits:
-        raise UsageError(f"--limit {args.limits[0]}: a limit judges runs once they are made; {LATER}")
     if args.resume:
         return _resume(args)
     if args.skip:
