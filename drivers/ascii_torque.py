@@ -15,13 +15,13 @@ from drivers.lines import Lines
 from drivers.port import Port
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER, is_never
 from rig.core.devices import Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
 
 LINE = re.compile(rb"\s*([+-]?\d{1,6}(?:\.\d{1,9})?)\s*N(?:[ .*-]|\xb7|\xc2\xb7)?m\s*(?:\*([0-9A-Fa-f]{2}))?\s*")
 LONGEST = 48  # bytes of a line
-NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for the first good line
 EXAMPLE = "for example '-12.345 Nm'"
 
@@ -57,7 +57,7 @@ class AsciiTorque(TorqueSensor):
         """Open the port and wait for a line that makes sense. Raises NotReady."""
         self.port.open()
         until = time.monotonic() + PATIENCE
-        while self.read().t == NEVER:
+        while is_never(self.read().t):
             if time.monotonic() > until:
                 raise NotReady(f"{self.port.who} sent {self._useless_words()} in {PATIENCE:g} s, expected {EXAMPLE}")
             time.sleep(0.005)

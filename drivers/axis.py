@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from drivers import cansimple as cs
 from drivers.bus import Bus
+from rig.core.clock import NEVER, is_never
 from rig.core.devices import Identity
 from rig.core.errors import NotReady
 
-NEVER = -1e9  # s, before any heartbeat
 NODES = range(64)
 LISTEN = 0.5  # s in which an axis must have told that it lives; heartbeats come every 100 ms unless set otherwise
 ANSWER = 0.1  # s for an answer to a remote frame
@@ -87,7 +87,7 @@ class Axis:
         """Wait for one that was not there yet; False when none came."""
         self.bus.drain()  # what lay in the queue is old
         self.heard = NEVER
-        return self.bus.wait(seconds, lambda: self.heard != NEVER)
+        return self.bus.wait(seconds, lambda: not is_never(self.heard))
 
     def fresh(self) -> None:
         """State and errors as of now. Raises NotReady when it is silent."""

@@ -14,14 +14,13 @@ import can
 from drivers.claim import connect_alone
 from drivers.queueing import Queueing
 from drivers.unopened import first_line, why_unopened
-from rig.core.clock import Clock
+from rig.core.clock import NEVER, Clock
 from rig.core.errors import NotReady
 
 SYNC, HEARTBEAT, NMT = 0x080, 0x700, 0x000
 OPERATIONAL = 0x05
 CANOPEN = "CANopen"
 MOST = 500  # frames taken in one go: a babbling node must not hold the loop for longer than some milliseconds
-NEVER = -1e9  # s, before any SYNC
 LATE_ANSWER = 0.002  # s before the newest SYNC: who answered then answered an older one, and was held up on the way
 SETTLE, OTHERS = 0.01, 0.12  # s listened before anything is sent: a host that only reads beats every 50 ms
 GARBLED = (ValueError, IndexError, struct.error)  # what slcan and serial backends raise on a torn line

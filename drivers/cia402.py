@@ -23,6 +23,7 @@ from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER, is_never
 from rig.core.devices import Drive, DriveReading, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
@@ -30,12 +31,10 @@ from rig.core.units import TURN
 
 PROFILE = 402
 VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage
-NEVER = -1e9  # s, a latch time older than any
 WATCHDOG = 0.1  # s, where the bench file says none
 LONGER = 1.5  # times what the guard allows: the host stops first and says why
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
-LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
 TELLS = {0x6061: "mode", 0x6077: "torque", 0x6064: "position"}
@@ -66,8 +65,7 @@ class Cia402(Drive):
         self._direction = place.options.get("direction", 1)
         self._rated = place.torque_rated
         self._step = TURN / place.counts_per_turn
-        fastest = place.speed_limit * place.period / self._step
-        self._angle = Unwrapped(1 << 32, max(int(LATE * fastest), 1))
+        self._angle = Unwrapped.of(place, 1 << 32)
         self._enabled = self._connected = False
         self._last = DriveReading(NEVER, NAN, 0, NAN)
         self._scale = Scale(place)
@@ -212,7 +210,7 @@ class Cia402(Drive):
         latched = self._inputs.take()
         if self._inputs.wrong:
             self._blame(self._inputs.wrong)
-        if latched == NEVER:
+        if is_never(latched):
             return self._told(self._last)
         word, mode, permille, position = self._inputs.values
         self.voltage = bool(int(word) & VOLTAGE)
@@ -285,7 +283,7 @@ class Cia402(Drive):
         while self.bus.clock.now() < until and not self.bus.dead:
             with contextlib.suppress(NotReady):
                 self._inputs.first(CONFIRM / 10)
-            if self._inputs.take() != NEVER and not int(self._inputs.values[0]) & OPERATES:
+            if not is_never(self._inputs.take()) and not int(self._inputs.values[0]) & OPERATES:
                 return True
             self._hold(DISABLE)
         return self._off_by_sdo()

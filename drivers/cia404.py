@@ -7,9 +7,11 @@ import struct
 from typing import ClassVar
 
 from drivers.node import Mapped, Node
-from drivers.pdo import NEVER, Inputs
+from drivers.on_sync import OnSync
+from drivers.pdo import Inputs
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER, is_never
 from rig.core.devices import Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
@@ -25,7 +27,7 @@ def prefix_of(unit: int) -> float | None:
     return 10.0**exponent if numerator == NEWTON_METRE and not unit & 0xFF00 else None
 
 
-class Cia404(TorqueSensor):
+class Cia404(OnSync, TorqueSensor):
     """A transducer at `node` on `bus`. Without 6131h and 6132h its numbers would mean nothing: refused."""
 
     name = "torque_sensor"
@@ -71,20 +73,9 @@ class Cia404(TorqueSensor):
         self.bus.drain()
         latched = self._inputs.take()
         self.trouble = self._inputs.wrong or self.node.trouble(self.bus.clock.now())
-        if latched in (NEVER, self._last.t):
+        if is_never(latched) or latched == self._last.t:
             return self._last
         tau = self._direction * self._inputs.values[0] * self._scale
         over = not math.isfinite(tau) or abs(tau) >= 0.999 * self.place.range
         self._last = TorqueReading(latched, tau, int(Flag.SATURATED_TAU) if over else 0)
         return self._last
-
-    def clear(self) -> None:
-        """Forget emergencies, look anew. Raises NotReady: silent, or rebooted, its configuration lost."""
-        self.node.revive()
-        self._inputs.wrong = ""
-        self._inputs.first(0.5)
-        self.read()
-
-    def close(self) -> None:
-        """Off the bus."""
-        self.bus.close()

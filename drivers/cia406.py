@@ -5,23 +5,24 @@ from __future__ import annotations
 from typing import ClassVar
 
 from drivers.node import Mapped, Node
-from drivers.pdo import NEVER, Inputs
+from drivers.on_sync import OnSync
+from drivers.pdo import Inputs
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER, is_never
 from rig.core.devices import AngleReading, Encoder, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
 from rig.core.units import TURN
 
 PROFILE = 406
-LATE = 50.0  # times the fastest motion between two frames: a step beyond is no motion
 SCALING = 1 << 2  # of 6000h: 6001h and 6002h are in use
 WHOLE = 1 << 32  # values of 6004h: a total range of so many does not fit into 6002h, which is then 0
 POSITION = (Mapped(0x6004, 0, 32, "I"),)  # it wraps at the total range 6002h, not at 2^32
 
 
-class Cia406(Encoder):
+class Cia406(OnSync, Encoder):
     """An encoder at `node` on `bus`; its resolution has to agree with the bench file's."""
 
     name = "load_encoder"
@@ -52,8 +53,7 @@ class Cia406(Encoder):
                 f"{self.node.who} counts {per_turn} per turn, load_encoder.counts_per_turn in the bench file is "
                 f"{self.place.counts_per_turn}"
             )
-        fastest = self.place.speed_limit * self.place.period / self._step
-        self._angle = Unwrapped(modulus, max(int(LATE * fastest), 1))
+        self._angle = Unwrapped.of(self.place, modulus)
         self._inputs.arrange((POSITION,))
         self.node.produce_heartbeat()
         self.node.start()
@@ -74,20 +74,9 @@ class Cia406(Encoder):
         self.bus.drain()
         latched = self._inputs.take()
         self.trouble = self._inputs.wrong or self.node.trouble(self.bus.clock.now())
-        if latched in (NEVER, self._last.t):
+        if is_never(latched) or latched == self._last.t:
             return self._last
         flags = Flag.EPOCH if self._angle.step(int(self._inputs.values[0])) else 0
         counts = self._direction * (self._angle.counts or 0)
         self._last = AngleReading(latched, counts * self._step, counts, int(flags))
         return self._last
-
-    def clear(self) -> None:
-        """Forget emergencies, look anew. Raises NotReady: silent, or rebooted, its configuration lost."""
-        self.node.revive()
-        self._inputs.wrong = ""
-        self._inputs.first(0.5)
-        self.read()
-
-    def close(self) -> None:
-        """Off the bus."""
-        self.bus.close()

@@ -15,20 +15,20 @@ from typing import ClassVar
 from drivers import cansimple as cs
 from drivers.axis import Axis
 from drivers.silence import UNANSWERED, missing
+from drivers.unwrap import LATE
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER
 from rig.core.devices import Drive, DriveReading, Identity, torque_only
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Setpoint
 from rig.core.units import TURN
 
-NEVER = -1e9  # s, a reading time older than any
 STEP_PATIENCE = 2.0  # s for a change of state, seen in a heartbeat
 ANSWER = 0.1  # s for the first readings
 COUNTED = 0.03  # s over which unasked readings are counted
 FEED = 0.01  # s between commands while it changes state: they feed its watchdog
 CONFIRM = 0.5  # s for a heartbeat that says it is off; the frame that takes the torque off has long been sent
-LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
 SPEED_MARGIN = 1.1  # the axis limits speed by itself a little above the guard's limit: the guard comes first
 
 

@@ -16,9 +16,9 @@ from drivers.bus import Frame
 from drivers.mapping import EVENTS, EXTENDED, INVALID, keep_sending, map_pdo, switch_off_pdo
 from drivers.node import Mapped, Node, Refused
 from drivers.silence import missing
+from rig.core.clock import NEVER
 from rig.core.errors import NotReady
 
-NEVER = -1e9  # s, before all of its frames are there
 MOST = 8  # PDOs looked at each way
 EACH_SYNC, AFTER_CHANGE = 1, 0  # transmission types
 AT_ONCE = 255  # of an RPDO: taken when it comes

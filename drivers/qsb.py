@@ -15,6 +15,7 @@ from drivers.port import Port
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
+from rig.core.clock import NEVER
 from rig.core.devices import AngleReading, Encoder, Identity
 from rig.core.errors import NotReady
 from rig.core.sample import NAN
@@ -23,9 +24,7 @@ from rig.core.units import TURN
 BAUD = 230_400
 ANSWER = re.compile(rb"([rwsex])([0-9A-Fa-f]{2})([0-9A-Fa-f]{8})(?:\s*([0-9A-Fa-f]{8}))?\s*!?")
 LONGEST = 40  # bytes of an answer
-NEVER = -1e9  # s, a latch time older than any
 PATIENCE = 1.0  # s for an answer
-LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
 KIND, MODE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x00, 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
 X4 = 0x03  # of MODE: four counts a line
 
@@ -50,8 +49,7 @@ class Qsb(Encoder):
         self._direction = place.options.get("direction", 1)
         self._delay = place.options.get("delay", 0.0)
         self._step = TURN / place.counts_per_turn
-        fastest = place.speed_limit * place.period / self._step
-        self._angle = Unwrapped(1 << 32, max(int(LATE * fastest), 1))
+        self._angle = Unwrapped.of(place, 1 << 32)
         self._lines = Lines(LONGEST)
         self._heard = NEVER
         self._last = AngleReading(NEVER, NAN, 0)

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Self
+
+from drivers.wiring import Place
+from rig.core.units import TURN
+
+LATE = 50.0  # times the fastest motion between two readings: a step beyond is no motion
+
 
 class Unwrapped:
     """Counts from a counter of `modulus` values. `most` is the largest step between two readings that is motion."""
@@ -11,6 +18,12 @@ class Unwrapped:
         self.most = min(most, modulus // 2)
         self.counts: int | None = None
         self._raw = 0
+
+    @classmethod
+    def of(cls, place: Place, modulus: int) -> Self:
+        """For the encoder at `place`, whose counter has `modulus` values."""
+        fastest = place.speed_limit * place.period / (TURN / place.counts_per_turn)  # counts a tick
+        return cls(modulus, max(int(LATE * fastest), 1))
 
     def step(self, raw: int) -> int:
         """Take a reading; how far it jumped beyond what is motion [counts], 0 when it did not.

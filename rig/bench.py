@@ -14,10 +14,10 @@ from typing import Any, Literal
 from rig.bench_places import check_keys, check_places
 from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
-from rig.control.pid import Gains
 from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
 from rig.core.errors import UsageError
+from rig.core.gains import Gains
 from rig.core.nearest import nearest
 from rig.core.procedure import Setting
 from rig.core.sample import Mode
@@ -309,7 +309,7 @@ def twin_parameters(f: BenchFile) -> Any:
     import numpy as np
 
     from rig.model.fourier import FourierSeries
-    from rig.model.gear import Gear
+    from rig.model.gear import Gear, sigma_of
     from sim.effects import Effects
     from sim.parameters import TwinParameters
 
@@ -318,7 +318,7 @@ def twin_parameters(f: BenchFile) -> Any:
     error = FourierSeries.from_polar(np.radians(twin.kinematic_error.C_deg), np.radians(twin.kinematic_error.psi_deg))
     model = Gear(
         ratio=gear.N, J_m=gear.J_m, J_l=gear.J_l, K=gear.K, B_m=gear.B_m, B_l=gear.B_l, B_ml=gear.B_ml, B_sp=gear.B_sp,
-        kinematic_error=error, sigma=1 if gear.output == "flexspline" else 0,
+        kinematic_error=error, sigma=sigma_of(gear.output),
         tau_c=twin.tau_c, tau_s=twin.tau_s, omega_s=twin.omega_s, F_cl=twin.F_cl,
     )  # fmt: skip
     return TwinParameters(

@@ -6,7 +6,8 @@ import argparse
 import importlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TextIO, cast
 
 from rig import __version__
@@ -25,8 +26,11 @@ EPILOG = (
 class Parser(argparse.ArgumentParser):
     """A wrong command line is one sentence on stderr and exit code 2."""
 
+    hints: Mapping[str, str] = MappingProxyType({})  # of options that are looked for here, where they are
+
     def error(self, message: str) -> None:  # type: ignore[override]
-        print(f"hdrig: {message}; see {self.prog} --help", file=sys.stderr)
+        hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), "")
+        print(f"hdrig: {message}{hint}; see {self.prog} --help", file=sys.stderr)
         raise SystemExit(Exit.USAGE)
 
 
@@ -73,6 +77,7 @@ def _verb(args: list[str]) -> int:
     module = importlib.import_module(CATALOGUE[verb][0])
     raw = argparse.RawDescriptionHelpFormatter
     parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1], formatter_class=raw)
+    parser.hints = getattr(module, "HINTS", parser.hints)
     module.arguments(parser)
     return int(module.run(parser.parse_args(args[1:])))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rig.control.filter import SpeedFilter
 from rig.core.channels import Flag
-from rig.core.clock import Clock
+from rig.core.clock import NEVER, Clock
 from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
 from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Operator
@@ -19,7 +19,6 @@ STALE_M, STALE_L, STALE_TAU = int(Flag.STALE_M), int(Flag.STALE_L), int(Flag.STA
 FROZEN_TAU = int(Flag.FROZEN_TAU)  # plain integers: one operation on an enum costs as much as a whole reading
 new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid every tick
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
-NEVER = -1e9  # s, a latch time older than any
 
 
 @dataclass
@@ -149,7 +148,7 @@ class Instruments:
         return {name: offsets.summary() for name, offsets in named if offsets.count}
 
     def write(self, setpoint: Setpoint) -> float:
-        """Command the drive; returns what it could be given [N·m]."""
+        """Command the drive; returns what it could be given, in the unit of `setpoint`: N·m, rad/s or rad."""
         return self.drive.write(setpoint)
 
     def cut(self) -> None:

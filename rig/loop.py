@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from rig.control.setpoints import AsTorque, Setpoints
 from rig.core.channels import Flag
+from rig.core.clock import NEVER
 from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
@@ -19,7 +20,6 @@ from rig.realtime import RealTime
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing import LoopTiming
 
-NEVER = -1e9  # s, before any tick
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at

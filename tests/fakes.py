@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from rig.control.filter import SpeedFilter
-from rig.control.pid import Gains
 from rig.core.clock import Clock
 from rig.core.devices import AngleReading, Drive, DriveReading, Encoder, Identity, TorqueReading, TorqueSensor
 from rig.core.errors import NotReady
+from rig.core.gains import Gains
 from rig.core.procedure import Setting
 from rig.core.sample import Mode, Sample, Setpoint
 from rig.guard import Limits

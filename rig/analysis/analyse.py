@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import traceback
 import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,17 +20,10 @@ from rig.analysis.tame import RATIOS, Tame
 from rig.analysis.turning import add_turning
 from rig.core.units import TURN
 
-UNFORESEEN = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    LookupError,
-    MemoryError,
-    RecursionError,
-    TypeError,
-    ValueError,
-)
+OF_DATA = (ArithmeticError, LookupError, MemoryError, RecursionError, ValueError)
 """What arithmetic on a damaged run can raise; a run must end in a sentence, whatever it holds."""
+DEFECTS = (AssertionError, AttributeError, NameError, TypeError)
+"""What only a mistake of ours raises, for what a run holds is looked at before: said so, with the traceback."""
 
 Part = Callable[[Findings, Source, Motion, Speed | None], None]
 """Imports what it analyses with when it is asked: a run is of one procedure, and a person waits."""
@@ -143,8 +138,12 @@ def analyse(run: Source, reference: Source | None = None) -> Result:
         tame = Tame(run)
         try:
             return _analyse(tame, reference)
-        except UNFORESEEN as why:
-            return _nothing(tame, f"The analysis broke off on what this run holds ({type(why).__name__}: {why}).")
+        except OF_DATA as why:
+            said = f"The analysis broke off on what this run holds ({type(why).__name__}: {why})."
+            return replace(_nothing(tame, said), broke_off=traceback.format_exc())
+        except DEFECTS as why:
+            said = f"The analysis broke off on a defect of hdrig, please report it ({type(why).__name__}: {why})."
+            return replace(_nothing(tame, said), broke_off=traceback.format_exc(), defect=True)
 
 
 def _nothing(run: Tame, why: str) -> Result:

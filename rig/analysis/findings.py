@@ -87,7 +87,7 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         verdict, sentence = Verdict.FAIL, f"{found.rejected} Figures are shown but do not count: {sentence}"
         doubtful = estimates[found.believed :]
         estimates = estimates[: found.believed] + [
-            e if e.name in WHY_REJECTED else replace(e, how=f"Rejected run. {e.how}") for e in doubtful
+            e if e.name in WHY_REJECTED else replace(e, how=f"Rejected run. {e.how}", counts=False) for e in doubtful
         ]
     return Result(
         procedure=procedure,
@@ -99,4 +99,5 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         tables=found.tables,
         curves=found.curves,
         limits=judged.limits,
+        rejected=bool(found.rejected),
     )

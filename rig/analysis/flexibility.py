@@ -8,18 +8,13 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.result import Array
+from rig.core.numbers import stated
 
 
 def declared(values: Mapping[str, Any], key: str) -> float | None:
     """A declared number, bare or as {"value": …}; None when absent or not a positive number."""
-    value = values.get(key)
-    if isinstance(value, Mapping):
-        value = value.get("value")
-    try:
-        number = float(value) if value is not None else float("nan")
-    except (TypeError, ValueError, OverflowError):
-        return None
-    return number if np.isfinite(number) and number > 0 else None
+    found = stated(values.get(key))
+    return found if found > 0.0 else None
 
 
 def added_share(orders: Array, omega_m: float, K: float, J_l: float) -> Array:

@@ -71,9 +71,8 @@ class Pair:
 
 @dataclass(frozen=True)
 class Line:
-    """A straight line through pairs: value at rest and slope, with the standard error of the slope."""
+    """The slope of a straight line through pairs, with its standard error."""
 
-    at_rest: float
     slope: float
     u_slope: float
     dof: int
@@ -141,7 +140,7 @@ def line(x: Array, y: Array) -> Line:
     slope = float(about @ y / (about @ about))
     rest = y - y.mean() - slope * about
     dof = max(x.size - 2, 1)
-    return Line(float(y.mean() - slope * x.mean()), slope, float(np.sqrt(rest @ rest / dof / (about @ about))), dof)
+    return Line(slope, float(np.sqrt(rest @ rest / dof / (about @ about))), dof)
 
 
 def load_encoder_late(found: list[Pair], wound: Wound) -> Late:

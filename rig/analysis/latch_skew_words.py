@@ -13,6 +13,7 @@ from rig.analysis.latch_skew import Late, Wound, legs, load_encoder_late, pairs,
 from rig.analysis.result import Estimate, Result
 from rig.analysis.source import Motion, Source
 from rig.core.units import ARCSEC, RPM
+from rig.model.gear import sigma_of
 
 LABEL = "skew"  # of the runs that measure it
 FEWEST = 4  # pairs: two parameters, and something left to see their scatter
@@ -68,7 +69,7 @@ def _wound(run: Source) -> Wound | None:
     gear, said = run.manifest.get("gear"), run.declared
     K, B_l, B_ml = (declared(said, key) for key in ("K", "B_l", "B_ml"))
     output = gear.get("output") if isinstance(gear, Mapping) else None
-    return None if K is None else Wound(run.ratio, K, B_l or 0.0, B_ml or 0.0, 0 if output == "circular_spline" else 1)
+    return None if K is None else Wound(run.ratio, K, B_l or 0.0, B_ml or 0.0, sigma_of(output))
 
 
 def _told(late: Late) -> str:

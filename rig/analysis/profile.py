@@ -19,8 +19,8 @@ DRAWS = 400  # Monte Carlo draws of the profile; the 95 % limits of its peak to 
 class Profile:
     """θ̃ over one motor turn, less its mean and its slow trend; arcsec at the output; k orders.
 
-    With both directions `cosine`, `sine` are the even part E = (forward + reverse)/2 and `odd_*` the odd part
-    O = (forward − reverse)/2; with one direction E is that direction and there is no O.
+    With both directions `cosine`, `sine` are the even part E = (forward + reverse)/2, and `odd_cosine` is of the odd
+    part O = (forward − reverse)/2; with one direction E is that direction and there is no O.
     """
 
     cosine: Array  # (k,) a_n
@@ -29,7 +29,6 @@ class Profile:
     u_sine: Array
     u_system: Array  # (k,) 1 σ of what does not scatter (inertia's share), of the amplitude
     odd_cosine: Array | None
-    odd_sine: Array | None
     dof: float  # degrees of freedom behind the scatter
     rho: float  # correlation of neighbouring revolutions
     forward: int  # revolutions
@@ -162,7 +161,6 @@ def combine(strokes: list[StrokeResult], added: Array) -> Profile:
         u_sine=u[k:],
         u_system=np.where(small, 0.5, 1.0) * added * np.hypot(even[:k], even[k:]),
         odd_cosine=None if odd is None else odd[:k],
-        odd_sine=None if odd is None else odd[k:],
         dof=dof / inflation(rho),
         rho=rho,
         forward=sum(s.cosine.shape[0] for s in sides[0]),

@@ -41,6 +41,7 @@ class Estimate:
     ci95: tuple[float, float]  # 95 % interval, same unit; NaN where the run could not show one
     how: str  # one sentence: from what, over how many, by which estimator
     parts: tuple[Part, ...] = ()  # of the interval, where they are known one by one
+    counts: bool = True  # False: of a rejected run, shown and not to be used
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,8 @@ class Result:
     `curves` holds the arrays the figures are drawn from, by dotted name ("ke.theta_deg", "mse.k" …); the unit is in
     the name or in the drawing function. `cannot` says what this run cannot tell, and why, one sentence each. `limits`
     is what the verdict is by: name of the figure to words ("Stiffness at least 7000 N·m/rad"). `former` are the
-    verdicts the run had by other limits, oldest first.
+    verdicts the run had by other limits, oldest first. `rejected`: the run must not be believed; its estimates say
+    which of them count all the same.
     """
 
     procedure: str
@@ -80,3 +82,6 @@ class Result:
     curves: dict[str, Array] = field(default_factory=dict)
     limits: Mapping[str, str] = field(default_factory=dict)
     former: tuple[Former, ...] = ()
+    rejected: bool = False
+    broke_off: str = ""  # the traceback of an analysis that broke off, "" of one that came to its end
+    defect: bool = False  # it broke off on an error of ours, not on what the run holds

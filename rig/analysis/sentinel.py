@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
-from rig.analysis.result import Array, Estimate, Result
+from rig.analysis.result import Array, Estimate
 
 WATCHED = ("mean_speed", "mean_motor_torque", "kinematic_error_peak_to_peak", "fourier_amplitude_2")
 """The figures that are compared, by their machine names."""
+Z95 = 1.959964  # standard errors in half an interval
+ONCE_IN = 20  # campaigns of an unchanged rig, at most, one is said to have changed
 
 
 @dataclass(frozen=True)
@@ -24,7 +27,7 @@ class Watched:
     half: Array  # (m,) half widths of the 95 % intervals
     change: float  # last less first
     change_half: float  # half width of its 95 % interval
-    changed: bool  # whether any two differ by more than both intervals together
+    changed: bool  # whether any two differ by more than both intervals together, widened for how many are compared
 
     @property
     def sentence(self) -> str:
@@ -36,13 +39,13 @@ class Watched:
         )
 
 
-def compare(results: Sequence[Result]) -> tuple[Watched, ...]:
-    """Each watched figure that all `results` have with an interval, in the order the sentinels were run."""
+def compare(sentinels: Sequence[Sequence[Estimate]]) -> tuple[Watched, ...]:
+    """Each watched figure that all `sentinels` have with an interval; their estimates in the order they were run."""
     found = []
     for name in WATCHED:
-        estimates = [next((e for e in r.estimates if e.name == name), None) for r in results]
+        estimates = [next((e for e in one if e.name == name), None) for one in sentinels]
         known = [e for e in estimates if e is not None and np.isfinite(e.ci95).all()]
-        if len(known) == len(results) >= 2:
+        if len(known) == len(sentinels) >= 2:
             found.append(_watched(known))
     return tuple(found)
 
@@ -61,5 +64,11 @@ def _watched(estimates: list[Estimate]) -> Watched:
         half,
         float(value[-1] - value[0]),
         float(np.hypot(half[0], half[-1])),
-        bool((apart > together).any()),
+        bool((apart > _widened(value.size) * together).any()),
     )
+
+
+def _widened(sentinels: int) -> float:
+    """How many times wider than 95 % the intervals are taken: every pair of every figure is a chance to be wrong."""
+    pairs = len(WATCHED) * sentinels * (sentinels - 1) / 2
+    return float(ndtri(0.5 + 0.5 * (1.0 - 1.0 / ONCE_IN) ** (1.0 / pairs))) / Z95

@@ -20,6 +20,7 @@ from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.turning import add_turning
 from rig.analysis.window import part
+from rig.core.numbers import number
 from rig.core.units import RPM, TURN
 from rig.model.linear import held_frequency, natural_frequency
 
@@ -86,9 +87,8 @@ def _same_orders(steps: list[SpeedStep]) -> list[SpeedStep]:
 
 def tolerance_of(conditions: Any) -> float:
     """What the run calls no change, relative."""
-    value = conditions.get("tolerance")
-    good = isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < 1
-    return float(value) if good else TOLERANCE
+    found = number(conditions.get("tolerance"))
+    return found if 0.0 < found < 1.0 else TOLERANCE
 
 
 def changes(steps: list[SpeedStep]) -> list[tuple[float, float, float]]:

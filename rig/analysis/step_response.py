@@ -16,10 +16,9 @@ COAST = 0.06  # s of the run-out used: long enough for the slope, short enough t
 
 
 class StepResponse(NamedTuple):
-    """Seen at the motor, means over all steps, with the standard deviation of a single step."""
+    """Seen at the motor, means over all steps; of the friction also the standard deviation of a single step."""
 
     inertia: float  # kg·m²
-    inertia_scatter: float
     friction: float  # N·m, while coasting
     friction_scatter: float
     steps: int
@@ -56,8 +55,7 @@ def step_response(t: Array, theta_m: Array, tau: Array) -> StepResponse:
             "expected at least 2: is it blocked?"
         )
     return StepResponse(
-        float(np.mean(inertia)), float(np.std(inertia, ddof=1)),
-        float(np.mean(friction)), float(np.std(friction, ddof=1)), len(inertia),
+        float(np.mean(inertia)), float(np.mean(friction)), float(np.std(friction, ddof=1)), len(inertia),
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.result import Array
 from rig.analysis.source import Source
+from rig.core.numbers import number as number  # the tracer takes it from here
 from rig.core.rows import stretches
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
@@ -87,13 +88,3 @@ class Tame:
         if not good:
             self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
         return good
-
-
-def number(value: Any) -> float:
-    """`value` when it is a number, else NaN."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return float("nan")
-    try:
-        return float(value)
-    except OverflowError:  # an integer beyond any double
-        return float("nan")

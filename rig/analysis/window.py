@@ -11,6 +11,7 @@ import numpy as np
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source
 from rig.analysis.strokes import Stroke, find_strokes
+from rig.core.numbers import number
 from rig.core.units import TURN
 
 SAME = 1e-9  # N·m  asked torques that differ by less are one and the same command
@@ -67,7 +68,8 @@ def measured_window(run: Source, motion: Motion) -> Window:
 
 
 def _seconds(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) and value >= 0 else None
+    found = number(value)
+    return found if found >= 0.0 else None
 
 
 def _constant(motion: Motion, asked: Array, reference: Array | None) -> tuple[int, int, str]:

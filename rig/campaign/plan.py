@@ -32,6 +32,7 @@ class StepSection(Strict):
     reassemble: bool = False  # take the wave generator out and fit it again before it, whatever the depth
     allow_resonance: bool = False
     note: str = ""
+    way: Literal["up", "down"] | None = None  # of a sweep that goes both ways, for its manifest
 
 
 class SentinelSection(StepSection):

@@ -204,6 +204,7 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
     session.facts = {"campaign": {
         "uid": journal.book["uid"], "run": index + 1, "kind": item.kind, "repeat": item.repeat, "of": item.of,
         "rig_time_s": round(rig_time, 3), "session": len(journal.book["sessions"]),
+        **({"way": item.way} if item.way else {}),
     }}  # fmt: skip
     try:
         with desk.watching(item, campaign.envelope(item).duration) as watch:

@@ -33,6 +33,7 @@ class Item:
     of: int = 1
     allow_resonance: bool = False
     note: str = ""
+    way: Literal["up", "down"] | None = None  # of a sweep that goes both ways
 
     def words(self) -> str:
         """How a person calls it: 'constant-torque speed_rpm=300, 2 of 2, 5 N·m'."""
@@ -121,5 +122,5 @@ def _item(kind: Kind, section: StepSection, rigging: Rigging, where: str, repeat
         )
     return Item(
         kind, name, procedure, section.parameters, replace(rigging, output_locked=procedure.output_locked),
-        repeat, of, section.allow_resonance, section.note,
+        repeat, of, section.allow_resonance, section.note, section.way,
     )  # fmt: skip

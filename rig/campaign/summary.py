@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rig.campaign import sentinels
 from rig.campaign.journal import Journal
 
 MARKS = {"done": "done", "planned": "not made", "running": "running"}
 
 
 def lines(journal: Journal) -> Iterator[str]:
-    """From campaign.json alone."""
+    """From campaign.json, and what its sentinels were found to show."""
     book = journal.book
     simulated = "SIMULATED " if book["backend"] == "sim" else ""
     yield f"{simulated}campaign {book['name']} {book['status']}: {book['sentence']}"
@@ -34,6 +35,7 @@ def lines(journal: Journal) -> Iterator[str]:
         yield f"by hand, asked for and not shown: {book['pending']['words']}"
     for note in book["notes"]:
         yield note["text"]
+    yield from sentinels.lines(journal)
 
 
 def told(entry: dict[str, object]) -> str:

@@ -8,7 +8,7 @@ from rig.bench import Bench
 from rig.core.procedure import Envelope
 from rig.core.units import ARCMIN, RPM
 from rig.model.fourier import FourierSeries
-from rig.model.gear import Gear
+from rig.model.gear import Gear, sigma_of
 from rig.model.linear import natural_frequency
 from rig.model.resonance import worst_swing
 
@@ -20,8 +20,7 @@ ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin p
 def declared_gear(bench: Bench) -> Gear:
     """The bench's gear without its kinematic error, which nobody declares."""
     g = bench.file.gear
-    sigma = 1 if g.output == "flexspline" else 0
-    return Gear(g.N, g.J_m, g.J_l, g.K, g.B_m, g.B_l, g.B_ml, g.B_sp, FourierSeries((), ()), sigma)
+    return Gear(g.N, g.J_m, g.J_l, g.K, g.B_m, g.B_l, g.B_ml, g.B_sp, FourierSeries((), ()), sigma_of(g.output))
 
 
 def resonance_speed(gear: Gear) -> float:

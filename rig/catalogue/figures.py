@@ -18,7 +18,7 @@ from rig.runfile.manifest import contents
 
 NAME = "result.json"
 NAN = math.nan
-REJECTED = "Rejected run."  # begins how a figure was found when it does not count
+REJECTED = "Rejected run."  # began how a figure that does not count was found, before result.json had `counts`
 
 WORDS: dict[str, tuple[str, ...]] = {  # what people say → the estimates it stands for
     "peak-to-peak": ("kinematic_error_peak_to_peak",),
@@ -94,7 +94,7 @@ def _figure(name: str, e: Mapping[str, Any]) -> Figure:
     ends = [_or_nan(x) for x in interval] if isinstance(interval, list) and len(interval) == 2 else [NAN, NAN]
     return Figure(
         name, text(e.get("label")) or name, _or_nan(e.get("value")), text(e.get("unit")), ends[0], ends[1],
-        text(e.get("how")).startswith(REJECTED),
+        not (counts if isinstance(counts := e.get("counts"), bool) else not text(e.get("how")).startswith(REJECTED)),
     )  # fmt: skip
 
 

@@ -9,6 +9,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from rig.core import numbers
+
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
 NO_LIMIT = "no-limit"  # the verdict of figures nobody set a limit for; manifests say MEASURED, also of the twin's
 ORIGINS = {"sim": "SIMULATED", "can": "MEASURED", "serial": "MEASURED", "imported": "IMPORTED"}  # by backend
@@ -120,12 +122,8 @@ def text(value: object) -> str:
 
 def number(value: object) -> float | None:
     """A finite number, or None."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        return float(value) if math.isfinite(value) else None
-    except OverflowError:
-        return None
+    found = numbers.number(value)
+    return None if math.isnan(found) else found
 
 
 def moment(said: str) -> datetime | None:

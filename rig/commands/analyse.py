@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,8 @@ from rig.commands.limits import limit_argument, limits_of
 from rig.commands.loading import load
 from rig.commands.reference import reference_beside, reference_named, reference_of_one_zero
 from rig.commands.targets import writing
+from rig.commands.traceback_file import NAME as TRACEBACK
+from rig.commands.traceback_file import keep
 from rig.core.errors import DataError, Exit
 
 if TYPE_CHECKING:
@@ -117,8 +120,11 @@ def analyse_folder(
     if reference is None:
         reference = BESIDE.get(run.procedure, without)(run)
     result = with_former(target, analyse(run, reference))
+    if result.broke_off:
+        result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
     with writing(target):
         target.mkdir(parents=True, exist_ok=True)
+        keep(target, result.broke_off)
         made = [
             write_result(target, result),
             write(target, run.manifest, dict(run.timing), read_events(folder), result, run=folder),
@@ -167,7 +173,9 @@ def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
 
 
 def exit_of(result: Result) -> Exit:
-    """PASS and MEASURED 0, FAIL 1, INCONCLUSIVE 6."""
+    """PASS and MEASURED 0, FAIL 1, INCONCLUSIVE 6; 70 where a defect of hdrig left it without figures."""
+    if result.defect:
+        return Exit.INTERNAL
     return {"FAIL": Exit.OUT_OF_LIMITS, "INCONCLUSIVE": Exit.INCOMPLETE}.get(result.verdict, Exit.PASS)
 
 
@@ -191,4 +199,6 @@ def print_result(result: Result, target: Path, folder: Path, simulated: bool) ->
         print(f"  cannot tell: {sentence}")
     for line in bench_lines(result):
         print(line)
+    if result.defect:  # the console shows the last line of what stands on stderr
+        print(f"hdrig: {folder}: {result.sentence}", file=sys.stderr)
     print(f"report {target / 'report.html'}")

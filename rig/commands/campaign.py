@@ -7,6 +7,7 @@ import contextlib
 import secrets
 import shlex
 import sys
+import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -29,6 +30,8 @@ from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
+from rig.commands.traceback_file import NAME as TRACEBACK
+from rig.commands.traceback_file import keep
 from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, Exit, NotReady, UsageError
 from rig.core.operator import Rigging
@@ -37,19 +40,15 @@ from rig.session.done import Watch, nobody
 from rig.software import operator
 
 DEFAULT = "twin"
-STUMBLES = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    OSError,
-    RecursionError,
-    TypeError,
-    ValueError,
-)  # what analysis and report of a run can break off with; the campaign goes on
-LATER = "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec' judges those of one kind when made"
+STUMBLES = (OSError, MemoryError, ArithmeticError, AssertionError, AttributeError, ImportError, LookupError, NameError,
+            RecursionError, TypeError, ValueError)  # fmt: skip
+"""What the report of a run can break off with, an analysis that does telling it by itself; the campaign goes on."""
+OUTSIDE = (OSError, MemoryError)  # of the machine; the others are defects of ours, for the run was read and analysed
+HINTS = {
+    "--limit": "a limit judges runs once they are made, and only those of one kind: "
+    "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec'"
+}
+"""What is said of options that are looked for here and are elsewhere."""
 SEEDS = 2**31  # of the order, drawn when none is given
 
 
@@ -65,16 +64,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--skip", type=_numbers, default=[], metavar="N,…", help="with --resume: runs, by number, that are not made"
     )
-    parser.add_argument(
-        "--limit", action="append", dest="limits", metavar="NAME=LIMIT", help=f"not here, for runs differ: {LATER}"
-    )
     parser.add_argument("--dry-run", action="store_true", help="print what it would do and the margins; write nothing")
 
 
 def run(args: argparse.Namespace) -> int:
     """Plan, then dry run, or everything that is still to be made."""
-    if args.limits:
-        raise UsageError(f"--limit {args.limits[0]}: a limit judges runs once they are made; {LATER}")
     if args.resume:
         return _resume(args)
     if args.skip:
@@ -186,7 +180,20 @@ class Terminal(Desk):
 
             return analyse_folder(folder, folder)[0].sentence
         except STUMBLES as error:
-            raise DataError(f"its analysis broke off ({type(error).__name__}: {error})") from error
+            raise DataError(broke_off(folder, error)) from error
+
+
+def broke_off(folder: Path, error: Exception) -> str:
+    """The sentence of a run in `folder` whose report broke off with `error`; the traceback lies beside the run."""
+    said = f"{type(error).__name__}: {error}"
+    if isinstance(error, OUTSIDE):
+        return f"its analysis broke off ({said})"
+    try:
+        keep(folder, "".join(traceback.format_exception(error)))
+        where = f"; where it did stands in {folder / TRACEBACK}"
+    except OSError as full:
+        where = f"; where it did cannot be kept: {full.strerror or full}"
+    return f"its analysis broke off on a defect of hdrig, please report it ({said}){where}"
 
 
 def _plan_of(journal: Journal) -> str:

@@ -101,7 +101,6 @@ def _gear(args: argparse.Namespace) -> GearFile:
         runs, recordings = open_runs([args.campaign])
         about = runs[0].manifest.get("gear") or {}
         found = identified(fit(recordings, TERMS, say), runs[0].manifest).gear_file(
-            str(about.get("output") or "flexspline"),
             str(about.get("serial") or ""),
             any(r.simulated for r in runs),
             made_with(runs),

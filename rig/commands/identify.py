@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rig.analysis.identify.identified import Identified
     from rig.analysis.identify.predictions import Prediction
     from rig.analysis.identify.recording import Recording
+    from rig.analysis.result import Result
     from rig.model.gearfile import Covered, GearFile, MeasuredSeries, Parameter
     from rig.runfile.run import Run
 
@@ -91,9 +92,7 @@ def identify(paths: list[Path], out: Path | None, terms: int = TERMS) -> int:
     gear = runs[0].manifest.get("gear") or {}
     if found.undetermined:
         print(f"  {said_open(found.undetermined, found.parameters)}")
-    file = found.gear_file(
-        str(gear.get("output") or "flexspline"), str(gear.get("serial") or ""), simulated, made_with(runs)
-    )
+    file = found.gear_file(str(gear.get("serial") or ""), simulated, made_with(runs))
     tell(comparison(predictions(recordings, file.gear(), terms)))
     tell(coasting(runs, found))
     file = replace(file, characteristics=characteristics, covered=covered(found))
@@ -228,8 +227,7 @@ def coasting(runs: list[Run], found: Identified) -> list[str]:
     N = p["N"].value
     value, half = p["J_m"].value + p["J_l"].value / N**2, math.hypot(p["J_m"].half, p["J_l"].half / N**2)
     for run in runs:
-        figures = analyse(run).estimates if run.procedure == "coast_down" else ()
-        for e in figures:
+        for e in seen(run, analyse(run)).estimates if run.procedure == "coast_down" else ():
             if e.name == "inertia_at_motor":
                 apart = abs(e.value - value) / math.hypot(0.5 * (e.ci95[1] - e.ci95[0]), half)
                 agree = "agree" if apart <= 1.0 else "do not agree: look at the friction between both"
@@ -249,7 +247,14 @@ def beside(runs: list[Run]) -> dict[str, Parameter]:
     told = [r for r in runs if r.procedure in ("stiffness_lock", "friction")]
     if told:
         say("lock tests and breakaway")
-    return characteristics([(r.name, analyse(r, reference_of_one_zero(r))) for r in told])
+    return characteristics([(r.name, seen(r, analyse(r, reference_of_one_zero(r)))) for r in told])
+
+
+def seen(run: Run, result: Result) -> Result:
+    """`result`, after a word on stderr where its analysis broke off."""
+    if result.broke_off:
+        say(f"{run.name}: {result.sentence} hdrig analyse {run.name} keeps where it did.")
+    return result
 
 
 def covered(found: Identified) -> Covered | None:

@@ -24,7 +24,7 @@ def load_sweep_of(folder: Path) -> int:
     from rig.analysis.sweep_result import load_sweep
 
     runs = runs_of(folder)
-    ways = [LoadRun(r.load, r.peak_to_peak.value, note.endswith("down")) for r, note in runs]
+    ways = [LoadRun(r.load, r.peak_to_peak.value, down) for r, down in runs]
     return finish(folder, load_sweep([r for r, _ in runs], ways) if runs else None, law_lines(ways))
 
 
@@ -38,8 +38,8 @@ def assembly_sweep_of(folder: Path) -> int:
     return finish(folder, assembly_sweep(runs) if runs else None, lines)
 
 
-def runs_of(folder: Path) -> list[tuple[AssemblyRun, str]]:
-    """Every completed slow run of the campaign in `folder` that was analysed, with its note."""
+def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
+    """Every completed slow run of the campaign in `folder` that was analysed, and whether on the sweep's way down."""
     from rig.analysis.assembly_band import AssemblyRun
     from rig.analysis.intervals import Ranged
     from rig.catalogue.figures import figures
@@ -53,8 +53,14 @@ def runs_of(folder: Path) -> list[tuple[AssemblyRun, str]]:
         about = manifest.get("conditions") or {}
         load, depth = float(about.get("tau_ext") or 0.0), float(about.get("depth_mm") or 0.0)
         size = Ranged(figure.value, figure.low, figure.high)
-        found.append((AssemblyRun(load, depth, int(about.get("assembly") or 1), size), str(about.get("note") or "")))
+        found.append((AssemblyRun(load, depth, int(about.get("assembly") or 1), size), _down(manifest)))
     return found
+
+
+def _down(manifest: Mapping[str, Any]) -> bool:
+    """Whether the run is of a sweep's way down; runs of before the manifest said so have it in their note."""
+    way = (manifest.get("campaign") or {}).get("way")
+    return way == "down" if way else str((manifest.get("conditions") or {}).get("note") or "").endswith("down")
 
 
 def finish(folder: Path, result: Result | None, lines: Sequence[str]) -> int:

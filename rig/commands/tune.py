@@ -27,7 +27,7 @@ from rig.session import Ended, Session
 if TYPE_CHECKING:
     from rig.analysis.smoothness import Smoothness
     from rig.analysis.step_response import StepResponse
-    from rig.control.pid import Gains
+    from rig.core.gains import Gains
 
 BANDWIDTHS = (60.0, 90.0, 130.0, 180.0, 250.0, 350.0)  # rad/s of the speed loop, tried from the gentlest
 MARGIN = 0.5  # of the limits of a good run: a trial is short, the real run is long

@@ -1,4 +1,8 @@
-"""What a page draws: columns in the units of people, from rows of the ring or a reading while nothing runs."""
+"""What a page draws: columns in the units of people, from rows of the ring or a reading while nothing runs.
+
+What was asked of the drive is none of them: of a drive that closes a loop itself the ring's columns of torques hold
+speeds or angles.
+"""
 
 from __future__ import annotations
 
@@ -9,23 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from rig.core.units import ARCSEC, DEG, RPM, TURN
+from rig.core.units import ARCSEC, DEG, RPM
 
 MAGIC, VERSION = 0x48445247, 1
 HEADER = struct.Struct("<IHHII")  # magic, version, columns, rows, skipped
 
 COLUMNS: tuple[tuple[str, str], ...] = (
     ("motor_angle", "deg"),
-    ("wave_angle", "deg"),  # of the wave generator within its turn, 0 to 360
-    ("load_angle", "deg"),
     ("speed", "rpm"),  # of the motor
     ("tau_m", "N·m"),
-    ("tau_ask", "N·m"),
-    ("tau_applied", "N·m"),
     ("tau_l", "N·m"),
     ("following", "deg"),  # reference minus motor angle
     ("kinematic_error", "arcsec"),  # θ_m/N − θ_l, from its value at the start
-    ("age", "ms"),  # of the oldest channel in the row
 )
 Rows = np.ndarray[Any, Any]
 LAYOUT = np.dtype([("t", "f8"), *((name, "f8") for name, _ in COLUMNS)])
@@ -37,24 +36,19 @@ def of_run(rows: Rows, ratio: float, zero: float) -> Rows:
     theta_m = rows["theta_m"]
     out["t"] = rows["t"]
     out["motor_angle"] = theta_m / DEG
-    out["wave_angle"] = np.mod(theta_m, TURN) / DEG
-    out["load_angle"] = rows["theta_l"] / DEG
     out["speed"] = rows["omega_m"] / RPM
-    for name in ("tau_m", "tau_ask", "tau_applied", "tau_l"):
-        out[name] = rows[name]
+    out["tau_m"], out["tau_l"] = rows["tau_m"], rows["tau_l"]
     out["following"] = (rows["theta_ref"] - theta_m) / DEG
     out["kinematic_error"] = (theta_m / ratio - rows["theta_l"] - zero) / ARCSEC
-    out["age"] = rows["age"] * 1e3
     return out
 
 
-def of_reading(reading: Mapping[str, Any], ratio: float) -> Rows:
+def of_reading(reading: Mapping[str, Any]) -> Rows:
     """One reading while nothing runs, shape (1,). What nobody asked for or measured is NaN."""
-    theta_m, theta_l, omega_m, tau_m, tau_l, age = (math.nan if x is None else float(x) for x in reading["row"])
+    theta_m, _, omega_m, tau_m, tau_l, _ = (math.nan if x is None else float(x) for x in reading["row"])
     out = np.full(1, math.nan, LAYOUT)
-    out["t"], out["motor_angle"], out["load_angle"] = float(reading["t"]), theta_m / DEG, theta_l / DEG
-    out["wave_angle"] = theta_m % TURN / DEG
-    out["speed"], out["tau_m"], out["tau_l"], out["age"] = omega_m / RPM, tau_m, tau_l, age * 1e3
+    out["t"], out["motor_angle"] = float(reading["t"]), theta_m / DEG
+    out["speed"], out["tau_m"], out["tau_l"] = omega_m / RPM, tau_m, tau_l
     return out
 
 

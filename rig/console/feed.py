@@ -95,8 +95,8 @@ class Feed:
         return max(int(np.ceil(len(rows) / pairs)), 1)
 
     def _of_idle(self) -> Rows:
-        waiting, ratio = self._link.idle, self._ratio()
-        found = [of_reading(waiting.popleft(), ratio) for _ in range(len(waiting))]
+        waiting = self._link.idle
+        found = [of_reading(waiting.popleft()) for _ in range(len(waiting))]
         return np.concatenate(found) if found else np.empty(0, LAYOUT)
 
     def _ratio(self) -> float:

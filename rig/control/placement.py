@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rig.control.pid import Gains
+from rig.core.gains import Gains
 
 POSITION = 8.0  # the position pole lies this far below the speed pole, so that it costs the speed loop no phase
 INTEGRAL = 24.0  # and the integral's pole this far

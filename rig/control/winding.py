@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from rig.control.pid import Gains, Pid
+from rig.control.pid import Pid
+from rig.core.gains import Gains
 from rig.core.procedure import Setting
 from rig.core.sample import Sample, Torque
 

@@ -6,6 +6,13 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 
+NEVER = -1e9  # s, before any time a clock tells: of what has not happened yet
+
+
+def is_never(t: float) -> bool:
+    """Whether `t` [s] stands for what has not happened yet."""
+    return t <= NEVER
+
 
 class Clock(ABC):
     """Monotonic time in seconds, and the only way to let it pass."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from rig.core.gains import Gains
 from rig.core.sample import Sample, Setpoint
 
 Steps = Generator[Setpoint, Sample, Any]
@@ -33,7 +34,7 @@ class Setting:
 
     period: float  # s, one tick
     ratio: float  # gear ratio N
-    control: Any  # rig.control.pid.Gains
+    control: Gains
     note: Callable[[str], None] = field(default=lambda text: None)  # a line in events.jsonl
     stiffness: float = math.nan  # N·m/rad at the output, declared, of the whole path
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 from rig.drill.rig import DrillRig
-
-Verbs = Mapping[str, Callable[..., Any]]
 
 
 class Expected(StrEnum):

@@ -55,10 +55,6 @@ class FourierSeries:
         """dθ̃_p/dθ_m at `theta_m` rad (any shape), rad/rad."""
         return self._summed(theta_m, 1)
 
-    def bend(self, theta_m: Array) -> Array:
-        """d²θ̃_p/dθ_m² at `theta_m` rad (any shape), rad/rad²."""
-        return self._summed(theta_m, 2)
-
     def _summed(self, theta_m: Array, derivative: int) -> Array:
         """Re Σ (i·n)^derivative·(a_n − i·b_n)·e^{inθ} by Horner's rule: one sine and cosine an angle, not one an order;
         in blocks that stay in the cache. Of long runs `rig.model.waves` has the same compiled."""

@@ -6,6 +6,20 @@ from dataclasses import dataclass
 
 from rig.model.fourier import FourierSeries
 
+SIGMA = {"flexspline": 1, "circular_spline": 0}
+"""σ of Eqs. 6-7 by the part that is the output, named as in bench files, manifests and gear files."""
+USUAL = "flexspline"  # the output where nobody named one
+
+
+def output_of(said: object) -> str:
+    """The part that is the output, as a manifest names it; the usual one where it names none that exists."""
+    return said if isinstance(said, str) and said in SIGMA else USUAL
+
+
+def sigma_of(said: object) -> int:
+    """σ of Eqs. 6-7 for the output a manifest, a bench file or a gear file names."""
+    return SIGMA[output_of(said)]
+
 
 @dataclass(frozen=True)
 class Gear:

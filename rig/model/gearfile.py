@@ -18,13 +18,13 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import DataError, UsageError
+from rig.core.numbers import number
 from rig.core.regular import regular
 from rig.model.fourier import FourierSeries
-from rig.model.gear import Gear
+from rig.model.gear import SIGMA, USUAL, Gear, sigma_of
 
 SCHEMA = "hdrig.gear/1"
 ORIGINS = ("measured", "declared", "assumed")
-SIGMA = {"flexspline": 1, "circular_spline": 0}  # which part is the output, as in the bench file
 UNITS = {
     "N": "1",
     "J_m": "kg·m²",
@@ -115,7 +115,7 @@ class GearFile:
 
     parameters: Mapping[str, Parameter]
     kinematic_error: MeasuredSeries
-    output: str = "flexspline"
+    output: str = USUAL
     serial: str = ""
     simulated: bool = False
     made: str = ""  # when and with what, for people
@@ -131,7 +131,7 @@ class GearFile:
         return Gear(
             ratio=self.parameters["N"].value,
             kinematic_error=self.kinematic_error.series,
-            sigma=SIGMA[self.output],
+            sigma=sigma_of(self.output),
             **numbers,
         )
 
@@ -314,10 +314,10 @@ def _table(raw: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def _number(raw: Mapping[str, Any], key: str, where: str) -> float:
-    value = raw.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise DataError(f"{where}.{key} = {value!r}: expected a finite number")
-    return float(value)
+    found = number(raw.get(key))
+    if math.isnan(found):
+        raise DataError(f"{where}.{key} = {raw.get(key)!r}: expected a finite number")
+    return found
 
 
 def _numbers(raw: Mapping[str, Any], key: str, where: str) -> list[float]:

@@ -12,11 +12,6 @@ GRID = 1024  # angles a turn at which the swing is looked for: 68 per period of 
 STEPS = 400  # speeds looked at on the way up: 1.5 rpm apart at 600 rpm; the resonance of order 2 is 60 rpm wide
 
 
-def amplification(gear: Gear, order: float, omega_m: float) -> float:
-    """|θ̃_n / θ̃_p,n| at constant motor torque and speed `omega_m` rad/s; 1 at standstill      [ghorbel2001, Eqs. 6-7]"""
-    return float(np.abs(transmissibility(gear, np.array([order]), omega_m))[0])
-
-
 def predicted_swing(gear: Gear, series: FourierSeries, omega_m: float) -> float:
     """How far the shaft torque swings either way of its mean at constant motor torque, N·m, zero to peak.
 

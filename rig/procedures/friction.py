@@ -16,6 +16,7 @@ from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.core.units import DEG, RPM, TURN
+from rig.procedures.speed_list import speeds_of
 
 MOVED = 0.5 * DEG  # rad of the motor, 14 counts of 10 000: presliding of a gear is a tenth of it
 RATE = 0.2  # N·m/s, of the ramp to breakaway: 10 ms from breaking loose to having moved are 2 mN·m
@@ -60,13 +61,7 @@ class Friction(Procedure):
     @property
     def speeds(self) -> tuple[float, ...]:
         """rpm, slowest first. Raises UsageError when one is no speed."""
-        try:
-            speeds = tuple(float(word) for word in self.speeds_rpm.split(","))
-        except ValueError:
-            speeds = ()
-        if not speeds or not all(0.0 < speed < math.inf for speed in speeds):
-            raise UsageError(f"speeds_rpm = {self.speeds_rpm}: expected speeds in rpm, divided by commas")
-        return speeds
+        return speeds_of(self.speeds_rpm)
 
     def staircase(self, ratio: float) -> list[tuple[Ramp, float]]:
         """(ramp to a speed, s held there after it): up and down forward, up and down in reverse, to rest."""

@@ -13,6 +13,7 @@ from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import RPM, TURN
+from rig.procedures.speed_list import speeds_of
 
 REST = 0.3  # s between two legs
 SETTLE = 0.5  # s at speed before a row counts, either way: the gear's own swing, 25 Hz at 4 % damping, is over in 0.5 s
@@ -45,13 +46,7 @@ class Skew(Procedure):
     @property
     def speeds(self) -> tuple[float, ...]:
         """rpm. Raises UsageError when one is no speed."""
-        try:
-            speeds = tuple(float(word) for word in self.speeds_rpm.split(","))
-        except ValueError:
-            speeds = ()
-        if not speeds or not all(0.0 < speed < math.inf for speed in speeds):
-            raise UsageError(f"speeds_rpm = {self.speeds_rpm}: expected speeds in rpm, divided by commas")
-        return speeds
+        return speeds_of(self.speeds_rpm)
 
     def leg(self, speed_rpm: float) -> Trapezoid:
         """One way at a speed: up to it, settle, whole turns, down."""

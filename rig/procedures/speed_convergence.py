@@ -13,6 +13,7 @@ from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import DEG, RPM
+from rig.procedures.speed_list import speeds_of
 
 FEWEST = 3  # speeds: two to see a change, one more to see that it has ended
 # At 60 rpm 10 000 counts a turn are 10 counts a millisecond: every row is then rounded alike, and the rounding follows
@@ -51,13 +52,7 @@ class SpeedConvergence(Procedure):
     @property
     def speeds(self) -> tuple[float, ...]:
         """rpm, as named, fastest first. Raises UsageError when one is no speed."""
-        try:
-            speeds = tuple(float(word) for word in self.speeds_rpm.split(","))
-        except ValueError:
-            speeds = ()
-        if not speeds or not all(0.0 < speed < math.inf for speed in speeds):
-            raise UsageError(f"speeds_rpm = {self.speeds_rpm}: expected speeds in rpm, divided by commas")
-        return speeds
+        return speeds_of(self.speeds_rpm)
 
     @property
     def run_at(self) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rig.analysis.result import Estimate
 from rig.report.numbers import companion, estimate
-from rig.report.words import HEADLINES, REJECTED, definition
+from rig.report.words import HEADLINES, definition
 
 
 class Line(NamedTuple):
@@ -42,7 +42,7 @@ def cards(estimates: Sequence[Estimate]) -> list[Card]:
         return []
     first, *others = in_order(estimates)
     out = [_card([first], headline=True)]
-    for _, group in groupby(others, key=lambda e: (e.how, e.unit)):
+    for _, group in groupby(others, key=lambda e: (e.how, e.unit, e.counts)):
         alike = list(group)
         out += [_card(alike)] if _stem(alike) else [_card([e]) for e in alike]
     return out
@@ -57,7 +57,7 @@ def _stem(estimates: Sequence[Estimate]) -> str:
 def _card(estimates: Sequence[Estimate], headline: bool = False) -> Card:
     stem, (first, *_) = _stem(estimates), estimates
     lines = [_line(e, e.label[len(stem) :].strip() if stem else "", headline) for e in estimates]
-    return Card(stem or first.label, lines, definition(first.name), first.how, first.how.startswith(REJECTED))
+    return Card(stem or first.label, lines, definition(first.name), first.how, not first.counts)
 
 
 def _line(found: Estimate, name: str, headline: bool) -> Line:

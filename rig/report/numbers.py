@@ -18,16 +18,6 @@ COMPANION = {  # the second unit a test engineer expects beside the first
 }
 
 
-def number_of(value: object) -> float:
-    """`value` when it is a number, else NaN; also for an integer beyond any double."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return math.nan
-    try:
-        return float(value)
-    except OverflowError:
-        return math.nan
-
-
 def fixed(value: float, decimals: int) -> str:
     """`value` to `decimals` places (negative: to tens, hundreds …), digits grouped from five on, never "−0"."""
     rounded = round(value, decimals)

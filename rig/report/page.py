@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import gc
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from markupsafe import Markup, escape
 
 from rig.analysis.result import Array, Result
+from rig.core.numbers import number as number_of
 from rig.report import rows, words
 from rig.report.cards import cards
-from rig.report.figures import CATALOGUE, Drawing, Frame, styled, svg
+from rig.report.figures import CATALOGUE, styled
 from rig.report.history import told
-from rig.report.numbers import duration, number_of
-from rig.report.palette import DARK, LIGHT, variables
+from rig.report.numbers import duration
 from rig.report.provenance import provenance
+from rig.report.shell import HERE, css, environment, plot
 from rig.report.tables import Table, number, tables
 from rig.runfile.manifest import contents, write_atomic
 
-HERE = Path(__file__).parent
 NAME = "report.html"
-WIDE, NARROW = 760.0, 360.0  # px; each figure is drawn twice, so that its text is legible on a phone too
 
 
 def write(
@@ -96,15 +92,12 @@ def render(
         "provenance": provenance(manifest, run),
         "files": rows.files(manifest),
         "bench": list(rows.bench_numbers(numbers)),
-        "css": _css(run, origin.mark),
+        "css": css(run, origin.mark),
     }
     view["contents"] = _contents(view)
-    loader = jinja2.FileSystemLoader(HERE)
-    environment = jinja2.Environment(
-        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters["code"] = code
-    return environment.get_template("page.html").render(view)
+    templates = environment(HERE)
+    templates.filters["code"] = code
+    return templates.get_template("page.html").render(view)
 
 
 def with_numbers(result: Result) -> dict[str, Array]:
@@ -125,32 +118,7 @@ def with_numbers(result: Result) -> dict[str, Array]:
 
 def _plots(curves: dict[str, Array], mark: str) -> list[dict[str, Any]]:
     with styled():
-        return [p for d in CATALOGUE if (p := _plot(d, curves, mark)) is not None]
-
-
-def _plot(drawing: Drawing, curves: dict[str, Array], mark: str) -> dict[str, Any] | None:
-    with uncollected():
-        wide = svg(drawing, curves, Frame(WIDE, mark), prefix=f"{drawing.name}-w-")
-        narrow = wide and svg(drawing, curves, Frame(NARROW, mark), prefix=f"{drawing.name}-n-")
-    if wide is None or narrow is None:
-        return None
-    title, note = drawing.named(curves) if drawing.named else (drawing.title, drawing.note)
-    pictures = {"wide": Markup(wide), "narrow": Markup(narrow)}  # ours, and escaped by the XML writer
-    return {"anchor": drawing.name, "title": title, "note": note, "full": drawing.full, **pictures}
-
-
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Python looks for no garbage meanwhile. A figure is ten thousand small objects that all live until it is written:
-    to look through them again and again was a sixth of the time of a page.
-    """
-    usual = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if usual:
-            gc.enable()
+        return [p for d in CATALOGUE if (p := plot(d, curves, mark)) is not None]
 
 
 def _facts(manifest: Mapping[str, Any], gear: Mapping[str, Any], curves: dict[str, Array], run: str) -> list[str]:
@@ -172,7 +140,7 @@ def _checks_said(result: Result) -> str:
     if failed == 0:
         return f"All {total} conditions were met." if total > 1 else "The condition was met."
     were = f"{failed} of {total} conditions {'was' if failed == 1 else 'were'} not met"
-    if words.rejected(result):
+    if result.rejected:
         return f"{were}: the run is rejected and its figures do not count."
     return f"{were}: read the figures with that in mind."
 
@@ -195,18 +163,6 @@ def _contents(view: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [(anchor, name) for anchor, name, there in sections if there]
 
 
-def _css(run: str, mark: str) -> Markup:
-    text = (HERE / "page.css").read_text(encoding="utf-8")
-    for name, value in (
-        ("{{LIGHT}}", variables(LIGHT)),
-        ("{{DARK}}", variables(DARK)),
-        ("{{RUN}}", css_string(run)),
-        ("{{MARK}}", css_string(mark)),
-    ):
-        text = text.replace(name, value)
-    return Markup(text)
-
-
 def code(text: str) -> Markup:
     """`text` escaped, with what stands between backticks set in the typewriter face."""
     return Markup(re.sub(r"`([^`]+)`", r'<code class="code">\1</code>', str(escape(text))))
@@ -215,8 +171,3 @@ def code(text: str) -> Markup:
 def sentence_of(text: str) -> str:
     """`text` with a capital and a full stop; "" stays ""."""
     return f"{text[:1].upper()}{text[1:]}." if text else ""
-
-
-def css_string(text: str) -> str:
-    """`text` as a CSS string that cannot end early, nor close the style element: all but letters and digits escaped."""
-    return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text) + '"'

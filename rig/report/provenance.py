@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rig.report.numbers import duration, number_of, quantity
+from rig.core.numbers import number
+from rig.report.numbers import duration, quantity
 from rig.report.rows import Row, flat, measured, show, table, utc
 from rig.report.words import PROCEDURES, humanise, origin, status
 
@@ -64,7 +65,7 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
     rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
     rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
     proof = dict(table(rest.get("proof")))
-    difference, error = number_of(proof.get("shaft_torque_difference")), number_of(proof.get("shaft_torque_error"))
+    difference, error = number(proof.get("shaft_torque_difference")), number(proof.get("shaft_torque_error"))
     apart_rows = []
     if math.isfinite(difference) and math.isfinite(error):  # one row: the error stands behind the difference
         rest["proof"] = {k: v for k, v in proof.items() if k not in ("shaft_torque_difference", "shaft_torque_error")}
@@ -75,7 +76,7 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
 def _length(manifest: Mapping[str, Any]) -> list[Row]:
     """How long the run took; on a virtual clock that is not what lies between its start and its end."""
     seconds = manifest.get("duration")
-    if not math.isfinite(number_of(seconds)):
+    if not math.isfinite(number(seconds)):
         return []
     virtual = table(manifest.get("loop")).get("clock") == "virtual"
-    return [Row("Duration", duration(number_of(seconds)) + (" on a virtual clock" if virtual else ""))]
+    return [Row("Duration", duration(number(seconds)) + (" on a virtual clock" if virtual else ""))]

@@ -20,6 +20,7 @@ def as_json(result: Result) -> dict[str, Any]:
         "procedure": result.procedure,
         "verdict": str(result.verdict),
         "sentence": result.sentence,
+        "rejected": result.rejected,
         "limits": dict(result.limits),
         "former": [{"verdict": f.verdict, "limits": dict(f.limits)} for f in result.former],
         "estimates": {
@@ -29,6 +30,7 @@ def as_json(result: Result) -> dict[str, Any]:
                 "unit": e.unit,
                 "ci95": [finite(e.ci95[0]), finite(e.ci95[1])],
                 "how": e.how,
+                "counts": e.counts,
             }
             for e in result.estimates
         },

@@ -9,7 +9,8 @@ from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from rig.report.numbers import fixed, join, number_of, plain
+from rig.core.numbers import number
+from rig.report.numbers import fixed, join, plain
 from rig.report.words import UNITS, humanise, named
 
 BYTES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1, "B"))
@@ -105,7 +106,7 @@ def flat(tree: Mapping[str, Any], stem: str = "", depth: int = 0) -> Iterator[tu
         if isinstance(value, Mapping) and depth < DEEPEST:
             yield from flat(value, f"{name}.", depth + 1)
         elif value is not None and value != "":
-            yield name, join(show(value), UNITS.get(name, "") if math.isfinite(number_of(value)) else "")
+            yield name, join(show(value), UNITS.get(name, "") if math.isfinite(number(value)) else "")
 
 
 def files(manifest: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
@@ -122,7 +123,7 @@ def files(manifest: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
 
 def size(count: Any) -> str:
     """A number of bytes for people."""
-    if not isinstance(count, int) or not math.isfinite(number_of(count)):
+    if not isinstance(count, int) or not math.isfinite(number(count)):
         return ""
     return next(join(plain(count / n, 3), unit) for n, unit in BYTES if count >= n or n == 1)
 
@@ -156,20 +157,14 @@ def events(found: object) -> list[tuple[str, str, str]]:
         kind = next((rest.pop(k) for k in ("kind", "event", "act", "type") if k in rest), "")
         text = [show(rest.pop(k)) for k in ("text", "sentence", "why", "reason", "message", "note") if rest.get(k)]
         text += [f"{k} {show(v)}" for k, v in rest.items() if v not in (None, "")]
-        when = (
-            join(fixed(number_of(moment), 3), "s")
-            if math.isfinite(number_of(moment))
-            else utc(moment)
-            if moment
-            else ""
-        )
+        when = join(fixed(number(moment), 3), "s") if math.isfinite(number(moment)) else utc(moment) if moment else ""
         out.append((when, humanise(show(kind)), "; ".join(text)))
     return out
 
 
 def micro(seconds: Any) -> str:
     """Lateness for people: µs below a millisecond, ms above."""
-    if not math.isfinite(number_of(seconds)):
+    if not math.isfinite(number(seconds)):
         return show(seconds)
     return join(plain(seconds * 1e6, 3), "µs") if seconds < 1e-3 else join(plain(seconds * 1e3, 3), "ms")
 
@@ -192,8 +187,8 @@ def timing(found: object) -> tuple[list[Row], list[str]]:
     virtual = found.get("clock") == "virtual"
     rows: list[Row] = []
     period = found.get("period")
-    if number_of(period) > 1e-12:
-        rows.append(Row("Rate", join(plain(1 / number_of(period), 5), "Hz")))
+    if number(period) > 1e-12:
+        rows.append(Row("Rate", join(plain(1 / number(period), 5), "Hz")))
     for key, name, say in TIMING:
         if key in found and not (virtual and key.startswith("lateness")):
             rows.append(Row(name, say(found[key])))
@@ -221,9 +216,9 @@ def _latched(found: object) -> list[Row]:
         return []
     made = []
     for name, entry in found.items():
-        if isinstance(entry, Mapping) and math.isfinite(number_of(entry.get("mean"))):
-            late = join(plain(number_of(entry["mean"]) * 1e6, 3), "µs")
-            scatter = number_of(entry.get("deviation")) * 1e6
+        if isinstance(entry, Mapping) and math.isfinite(number(entry.get("mean"))):
+            late = join(plain(number(entry["mean"]) * 1e6, 3), "µs")
+            scatter = number(entry.get("deviation")) * 1e6
             more = f", 1 σ {join(plain(scatter, 2), 'µs')}" if scatter >= 0.001 else ""
             made.append(Row(f"{CHANNELS.get(str(name), show(name))} latched after θ_m", late + more))
     return made

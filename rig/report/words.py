@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from rig.analysis.result import Result, Verdict
+from rig.analysis.result import Verdict
 
 
 class Origin(NamedTuple):
@@ -44,14 +44,6 @@ def origin(backend: str | None) -> Origin:
     said = f"The manifest names the backend “{backend}”" if backend else "The manifest names no backend"
     sentence = f"{said}: it cannot be told whether this was measured or simulated."
     return Origin("ORIGIN UNKNOWN", sentence, "Run of unknown origin", "warn")
-
-
-REJECTED = "Rejected run."  # begins how a figure was found when it does not count
-
-
-def rejected(found: Result) -> bool:
-    """Whether the run was rejected: its figures are shown and do not count."""
-    return found.verdict is Verdict.FAIL and "do not count" in found.sentence
 
 
 def heading(procedure: str, manifest: Mapping[str, Any]) -> str:

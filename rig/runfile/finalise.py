@@ -20,7 +20,6 @@ from rig.runfile.columns import columns_of_rows, schema_of
 from rig.runfile.journal import JournalReader, JournalWriter, journal_files, rows_in_journal
 from rig.runfile.process import sole_writer, this_process
 
-STEPS = ("claim", "drain", "archive", "timing", "hash", "protect", "status")
 READ_ONLY = 0o444
 NOWHERE = "/nonexistent"  # the ring of a run that has none
 PATIENCE = 5.0  # s for a killed recorder to be gone altogether

@@ -8,18 +8,18 @@ from collections.abc import Mapping
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, TypeGuard
+from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
 
 from rig.core.errors import UsageError
+from rig.core.numbers import number
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
 from rig.runfile.samples import Samples, open_samples
 
-LARGEST: Final = 2**1023  # a larger whole number is no float64
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
 
 
@@ -135,17 +135,11 @@ def ratio_of(path: Path, about: Mapping[str, Any]) -> float:
     """gear.ratio of the manifest `about` of the run at `path`. Raises UsageError when it is none."""
     gear = about.get("gear")
     ratio = gear.get("ratio") if isinstance(gear, dict) else None
-    number = float(ratio) if _is_number(ratio) else math.nan
-    if not math.isfinite(number) or number <= 0:
+    found = number(ratio)
+    if not found > 0.0:
         said = json.dumps(ratio)[:60]
         raise UsageError(f"{path / manifests.NAME}: gear.ratio is {said}, expected a number above 0")
-    return number
-
-
-def _is_number(value: Any) -> TypeGuard[int | float]:
-    if isinstance(value, int):
-        return not isinstance(value, bool) and abs(value) <= LARGEST
-    return isinstance(value, float)
+    return found
 
 
 def _procedure(path: Path, about: Mapping[str, Any]) -> str:

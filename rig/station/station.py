@@ -25,7 +25,6 @@ from rig.station.telling import Teller
 from rig.supervisor import Act, State
 
 IDLE = 0.05  # s between two readings while nothing runs: 20 a second
-FOREVER = 3600.0  # s
 WORDS = {
     "connect": "connecting",
     "disconnect": "disconnecting",

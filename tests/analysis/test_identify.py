@@ -111,7 +111,7 @@ def test_what_no_run_shows_is_declared_or_assumed_and_said(campaign: list[Record
     assert found.parameters["K"].origin == "declared"
     assert any(s.startswith("Stiffness K: nothing here shows it") for s in found.cannot)
     with pytest.raises(DataError, match="neither measured here nor declared"):
-        identified(fit(bare, 15), {}).gear_file("flexspline", "", True, "")
+        identified(fit(bare, 15), {}).gear_file("", True, "")
 
 
 @pytest.mark.slow

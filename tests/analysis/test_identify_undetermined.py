@@ -71,7 +71,7 @@ def test_a_mode_made_with_a_declared_inertia_is_not_measured_and_has_no_interval
 
 
 def test_the_gear_file_says_it_too(single: Identified) -> None:
-    file = single.gear_file("flexspline", "A1", True, "a test")
+    file = single.gear_file("A1", True, "a test")
     first = gearfile.loads(gearfile.dumps(file), "gear.toml").cannot[0]
     assert first == (
         "Not determined by these runs: J_m, B_m, B_l, tau_c, F_cl; what stands in their place: "

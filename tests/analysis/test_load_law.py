@@ -61,7 +61,14 @@ def test_too_few_loads_give_a_table_and_no_law() -> None:
 
 
 def test_runs_are_read_from_the_campaign_and_those_that_were_stopped_are_not(tmp_path: Path) -> None:
-    for name, status, note in (("a", "completed", "up"), ("b", "completed", "down"), ("c", "tripped", "up")):
+    campaigns: list[tuple[str, str, str, dict[str, str]]] = [
+        ("a", "completed", "load sweep, up", {}),  # as runs said it before they had a way
+        ("b", "completed", "load sweep, down", {}),
+        ("c", "tripped", "load sweep, up", {}),
+        ("d", "completed", "wind it down", {"way": "up"}),
+        ("e", "completed", "", {"way": "down"}),
+    ]
+    for name, status, note, campaign in campaigns:
         (tmp_path / name).mkdir()
         about = {
             "schema": "hdrig.run/1",
@@ -69,10 +76,12 @@ def test_runs_are_read_from_the_campaign_and_those_that_were_stopped_are_not(tmp
             "gear": {"ratio": 50},
             "status": status,
             "conditions": {"tau_ext": 2.5, "note": note},
+            "campaign": campaign,
         }
         (tmp_path / name / "manifest.json").write_text(json.dumps(about))
         size = {"label": "p-p", "value": 90.0, "unit": "arcsec", "ci95": [89.0, 91.0], "how": ""}
         said = {"schema": "hdrig.result/1", "estimates": {"kinematic_error_peak_to_peak": size}}
         (tmp_path / name / "result.json").write_text(json.dumps(said))
     found = runs_of(tmp_path)
-    assert [(run.load, run.peak_to_peak.value, note) for run, note in found] == [(2.5, 90.0, "up"), (2.5, 90.0, "down")]
+    assert [(run.load, run.peak_to_peak.value) for run, _ in found] == [(2.5, 90.0)] * 4
+    assert [down for _, down in found] == [False, True, False, True]

@@ -13,6 +13,7 @@ from rig.analysis.source import Motion
 from rig.analysis.speed import motor_speed
 from rig.analysis.strokes import find_strokes
 from rig.core.units import RPM, TURN
+from rig.report.record import as_json
 from tests.analysis.synthetic import MadeRun, count, slow_run, triangle
 
 OMEGA = 4 * 4 * TURN * 0.01  # rad/s: 9.6 rpm
@@ -42,7 +43,11 @@ def test_sticking_is_measured_and_fails_the_run_with_the_gain_to_raise(stuck: fl
     assert "Kd" in result.sentence
     assert "hdrig tune" in result.sentence
     assert "kinematic_error_peak_to_peak" in {e.name for e in result.estimates}, "figures are shown all the same"
-    assert any(e.how.startswith("Rejected run") for e in result.estimates)
+    counts = {e.name: e.counts for e in result.estimates}
+    assert result.rejected
+    assert (counts["stuck_share"], counts["kinematic_error_peak_to_peak"]) == (True, False)
+    said = as_json(result)
+    assert (said["rejected"], said["estimates"]["kinematic_error_peak_to_peak"]["counts"]) == (True, False)
 
 
 def test_hunting_is_found_with_its_frequency_and_answered_with_less_integral_gain() -> None:

@@ -12,7 +12,7 @@ from numba import njit
 
 from rig.analysis.result import Array
 from rig.bench import read, twin_parameters
-from rig.control.pid import Gains
+from rig.core.gains import Gains
 from sim import kernel
 from sim.parameters import TwinParameters
 from sim.plant import Plant

@@ -20,7 +20,7 @@ from rig.runfile.verify import verify
 from tests.campaign.plans import HEAD, LOADED, LOCKED, REST, campaign
 from tests.campaign.rigs import Quiet, go_on, make
 
-SMALL = (REST, LOADED, LOCKED)
+SMALL = (REST, LOADED + 'way = "down"\n', LOCKED)
 GO_ON = HEAD + 'on_failure = "continue"\n'
 
 
@@ -71,11 +71,12 @@ def test_what_is_done_is_what_the_dry_run_says(made: Made) -> None:
 
 
 @pytest.mark.slow
-def test_every_run_says_how_long_the_rig_had_run_before_it(made: Made) -> None:
+def test_every_run_says_which_way_its_sweep_went_and_how_long_the_rig_had_run_before_it(made: Made) -> None:
     _, journal, _, _ = made
     found = [
         json.loads((journal.folder / entry["run"] / "manifest.json").read_text()) for entry in journal.book["runs"]
     ]
+    assert [about["campaign"].get("way") for about in found] == [None, "down", None]
     times = [about["campaign"]["rig_time_s"] for about in found]
     assert times == sorted(times)
     assert times[0] > 20.0  # the proof and the tare

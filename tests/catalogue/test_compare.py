@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rig.catalogue import compare, trend
 from rig.catalogue.compare import Mark
-from rig.catalogue.figures import Figure, common_label
+from rig.catalogue.figures import Figure, common_label, figures
 from rig.catalogue.sameness import beside
 from rig.catalogue.scatter import between, scatter
 from rig.cli import main
@@ -236,3 +237,19 @@ def test_a_figure_measured_at_unlike_speeds_is_not_called_by_one_of_them() -> No
 def test_one_run_alone_is_not_compared(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="given 1 run folder: expected two or more"):
         compare([tmp_path])
+
+
+@pytest.mark.parametrize(
+    ("said", "rejected"),
+    [
+        ({"how": "Rejected run. Series."}, True),  # of before `counts`
+        ({"how": "Series."}, False),
+        ({"how": "Series.", "counts": False}, True),
+        ({"how": "Rejected run. Series.", "counts": True}, False),
+    ],
+)
+def test_a_figure_that_does_not_count_is_told_by_its_key_and_in_old_files_by_its_words(
+    tmp_path: Path, said: dict[str, Any], rejected: bool
+) -> None:
+    (tmp_path / "result.json").write_text(json.dumps({"estimates": {"K": {"value": 1.0, "unit": "N·m/rad", **said}}}))
+    assert figures(tmp_path)["K"].rejected is rejected

@@ -81,11 +81,15 @@ def test_a_sweep_of_many_runs_is_not_judged_by_one_limit(capsys: pytest.CaptureF
 
 
 def test_a_campaign_says_what_judges_its_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["campaign", "quick", "--dry-run", "--limit", "peak-to-peak=60"]) == 2
+    with pytest.raises(SystemExit, match="2"):
+        main(["campaign", "quick", "--dry-run", "--limit", "peak-to-peak=60"])
     said = capsys.readouterr()
-    assert "--limit peak-to-peak=60" in said.err
+    assert "unrecognized arguments: --limit peak-to-peak=60; a limit judges runs once they are made" in said.err
     assert "hdrig analyse CAMPAIGN" in said.err
     assert not said.out
+    with pytest.raises(SystemExit, match="0"):
+        main(["campaign", "--help"])
+    assert "--limit" not in capsys.readouterr().out  # it is none of its options
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.console import columns
 from rig.console.columns import COLUMNS, HEADER, MAGIC, frame, of_reading, of_run
 from rig.console.feed import Feed
 from rig.console.link import Link
@@ -38,18 +39,21 @@ def test_the_units_are_those_that_are_announced() -> None:
     units = dict(COLUMNS)
     assert out["motor_angle"][0] == pytest.approx(math.degrees(1.0))
     assert (units["speed"], out["speed"][5]) == ("rpm", pytest.approx(30.0))
-    assert (units["age"], out["age"][0]) == ("ms", pytest.approx(0.2))
     assert (units["following"], out["following"][9]) == ("deg", pytest.approx(0.5))
     assert np.ptp(out["kinematic_error"]) == pytest.approx(2 * PEAK, rel=1e-3)
-    assert out["wave_angle"].min() >= 0.0
-    assert out["wave_angle"].max() < 360.0
+
+
+def test_every_column_that_is_sent_is_drawn_and_none_is_what_was_asked_of_the_drive() -> None:
+    page = "".join(path.read_text() for path in (Path(columns.__file__).parent / "static" / "js").rglob("*.js"))
+    assert [name for name, _ in COLUMNS if f'"{name}"' not in page] == []
+    assert not {name for name, _ in COLUMNS} & {"tau_ask", "tau_applied"}  # speeds or angles where the drive has a loop
 
 
 def test_a_frame_can_be_read_by_its_description() -> None:
     block = of_run(rows(n=7), RATIO, 0.0)
     sent = frame(block, skipped=3)
-    magic, version, columns, n, skipped = HEADER.unpack_from(sent)
-    assert (magic, version, columns, n, skipped) == (MAGIC, 1, len(COLUMNS), 7, 3)
+    magic, version, width, n, skipped = HEADER.unpack_from(sent)
+    assert (magic, version, width, n, skipped) == (MAGIC, 1, len(COLUMNS), 7, 3)
     assert len(sent) == 16 + 8 * 7 + 4 * 7 * len(COLUMNS)
     assert struct.unpack_from("<7d", sent, 16) == pytest.approx(block["t"])
     k = [name for name, _ in COLUMNS].index("speed")
@@ -65,8 +69,8 @@ def test_a_kinematic_error_of_an_arcsecond_survives_single_precision_after_a_tho
 
 
 def test_what_nobody_measured_is_not_a_number_in_an_idle_reading() -> None:
-    out = of_reading({"t": 3.0, "row": [1.0, None, 0.0, 0.1, None, 1e-3]}, RATIO)
-    assert math.isnan(out["load_angle"][0])
+    out = of_reading({"t": 3.0, "row": [1.0, None, 0.0, 0.1, None, 1e-3]})
+    assert math.isnan(out["tau_l"][0])
     assert math.isnan(out["kinematic_error"][0])
     assert out["motor_angle"][0] == pytest.approx(57.29578)
 

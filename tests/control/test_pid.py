@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.control.filter import SpeedFilter
-from rig.control.pid import Gains, Pid
+from rig.control.pid import Pid
 from rig.control.placement import place_poles
+from rig.core.gains import Gains
 
 GAINS = Gains(Kp=3.0, Ki=30.0, Kd=0.12, integrator_limit=1.5, torque_limit=5.0, feedforward=0.0033)
 ANGLE = st.floats(-1e3, 1e3)

@@ -100,6 +100,7 @@ def judged(folder: Path) -> str:
         assert len(str(error)) > 20
         return str(error)
     assert result.sentence
+    assert not result.defect, result.broke_off
     assert all(np.isfinite(e.value) for e in result.estimates if not e.name.startswith("drift"))
     return result.sentence
 

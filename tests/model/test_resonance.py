@@ -9,12 +9,18 @@ import pytest
 
 from rig.bench import read, twin_parameters
 from rig.model.fourier import FourierSeries
-from rig.model.linear import natural_frequency
-from rig.model.resonance import amplification, predicted_swing, worst_swing
+from rig.model.gear import Gear
+from rig.model.linear import natural_frequency, transmissibility
+from rig.model.resonance import predicted_swing, worst_swing
 
 RPM = np.pi / 30
 GEAR = twin_parameters(read("twin").file).gear
 SERIES = GEAR.kinematic_error
+
+
+def amplification(gear: Gear, order: float, omega_m: float) -> float:
+    """|θ̃_n / θ̃_p,n| at constant motor torque and speed `omega_m` rad/s."""
+    return float(np.abs(transmissibility(gear, np.array([order]), omega_m))[0])
 
 
 def test_at_standstill_nothing_swings_and_nothing_is_amplified() -> None:

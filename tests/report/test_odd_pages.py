@@ -47,7 +47,8 @@ def test_the_figures_of_a_rejected_run_are_marked_as_not_counting() -> None:
         PLAIN,
         verdict=Verdict.FAIL,
         sentence=sentence,
-        estimates=(replace(first, how="Rejected run. Series."), *others),
+        rejected=True,
+        estimates=(replace(first, how="Series.", counts=False), *others),
     )
     text = page(found)
     assert text.count("does not count</p>") == 1

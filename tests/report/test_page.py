@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rig.analysis.result import Check, Estimate, Result, Verdict
-from rig.report import page
+from rig.report import page, shell
 from rig.report.figures import CATALOGUE
 from rig.report.palette import DARK, LIGHT
 from tests.report import made_up
@@ -210,7 +210,7 @@ def test_whatever_a_file_holds_is_text_and_stays_text() -> None:
 
 
 def test_a_name_in_the_style_sheet_cannot_leave_its_string() -> None:
-    assert page.css_string('a"b\\c</style>\n') == '"a\\22 b\\5c c\\3c \\2f style\\3e \\a "'
+    assert shell.css_string('a"b\\c</style>\n') == '"a\\22 b\\5c c\\3c \\2f style\\3e \\a "'
 
 
 @given(st.sets(st.sampled_from(sorted(made_up.manifest()))), st.booleans(), st.booleans(), st.data())

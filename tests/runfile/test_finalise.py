@@ -18,12 +18,13 @@ from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.ring import Ring
 from rig.runfile import manifest
 from rig.runfile.events import EventLog, read_events
-from rig.runfile.finalise import STEPS, StepHook, add_derived, finalise
+from rig.runfile.finalise import StepHook, add_derived, finalise
 from rig.runfile.process import sole_writer, started, this_process
 from rig.runfile.recover import recover
 from rig.runfile.verify import verify
 from tests.runfile.rows import assert_prefix, copy_of, manifest_of, new_folder, ring_of, write_journal
 
+STEPS = ("claim", "drain", "archive", "timing", "hash", "protect", "status")  # of a run that is closed, in order
 REPOSITORY = Path(__file__).parents[2]
 CLOSER = """
 import os, signal, sys

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -129,6 +130,8 @@ def test_the_quick_plan_runs_to_its_end_and_says_what_it_measured(
     folder = next(tmp_path.glob("*/campaign.json")).parent
     assert (folder / "summary.txt").read_text() in out
     assert "SIMULATED campaign quick completed" in out
+    assert len(re.findall(r"^sentinels: .* rpm first, .* rpm last, change .* rpm over 2 sentinels\.$", out, re.M)) == 1
+    assert len(re.findall(r"^sentinels: .* over 2 sentinels\.$", out, re.M)) == 4
     for entry in book["runs"]:
         assert {"report.html", "result.json", "samples.parquet"} <= {p.name for p in (folder / entry["run"]).iterdir()}
     assert errors(folder) == []

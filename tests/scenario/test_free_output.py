@@ -151,10 +151,10 @@ def test_a_coast_down_gives_the_inertia_and_friction_of_the_plant() -> None:
 def test_sentinels_of_an_unchanged_rig_agree_and_more_friction_shows_in_the_torque() -> None:
     rig = Rig()
     first, second = (analyse(rig.run(Sentinel()).run) for _ in range(2))
-    torque = next(w for w in compare([first, second]) if w.name == "mean_motor_torque")
+    torque = next(w for w in compare([first.estimates, second.estimates]) if w.name == "mean_motor_torque")
     assert abs(torque.change) <= 0.007, "two steps of the drive's torque"
     later = analyse(Rig(("twin.tau_c=0.35", "twin.tau_s=0.55")).run(Sentinel()).run)
-    torque = next(w for w in compare([first, later]) if w.name == "mean_motor_torque")
+    torque = next(w for w in compare([first.estimates, later.estimates]) if w.name == "mean_motor_torque")
     assert torque.changed
     assert torque.change == pytest.approx(0.05, abs=0.01)
 

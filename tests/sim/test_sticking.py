@@ -10,8 +10,9 @@ import numpy.typing as npt
 import pytest
 
 from rig.control.filter import SpeedFilter
-from rig.control.pid import Gains, Pid
+from rig.control.pid import Pid
 from rig.control.profile import Triangle
+from rig.core.gains import Gains
 from rig.core.sample import Torque
 from sim import kernel
 from sim.drive import TwinDrive

@@ -30,7 +30,7 @@ from rig.analysis.identify.stretches import stretches
 from rig.analysis.identify.windows import Projected, project
 from rig.analysis.result import Array
 from rig.model.fourier import FourierSeries
-from rig.model.gearfile import SIGMA
+from rig.model.gear import sigma_of
 
 MATTERS = 5e-5  # s of delay between the encoders: less is taken off by the fit itself to a part in 10⁴
 SURE = 4.0  # standard errors
@@ -135,8 +135,7 @@ def _sides(J_m: float, motor: MotorFriction | None, J_l: float, load: LoadFricti
 
 def _mesh(run: Recording, friction: MotorFriction | None) -> Mesh:
     """B_ml as declared, to a third; else anything from none to all of the measured drag."""
-    gear = run.source.manifest.get("gear") or {}
-    sigma = SIGMA.get(str(gear.get("output", "flexspline")), 1)
+    sigma = sigma_of((run.source.manifest.get("gear") or {}).get("output"))
     most = 0.0 if friction is None else max(float(friction.solved.coefficients[friction.B]), 0.0)
     said = declared(run.source.declared, "B_ml")
     if said is not None and said <= most:

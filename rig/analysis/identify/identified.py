@@ -20,7 +20,8 @@ from rig.analysis.intervals import t95
 from rig.core.errors import DataError
 from rig.core.units import RPM
 from rig.model.fourier import FourierSeries
-from rig.model.gearfile import SIGMA, UNITS, GearFile, MeasuredSeries, Parameter
+from rig.model.gear import USUAL, output_of, sigma_of
+from rig.model.gearfile import UNITS, GearFile, MeasuredSeries, Parameter
 
 TOLD = 0.1  # of 1/K: with a standard error above that it is not told
 AGREE = 3.0  # standard errors by which lock and turning runs may differ in stiffness
@@ -72,8 +73,9 @@ class Identified:
     cannot: tuple[str, ...]
     fits: Fits
     undetermined: tuple[str, ...] = ()  # names of what a complete identification has and no run here measured
+    output: str = USUAL  # the part that was the output, by which the sums of drag were read
 
-    def gear_file(self, output: str, serial: str, simulated: bool, made: str) -> GearFile:
+    def gear_file(self, serial: str, simulated: bool, made: str) -> GearFile:
         """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared."""
         missing = [name for name in ("J_m", "J_l", "K") if name not in self.parameters]
         if missing:
@@ -83,13 +85,14 @@ class Identified:
             )
         kept = {name: self.parameters[name] for name in UNITS}
         open_ = [said_open(self.undetermined, kept)] if self.undetermined else []
-        return GearFile(kept, self.series, output, serial, simulated, made, (*open_, *self.cannot))
+        return GearFile(kept, self.series, self.output, serial, simulated, made, (*open_, *self.cannot))
 
 
 def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     """From the fits to parameters; what they lack is taken from the runs' `declared`, else assumed and said so."""
     said = manifest.get("declared") or {}
-    sigma = SIGMA.get(str((manifest.get("gear") or {}).get("output", "flexspline")), 1)
+    output = output_of((manifest.get("gear") or {}).get("output"))
+    sigma = sigma_of(output)
     found: dict[str, Parameter] = {"N": Parameter(fits.ratio, origin="declared")}
     cannot: list[str] = []
     _spring(found, cannot, fits)
@@ -103,7 +106,7 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
     add_mode(found, fits)
     series = _series(fits, cannot)
-    return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series))
+    return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series), output)
 
 
 def _no_fall(fits: Fits) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,6 +12,7 @@ import numpy.typing as npt
 from rig.analysis.flexibility import declared
 from rig.analysis.result import Array
 from rig.analysis.source import Motion, Source, motion_of
+from rig.core.numbers import number
 from rig.core.units import TURN
 
 BLOCK = 0.1  # s over which a speed is taken to find plateaus: 160 counts at 9.6 rpm with 10 000 counts a turn
@@ -108,7 +108,7 @@ def recording(source: Source) -> Recording | None:
         t=motion.t,
         tau_m=_torque(motion, source, "tau_m"),
         tau_l=_torque(motion, source, "tau_l"),
-        tau_ext=_number(conditions, "tau_ext"),
+        tau_ext=number(conditions.get("tau_ext"), 0.0),
         locked=bool(conditions.get("output_locked")),
         source=source,
     )
@@ -117,11 +117,6 @@ def recording(source: Source) -> Recording | None:
 def _torque(motion: Motion, source: Source, name: str) -> Array | None:
     column = motion.pick(source.column(name))
     return column if column is not None and bool(np.isfinite(column).all()) else None
-
-
-def _number(values: Mapping[str, Any], key: str) -> float:
-    value = values.get(key)
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else 0.0
 
 
 def plateaus(run: Recording) -> list[Plateau]:

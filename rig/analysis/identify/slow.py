@@ -16,7 +16,6 @@ from rig.analysis.strokes import find_strokes
 from rig.core.units import ARCSEC, RPM
 
 SLOW = 25.0  # rpm: above, inertia bends the gear by more than the correction for it is worth
-ORDINARY = ("kinematic_error", "speed_convergence", "full_turn")  # procedures made for it
 
 
 @dataclass(frozen=True)

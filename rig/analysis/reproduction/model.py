@@ -54,6 +54,6 @@ def _identified(folders: Sequence[Path]) -> Identified:
 
 
 def _model(found: Identified, folders: Sequence[Path], held_out: bool) -> Model:
-    gear = found.gear_file("flexspline", "", simulated=False, made="").gear()
+    gear = found.gear_file("", simulated=False, made="").gear()
     names = tuple(folder.name for folder in folders)
     return Model(gear, found.parameters, found.series, names, held_out, found.cannot)

@@ -21,6 +21,7 @@ from rig.analysis.source import Motion, Source, motion_of
 from rig.analysis.strokes import Stroke, find_strokes
 from rig.analysis.tame import Tame
 from rig.analysis.window import measured_window, part
+from rig.core.numbers import number
 from rig.runfile.run import Run
 
 FAST = 60.0  # rpm: from here a run shows what speed does, below it the pure error and how slow is slow enough
@@ -66,22 +67,22 @@ class Reading:
     @property
     def tau_ext(self) -> float:
         """N·m on the load."""
-        return _number(self.conditions.get("tau_ext"), 0.0)
+        return number(self.conditions.get("tau_ext"), 0.0)
 
     @property
     def speed_rpm(self) -> float:
         """What it was meant to turn at, either way; NaN where that is not said."""
-        return abs(_number(self.conditions.get("speed_rpm"), math.nan))
+        return abs(number(self.conditions.get("speed_rpm"), math.nan))
 
     @property
     def assembly(self) -> int:
         """Which fitting of the wave generator; 1 where none is said."""
-        return int(_number(self.conditions.get("assembly"), 1.0))
+        return int(number(self.conditions.get("assembly"), 1.0))
 
     @property
     def depth_mm(self) -> float:
         """From the reference depth, deeper is positive."""
-        return _number(self.conditions.get("depth_mm"), 0.0)
+        return number(self.conditions.get("depth_mm"), 0.0)
 
 
 def read(folder: Path, reference: Path | None = None) -> Reading:
@@ -147,7 +148,3 @@ def _ends(group: list[Stroke]) -> tuple[int, int]:
 
 def _revolutions(group: list[Stroke]) -> int:
     return sum(s.revolutions for s in group)
-
-
-def _number(value: object, otherwise: float) -> float:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else otherwise

@@ -27,7 +27,6 @@ class Shaft:
     mean: float  # N·m
     mean_size: float  # N·m, mean of |τ_l|
     swing: float  # N·m, peak to peak of the orders over a turn
-    u_swing: float  # N·m, 1 σ
 
 
 def shaft_of(motion: Motion, tau_l: Array | None) -> Shaft | None:
@@ -43,11 +42,10 @@ def shaft_of(motion: Motion, tau_l: Array | None) -> Shaft | None:
     each = np.array([_orders(motion.theta_m[a:b], tau_l[a:b], terms) for a, b in pieces])
     mean, root = each.mean(axis=0), np.sqrt(len(pieces))
     u = np.sqrt(0.5 * (each.real.var(axis=0, ddof=1) + each.imag.var(axis=0, ddof=1))) / root
-    swings = np.array([np.ptp(wave(z)) for z in each])
     rows = tau_l[pieces[0][0] : pieces[-1][1]]
     return Shaft(
         mean, u, len(pieces), float(rows.mean()), float(np.abs(rows).mean()),
-        float(np.ptp(wave(mean))), float(swings.std(ddof=1) / root),
+        float(np.ptp(wave(mean))),
     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ class LoadSweep(Sweep):
         triangle = {"amplitude_deg": self.amplitude_deg, "frequency": self.frequency, "cycles": self.cycles}
         same = {"procedure": "kinematic-error", "with": triangle}
         return [
-            StepSection.model_validate({**same, "weight": weight, "note": way})
-            for way, weights in (("load sweep, up", up), ("load sweep, down", up[::-1]))
+            StepSection.model_validate({**same, "weight": weight, "way": way, "note": f"load sweep, {way}"})
+            for way, weights in (("up", up), ("down", up[::-1]))
             for weight in weights
         ]

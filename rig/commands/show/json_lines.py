@@ -7,6 +7,7 @@ import time
 from typing import Any, TextIO, final
 
 from rig.commands.show.screens import Screen
+from rig.core.clock import NEVER
 
 PERIOD = 0.5  # s between two lines of progress
 
@@ -17,7 +18,7 @@ class JsonLines(Screen):
 
     def __init__(self, stream: TextIO) -> None:
         super().__init__(stream)
-        self._told = -1e9
+        self._told = NEVER
 
     def take(self, event: dict[str, Any]) -> None:
         """One event as a line of JSON."""

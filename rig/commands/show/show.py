@@ -31,6 +31,7 @@ from typing import Any, final
 
 from rig.bench import Bench
 from rig.commands.show.outlet import Outlet, outlet
+from rig.core.clock import NEVER
 from rig.core.errors import Exit, HdrigError
 from rig.core.sample import Sample
 from rig.loop import Ending
@@ -111,7 +112,7 @@ class Progress:
 
     def __init__(self, show: Show, timing: LoopTiming) -> None:
         self._show, self._timing = show, timing
-        self._told = self._looked = -1e9
+        self._told = self._looked = NEVER
         self._late: Mapping[str, float | int | None] = {}
 
     def watch(self, sample: Sample) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rig.core.numbers import number, stated
 from rig.runfile.manifest import read
 from rig.runfile.run import ratio_of
 
@@ -47,8 +48,8 @@ def about(folder: Path) -> About:
         ratio=ratio_of(folder, said),
         simulated=said.get("backend") == "sim",
         locked=bool(conditions.get("output_locked")),
-        stiffness=_number(_part(said, "declared").get("K")),
-        rate=_number(loop.get("rate")),
+        stiffness=max(stated(_part(said, "declared").get("K"), 0.0), 0.0),
+        rate=max(number(loop.get("rate"), 0.0), 0.0),
         mode=str(loop.get("mode") or "torque"),
         folder=folder.name,
         started=str(said.get("started_utc") or ""),
@@ -58,7 +59,3 @@ def about(folder: Path) -> About:
 def _part(said: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     part = said.get(key)
     return part if isinstance(part, dict) else {}
-
-
-def _number(value: Any) -> float:
-    return float(value) if type(value) in (int, float) and value > 0 else 0.0

@@ -26,7 +26,6 @@ SIDES = {
     1: ("forward", colours.FORWARD, colours.FORWARD_SOFT, 5.0),
     -1: ("reverse", colours.REVERSE, colours.REVERSE_SOFT, 2.0),
 }  # the one drawn later is thinner: they often lie upon each other
-CURVE = "/curves/error"
 
 
 class Side:

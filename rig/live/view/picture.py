@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
+from rig.core.numbers import number
 from rig.live.view.about import About
 from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
@@ -76,7 +76,7 @@ class Picture:
     def event(self, event: dict[str, Any], canvas: Canvas) -> None:
         """A line of events.jsonl."""
         t, kind, text = event.get("t"), str(event.get("kind", "")), str(event.get("text", ""))
-        at = float(t) if isinstance(t, int | float) and math.isfinite(t) else 0.0
+        at = number(t, 0.0)
         canvas.event("/events", at, LEVELS.get(kind, "INFO"), f"{kind}: {text}")
 
 

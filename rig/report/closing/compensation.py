@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 
 from rig.core.errors import NotReady, UsageError
-from rig.report import page as run_page
 from rig.report import words as run_words
+from rig.report.shell import css, environment
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
 HERE = Path(__file__).parent
@@ -41,13 +40,9 @@ def render(found: Mapping[str, Any], name: str) -> str:
         "gear": found["gear"],
         "zero": found["zero"]["sentence"],
         "speeds": [_speed(s) for s in found["speeds"]],
-        "css": Markup(f"{run_page._css(name, origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+        "css": css(name, origin.mark, HERE),
     }
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
-    return environment.get_template("compensation.html").render(view)
+    return environment(HERE).get_template("compensation.html").render(view)
 
 
 def _speed(s: Mapping[str, Any]) -> dict[str, Any]:

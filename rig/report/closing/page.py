@@ -6,17 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-import jinja2
-from markupsafe import Markup
-
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.core.errors import NotReady, UsageError
-from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.closing.changes import changes, sizes
 from rig.report.closing.rounds import DRAWING, curves
 from rig.report.numbers import counted
 from rig.report.rows import measured
+from rig.report.shell import css, environment, plot
 from rig.report.words import Ruling, humanise
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
@@ -55,7 +52,7 @@ def render(story: Mapping[str, Any]) -> str:
     """The page as text, from what close-loop.json says alone."""
     origin = run_words.origin("sim" if story["simulated"] else "can")
     rounds = story["rounds"]
-    drawn = run_page._plot(DRAWING, curves(rounds), origin.mark) if rounds else None
+    drawn = plot(DRAWING, curves(rounds), origin.mark) if rounds else None
     view = {
         "story": story,
         "origin": origin,
@@ -65,16 +62,9 @@ def render(story: Mapping[str, Any]) -> str:
         "heads": [word for c, word in SENSOR_NAMES.items() if any(c in r["over_floor_after"] for r in rounds)],
         "drawn": drawn,
         "errors": _errors(rounds[-1]) if rounds else [],
-        "css": Markup(f"{run_page._css(story['campaign'], origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+        "css": css(story["campaign"], origin.mark, HERE),
     }
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("page.html").render(view)
+    return environment(HERE).get_template("page.html").render(view)
 
 
 def _round(r: Mapping[str, Any], last: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import jinja2
 from markupsafe import Markup
 
 from rig.analysis.analyse import analyse
@@ -15,13 +14,13 @@ from rig.catalogue.row import Row
 from rig.catalogue.sameness import point, words
 from rig.catalogue.scatter import SHARE
 from rig.core.errors import HdrigError
-from rig.report import page as run_page
 from rig.report import rows
 from rig.report import words as run_words
 from rig.report.comparison.waveforms import drawing, joined
 from rig.report.figures import Frame, svg
 from rig.report.figures.canvas import Curves
 from rig.report.numbers import ABSENT, estimate, plain
+from rig.report.shell import NARROW, WIDE, css, environment
 from rig.runfile.manifest import write_atomic
 from rig.runfile.run import Run
 
@@ -52,17 +51,9 @@ def render(found: Comparison) -> str:
         "note": shown.note,
         "lines": [_line(line.label, line.unit, line.values, line.differences) for line in found.lines],
         "share": f"{100 * SHARE:g}",
-        "css": Markup(f"{run_page._css('comparison', origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+        "css": css("comparison", origin.mark, HERE),
     }
-    return environment().get_template("page.html").render(view)
-
-
-def environment() -> jinja2.Environment:
-    """For the templates here."""
-    return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
-        lstrip_blocks=True,
-    )  # fmt: skip
+    return environment(HERE).get_template("page.html").render(view)
 
 
 def _backend(runs: tuple[Row, ...]) -> str | None:
@@ -74,7 +65,8 @@ def _backend(runs: tuple[Row, ...]) -> str | None:
 def _curves(folder: Path) -> tuple[Curves | None, str]:
     """What the analysis draws; or why it cannot."""
     try:
-        return analyse(Run.open(folder), None).curves, ""
+        found = analyse(Run.open(folder), None)
+        return (None, found.sentence) if found.broke_off else (found.curves, "")
     except HdrigError as error:
         return None, str(error)
 
@@ -82,7 +74,7 @@ def _curves(folder: Path) -> tuple[Curves | None, str]:
 def _plot(curves: Curves, shown: Any, mark: str) -> dict[str, Markup] | None:
     pictures = {
         name: svg(shown, curves, Frame(width, mark), prefix=f"w-{name}-")
-        for name, width in (("wide", run_page.WIDE), ("narrow", run_page.NARROW))
+        for name, width in (("wide", WIDE), ("narrow", NARROW))
     }
     found = {name: Markup(text) for name, text in pictures.items() if text is not None}  # ours, escaped by its writer
     return found if len(found) == 2 else None

@@ -8,12 +8,13 @@ from typing import Any
 from markupsafe import Markup
 
 from rig.catalogue.trend import Series, Trend
-from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.comparison.course import NOTE, curves_of, drawing
-from rig.report.comparison.page import environment
 from rig.report.figures import Frame, svg
+from rig.report.shell import NARROW, WIDE, css, environment
 from rig.runfile.manifest import write_atomic
+
+HERE = Path(__file__).parent
 
 
 def write(path: Path, found: Trend) -> Path:
@@ -33,16 +34,16 @@ def render(found: Trend) -> str:
         "left_out": found.left_out,
         "series": [_series(k, s, origin.mark) for k, s in enumerate(found.series)],
         "note": NOTE,
-        "css": run_page._css("trend", origin.mark),
+        "css": css("trend", origin.mark),
     }
-    return environment().get_template("trend.html").render(view)
+    return environment(HERE).get_template("trend.html").render(view)
 
 
 def _series(k: int, series: Series, mark: str) -> dict[str, Any]:
     shown, curves = drawing(series), curves_of(series)
     pictures = {
         name: Markup(svg(shown, curves, Frame(width, mark), prefix=f"t{k}-{name}-"))
-        for name, width in (("wide", run_page.WIDE), ("narrow", run_page.NARROW))
+        for name, width in (("wide", WIDE), ("narrow", NARROW))
     }
     sentence = series.sentence
     return {

@@ -8,16 +8,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 from markupsafe import Markup, escape
 
 from rig.analysis.reproduction.claim import Ruling
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.report.figures import CATALOGUE, Drawing, Frame, svg
-from rig.report.page import css_string
-from rig.report.palette import DARK, LIGHT, variables
 from rig.report.reproduction import spectrum_cpm, turn
 from rig.report.reproduction.text import SAID, SIGN, TONE, cell, count, found, record
+from rig.report.shell import css, environment
 from rig.report.words import origin
 from rig.runfile.manifest import write_atomic
 
@@ -55,14 +53,11 @@ def render(exhibits: Sequence[Exhibit], about: About) -> str:
         "left_out": about.left_out,
         "score": [(SIGN[r], TONE[r], rulings[r], words) for r, words in SCORE.items()],
         "exhibits": [_exhibit(e, where.mark) for e in exhibits],
-        "css": _css(where.mark),
+        "css": css("hdrig reproduce", where.mark, HERE),
     }
-    loader = jinja2.FileSystemLoader(HERE)
-    environment = jinja2.Environment(
-        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters["symbols"] = symbols
-    return environment.get_template("page.html").render(view)
+    templates = environment(HERE)
+    templates.filters["symbols"] = symbols
+    return templates.get_template("page.html").render(view)
 
 
 def symbols(text: str) -> Markup:
@@ -108,15 +103,3 @@ def _pictures(e: Exhibit, mark: str) -> dict[str, Markup]:
         text = svg(drawing, e.curves, Frame(width, mark), prefix=f"{e.anchor}-{name[0]}-")
         pictures[name] = Markup(text or "")  # ours, and escaped by the XML writer
     return pictures
-
-
-def _css(mark: str) -> Markup:
-    text = (HERE.parent / "page.css").read_text(encoding="utf-8") + (HERE / "page.css").read_text(encoding="utf-8")
-    for name, value in (
-        ("{{LIGHT}}", variables(LIGHT)),
-        ("{{DARK}}", variables(DARK)),
-        ("{{RUN}}", css_string("hdrig reproduce")),
-        ("{{MARK}}", css_string(mark)),
-    ):
-        text = text.replace(name, value)
-    return Markup(text)

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.runs.holdout import whole_run
-from rig.report.numbers import counted, duration, number_of
+from rig.core.numbers import number
+from rig.report.numbers import counted, duration
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
 from rig.report.words import PROCEDURES, humanise
@@ -87,7 +88,7 @@ def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) ->
 def _row(name: str, part: str, manifest: Mapping[str, Any]) -> RunRow:
     procedure = str(manifest.get("procedure", "unknown"))
     said = [measured(str(k), v) for k, v in table(manifest.get("conditions")).items() if v is not False and k != "note"]
-    seconds = number_of(manifest.get("duration"))
+    seconds = number(manifest.get("duration"))
     length = f", {duration(seconds)}" if seconds == seconds else ""
     return RunRow(
         name,

@@ -6,9 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
-from markupsafe import Markup
 
 from rig.analysis.result import Array
 from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
@@ -19,6 +17,7 @@ from rig.analysis.tracing.workers import each
 from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.figures import Drawing
+from rig.report.shell import css, environment, plot
 from rig.report.trace import tables, words
 from rig.report.trace.campaign import Provenance
 from rig.report.trace.cards import cards
@@ -91,14 +90,11 @@ def render(trace: Trace, source: Provenance) -> str:
         "next": _next(trace),
         "runs": source.rows(trace),
         "software": source.software,
-        "css": Markup(f"{run_page._css(trace.campaign, origin.mark)}\n{(HERE / 'page.css').read_text('utf-8')}"),
+        "css": css(trace.campaign, origin.mark, HERE),
     }
-    loader = jinja2.FileSystemLoader(HERE)
-    environment = jinja2.Environment(
-        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters["code"] = run_page.code
-    return environment.get_template("page.html").render(view)
+    templates = environment(HERE)
+    templates.filters["code"] = run_page.code
+    return templates.get_template("page.html").render(view)
 
 
 def drawn(trace: Trace) -> dict[str, Array]:
@@ -124,7 +120,7 @@ def _origin(trace: Trace, source: Provenance) -> Origin:
 
 def _plots(drawings: Sequence[Drawing], curves: Mapping[str, Array], mark: str) -> list[dict[str, Any] | None]:
     """None of a figure whose curves are absent."""
-    return each(lambda drawing: run_page._plot(drawing, dict(curves), mark), drawings)
+    return each(lambda drawing: plot(drawing, dict(curves), mark), drawings)
 
 
 def _effect(name: str, parameters: Sequence[Any], share: float) -> dict[str, Any]:

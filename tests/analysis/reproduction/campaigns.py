@@ -90,6 +90,4 @@ def with_torque_times(reading: Reading, factor: float) -> Reading:
     """As recorded by a torque sensor of another gain."""
     assert reading.shaft is not None
     s = reading.shaft
-    return replace(
-        reading, shaft=Shaft(s.orders * factor, s.u * factor, s.revolutions, s.mean, s.mean_size, s.swing, 0.0)
-    )
+    return replace(reading, shaft=Shaft(s.orders * factor, s.u * factor, s.revolutions, s.mean, s.mean_size, s.swing))

@@ -18,8 +18,6 @@ from rig.report.palette import LIGHT
 from rig.report.trace.channels import CHANNELS, Channel
 from rig.report.trace.figures.style import AFTER, BEFORE, MEASURED, handle, titled
 
-THREE = ("slow", "fast", "loaded")
-
 
 def chosen(curves: Curves, channel: Channel) -> dict[str, str]:
     """Held-out runs by what they stand for: slowest and fastest of the least loaded, most loaded; each once."""
