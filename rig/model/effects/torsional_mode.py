@@ -68,6 +68,7 @@ class TorsionalMode(Effect):
     ZETA: Final = 0.04
     DAMPED: Final = 0.1  # of a soft coupling in the bank: its neighbours are three steps away, the refit finds the rest
     SOFTEST: Final = 1.0  # rad/(N·m): a coupling that twists by a turn at 6 N·m is none
+    PEAK: Final = 0.15  # of a frequency, half its 95 % interval: of true ones it is a fiftieth
     EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -94,6 +95,10 @@ class TorsionalMode(Effect):
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
         return shape[0] in (LOAD, MOTOR, DRIVEN) and shape[1] > 1.15 * reach.band
+
+    def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
+        """A resonance is a peak: where its frequency is known no better than that, something else has been fitted."""
+        return scale.ci95[1] - scale.ci95[0] < 2 * self.PEAK * abs(scale.value)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Key, Term
 from rig.analysis.tracing.fit.model import Design, Solution, extended, fit, without
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
-from rig.analysis.tracing.thresholds import EVIDENCE, MOST, RELATIVE, SMALLEST, STILL, STILL_RUN
+from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
 from rig.model.effect import Array, Fit, Known, Reach
 
 ROUNDS = 4
@@ -111,17 +111,30 @@ def search(
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
         least = max(EVIDENCE, RELATIVE * (ranking[0].evidence if ranking else 0.0))
-        worth = (r for r in ranked if r.evidence > least and r.size > SMALLEST and r.term not in barren)
-        chosen = next((r for r in worth if _new(r.term, s)), None)
-        if chosen is None:
+        worth = [r for r in ranked if r.evidence > least and r.size > SMALLEST and r.term not in barren]
+        worth = [r for r in worth if _new(r.term, s)]
+        if not worth:
             break
-        s = settled(refine(s.design, chosen.term, runs, covered)[1], runs, covered)
+        chosen, refined = _best_refined(s.design, worth, runs, covered)
+        s = settled(refined, runs, covered)
         entered = s.design.terms[-1]
         s = _pruned(s)
         d = s.design
         if entered not in d.terms:
             barren.add(chosen.term)
     return Found(s, ranking)
+
+
+def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], covered: Reach) -> tuple[Scored, Solution]:
+    """The best of `worth` once its shape is refined, and the fit: among the first, those of other effects or laws with
+    nearly as much evidence. Shapes in the bank are a step apart, and by half a step a look-alike can be ahead."""
+    close: dict[tuple[str | float, ...], Scored] = {}
+    for r in worth:
+        if r.evidence > NEARLY * worth[0].evidence:
+            close.setdefault((r.term.name, *_chosen(r.term)), r)
+    first = list(close.values())[:CLOSEST]
+    made = [(r, refine(d, r.term, runs, covered)[1]) for r in first]
+    return max(made, key=lambda one: one[1].gain - EVIDENCE * (one[1].x.size + len(one[0].term.shape)))
 
 
 def possible(s: Solution, term: Term, coefficients: Array) -> bool:
