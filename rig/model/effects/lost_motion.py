@@ -11,7 +11,7 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic, parameter
 from rig.model.waves import wave
 
-EVEN, BY_ANGLE = 0.0, 1.0  # of the last shape parameter: the same all round, or wider at one angle of the motor
+EVEN, BY_ANGLE = 0.0, 1.0  # of the last shape parameter: the same all round, or wider at some angles of the motor
 
 
 class LostMotion(Effect):
@@ -20,7 +20,8 @@ class LostMotion(Effect):
 
     In the gap the damper still drags, at 300 rpm a few tenths of a newton metre: by T itself the crossing would come
     late. ε only makes the jump finite. A law with a longer tail makes the gap 5 to 10 % too wide. The slop of an Oldham
-    coupling may be wider at one angle: b gains b_1·cos(θ_m + φ).
+    coupling may be wider at one angle, or at every half turn as its slider crosses: b gains b_1·cos(θ_m + φ_1) and
+    b_2·cos(2·θ_m + φ_2).
     """
 
     name: ClassVar[str] = "lost_motion"
@@ -29,6 +30,8 @@ class LostMotion(Effect):
         "gap": "2b, the whole dead zone at the output",
         "gap_by_angle_amplitude": "2b_1, by how much it is wider at one angle of the motor",
         "gap_by_angle_phase": "φ of that angle, cos(θ_m + φ)",
+        "gap_by_half_turn_amplitude": "2b_2, by how much it is wider every half turn of the motor",
+        "gap_by_half_turn_phase": "φ of that, cos(2·θ_m + φ)",
     }
     source: ClassVar[str] = "harmonicdrive"
     backbone: ClassVar[bool] = True
@@ -43,18 +46,20 @@ class LostMotion(Effect):
         return (*((e, EVEN) for e in widths), *((e, BY_ANGLE) for e in widths[1:2]))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column; three where it is wider at one angle."""
+        """One column; five where it is wider at some angles."""
         side = np.tanh(signals.spring_torque / shape[0])
         if shape[1] == EVEN:
             return {Port.WIND_UP: side[:, None]}
-        return {Port.WIND_UP: np.concatenate([side[:, None], wave(signals.theta_m, side)], 1)}
+        return {Port.WIND_UP: np.hstack([side[:, None], *(wave(n * signals.theta_m, side) for n in (1, 2))])}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The whole gap, 2b."""
         gap = np.zeros(fit.covariance.shape[0])
         gap[0] = 2.0
         whole = parameter("gap", 2.0 * fit.coefficients[0], fit.half_width(gap), "rad")
-        return (whole, *harmonic(fit, "gap_by_angle", "rad", 1, 2.0)) if fit.shape[1] == BY_ANGLE else (whole,)
+        if fit.shape[1] == EVEN:
+            return (whole,)
+        return (whole, *harmonic(fit, "gap_by_angle", "rad", 1, 2.0), *harmonic(fit, "gap_by_half_turn", "rad", 3, 2.0))
 
     def plausible(self, fit: Fit) -> bool:
         """A gap is open."""

@@ -12,7 +12,8 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 from rig.model.memory import play, presliding
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter: whose friction
-BRISTLE, ELEMENTS = 0.0, 1.0  # of the last: one bristle, or elements side by side that slip one after the other
+# of the last: one bristle, elements side by side that slip one after the other, or bristles of several ways
+BRISTLE, ELEMENTS, BRISTLES = 0.0, 1.0, 2.0
 
 
 class PreslidingFriction(Effect):
@@ -22,6 +23,9 @@ class PreslidingFriction(Effect):
     The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal. Elements that
     slip one after the other, τ_i after w_i, take any curve that the way from rest makes, and the same at twice the size
     after a reversal      [iwan1966]
+
+    Bristles of several ways, τ_i over w_i, take any curve that is approached from where the last reversal left it, as
+    one that has a long tail.
     """
 
     name: ClassVar[str] = "presliding_friction"
@@ -37,13 +41,15 @@ class PreslidingFriction(Effect):
     usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"law": (BRISTLE,)})
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
     SPREAD: Final = (0.2, 0.6, 1.8, 5.4)  # of x_0: after which ways the elements slip
+    DECADES: Final = (0.3, 1.0, 4.0, 16.0)  # of x_0: ways of several bristles
     TURNS: Final = 0.04  # rad/s of the motor: a run that turns faster when it begins has slid before
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Ways longer than the motor, and the load with it, goes between two samples of the slowest run."""
         ways = [x for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate]
         bristles = (*((MOTOR, x, BRISTLE) for x in ways), *((LOAD, x / reach.ratio, BRISTLE) for x in ways))
-        return (*bristles, *((MOTOR, x, ELEMENTS) for x in ways[::2]))
+        several = tuple((MOTOR, x, BRISTLES) for x in ways[1::2])
+        return (*bristles, *((MOTOR, x, ELEMENTS) for x in ways[::2]), *several)
 
     def moved_by_noise(self) -> bool:
         """The friction of a motor that rests builds up with the way its encoder seems to go."""
@@ -54,7 +60,7 @@ class PreslidingFriction(Effect):
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column, or one an element."""
+        """One column, or one an element or bristle."""
         side, x_0, law = shape
         first = signals.omega_m[0] if signals.t.size else 0.0
         start = float(np.sign(first)) if abs(first) > self.TURNS else 0.0
@@ -63,12 +69,15 @@ class PreslidingFriction(Effect):
         if law == ELEMENTS:
             states = [_element(signals.theta_m, x_0 * share, start) for share in self.SPREAD]
             return {Port.MOTOR_TORQUE: np.stack(states, 1) - np.sign(signals.omega_m)[:, None]}
+        if law == BRISTLES:
+            states = [presliding(signals.theta_m, x_0 * share, start) for share in self.DECADES]
+            return {Port.MOTOR_TORQUE: np.stack(states, 1) - np.sign(signals.omega_m)[:, None]}
         return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - np.sign(signals.omega_m))[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The friction that builds up, and over which way."""
-        if fit.shape[2] == ELEMENTS:
-            return self._of_elements(fit)
+        if fit.shape[2] != BRISTLE:
+            return self._of_several(fit)
         torque, way = np.eye(4)[[0, 2], : fit.covariance.shape[0]]
         whose = "_l" if fit.shape[0] == LOAD else ""
         return (
@@ -76,9 +85,10 @@ class PreslidingFriction(Effect):
             parameter("x_0", fit.shape[1], fit.half_width(way), "rad"),
         )
 
-    def _of_elements(self, fit: Fit) -> tuple[Parameter, ...]:
-        """All of it, and the way after which an element slips, on the average."""
-        share, c = np.array(self.SPREAD), fit.coefficients
+    def _of_several(self, fit: Fit) -> tuple[Parameter, ...]:
+        """All of it, and the way of an element or a bristle, on the average."""
+        share = np.array(self.SPREAD if fit.shape[2] == ELEMENTS else self.DECADES)
+        c = fit.coefficients
         total = float(c.sum()) or 1e-300
         mean = float(share @ c) / total
         torque, way = np.zeros((2, fit.covariance.shape[0]))

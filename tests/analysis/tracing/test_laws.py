@@ -410,3 +410,9 @@ def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
     loss = effect.parameters(fit)[0]
     assert loss.name == "loss_at_20_Nm", "at no torque it has none"
     assert loss.value == pytest.approx(1e-6 * gap(effect.AT), rel=0.05)
+
+
+@pytest.mark.parametrize(("half", "is_one"), [(0.5, True), (9.0, False)])
+def test_a_resonance_is_one_whose_frequency_is_known(half: float, is_one: bool) -> None:
+    found = Parameter("frequency", 40.0, (40.0 - half, 40.0 + half), "Hz")
+    assert TorsionalMode().is_scaled(found, REACH) == is_one

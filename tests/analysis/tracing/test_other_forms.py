@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from rig.model.effect import Array, Fit, Port
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
-from rig.model.effects.presliding_friction import ELEMENTS, MOTOR, PreslidingFriction
+from rig.model.effects.presliding_friction import BRISTLES, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.torsional_mode import DRIVEN, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
@@ -37,6 +37,21 @@ def test_elements_take_a_curve_that_no_bristle_takes() -> None:
     assert min(left(np.hstack([bristle, slid]), friction) for bristle in bristles) > 0.05
 
 
+def test_bristles_take_a_friction_that_approaches_what_it_will_be_with_a_long_tail() -> None:
+    """From where the last reversal left it: after 50 times the way a fiftieth is still to come."""
+    t = 1e-3 * np.arange(6000)
+    theta = 2.0 * (1.0 - np.cos(np.pi * t / 3.0))  # to 4 rad and back
+    way = np.sign(np.gradient(theta, 1e-3))
+    since = np.where(t < 3.0, theta, theta.max() - theta)
+    friction = way * (1.0 - np.where(t < 3.0, 1.0, 2.0) / (1.0 + since / 0.08))
+    s = dataclasses.replace(motion(n=t.size), t=t, theta_m=theta, omega_m=np.gradient(theta, 1e-3), way=way)
+    effect, slid = PreslidingFriction(), way[:, None]
+    several = effect.columns(s, (MOTOR, 0.15, BRISTLES))[Port.MOTOR_TORQUE]
+    bristles = [effect.columns(s, (MOTOR, x, 0.0))[Port.MOTOR_TORQUE] for x in (0.05, 0.1, 0.2, 0.4, 0.8)]
+    assert left(np.hstack([several, slid]), friction) < 0.03
+    assert min(left(np.hstack([bristle, slid]), friction) for bristle in bristles) > 0.06
+
+
 def test_of_elements_all_the_friction_is_told_and_the_way_after_which_one_slips() -> None:
     fit = Fit(np.array([0.01, 0.02, 0.0, 0.01]), (MOTOR, 0.5, ELEMENTS), np.zeros((7, 7)), KNOWN, N)
     told = {p.name: p.value for p in PreslidingFriction().parameters(fit)}
@@ -51,7 +66,17 @@ def test_a_gap_may_be_wider_at_one_angle() -> None:
     assert left(columns[far], gap[far]) < 1e-6
     fit = Fit(np.linalg.lstsq(columns[far], gap[far], rcond=None)[0], (0.1, BY_ANGLE), np.zeros((5, 5)), KNOWN, N)
     told = {p.name: p.value for p in LostMotion().parameters(fit)}
-    assert told == pytest.approx({"gap": 4e-5, "gap_by_angle_amplitude": 2.8e-5, "gap_by_angle_phase": 0.4}, rel=1e-3)
+    assert told["gap_by_half_turn_amplitude"] < 1e-9
+    at_one = {name: told[name] for name in ("gap", "gap_by_angle_amplitude", "gap_by_angle_phase")}
+    assert at_one == pytest.approx({"gap": 4e-5, "gap_by_angle_amplitude": 2.8e-5, "gap_by_angle_phase": 0.4}, rel=1e-3)
+
+
+def test_a_gap_may_be_wider_every_half_turn() -> None:
+    s = motion()
+    side, far = np.sign(s.spring_torque), np.abs(s.spring_torque) > 1.0
+    columns = LostMotion().columns(s, (0.1, BY_ANGLE))[Port.WIND_UP]
+    assert left(columns[far], (side * np.abs(np.cos(s.theta_m + 0.9)))[far]) < 0.13  # order 4 and up are not in it
+    assert left(columns[far], (side * (1.0 + np.cos(2 * s.theta_m + 1.8)))[far]) < 1e-6
 
 
 def test_friction_may_fall_by_more_one_way_than_the_other() -> None:

@@ -55,7 +55,10 @@ def slipping(at: At) -> np.ndarray:
 
 
 MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
-    "a hump of friction at one speed": ("speed", lambda at: np.exp(-(((np.abs(at["speed"]) - 20) / 3) ** 2))),
+    "a hump of friction at one speed": (
+        "speed",
+        lambda at: at["direction"] * np.exp(-(((np.abs(at["speed"]) - 20) / 3) ** 2)),
+    ),
     "a dent at one output angle": (
         "load_angle",
         lambda at: np.exp(-((np.mod(at["load_angle"] - 2, 6.283) / 0.1) ** 2)),
@@ -102,9 +105,20 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     assert found[0].share > 0.5
 
 
-def said(at: At, e: np.ndarray) -> str:
+def said(at: At, e: np.ndarray, channel: str = "A") -> str:
     """The coordinate of a rest (n,) over its floor."""
-    return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))[0].coordinate
+    return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))[0].coordinate
+
+
+def test_a_torque_of_the_motor_that_is_alike_both_ways_at_a_speed_is_what_one_way_has_more() -> None:
+    """Friction turns with the way, what the baseline's own friction leaves of one way alone does not."""
+    rng = np.random.default_rng(6)
+    at = coordinates(rng)
+    noise, hump = rng.normal(0, 0.05, RUNS * ROWS), np.exp(-(((np.abs(at["speed"]) - 20) / 3) ** 2))
+    assert said(at, hump + noise, "M") == "direction"
+    assert said(at, at["direction"] * hump + noise, "M") == "speed"
+    forth = {**at, "direction": np.ones(RUNS * ROWS)}
+    assert said(forth, hump + noise, "M") == "speed"
 
 
 @pytest.mark.parametrize(

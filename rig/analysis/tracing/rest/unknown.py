@@ -23,6 +23,8 @@ from rig.model.effect import Array
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
+LEAST_WAY = 0.1  # of the rows, forth and back each: with fewer, single runs are all there is of one of them
+SPEED_ALONE = list(INDICES).index("speed")
 WITH_TIME = ("time", "temperature")
 
 
@@ -61,9 +63,18 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out += _at_once(h, channel, alone)
     if channel == "A":
         out = _told_by_the_way(out, alone)
+    if channel == "M" and _goes_both_ways(r):
+        out = [replace(found, coordinate="direction") if found is alone[SPEED_ALONE] else found for found in out]
     if not np.isfinite(r.at["temperature"]).any():
         out = [found for found in out if found.coordinate != "temperature"]
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]
+
+
+def _goes_both_ways(r: Rest) -> bool:
+    """Whether the motor does: then a torque that is told by its speed without the way points one way at that speed,
+    and friction turns with the way. It is what one way has more than the other."""
+    way = r.at["direction"]
+    return bool(min(np.mean(way > 0.5), np.mean(way < -0.5)) > LEAST_WAY)
 
 
 def _told_by_the_way(found: Sequence[Home], alone: Sequence[Home]) -> list[Home]:
