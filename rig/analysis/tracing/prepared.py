@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
 from rig.analysis.tracing.floor.of_a_run import floor_of
@@ -61,7 +61,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     campaign = replace(campaign, notes=(*campaign.notes, *off_scale(s, campaign.name)))
     measured = measure(s, parts.fitted)
     eq = replace(eq, noise=measured.noise)
-    eq = eq.knowing(known_of(s.values, eq.runs[0].pieces[0].gear)).leaning_on_it()
+    eq = eq.knowing(learnt(s)).leaning_on_it()
     s = fit(design(eq, (), parts.fitted))
     own = find(s, parts)
     if columns := own.columns():

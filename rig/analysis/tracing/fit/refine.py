@@ -24,11 +24,14 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     exponent, unless the runs tell another one plainly: torques nobody measured move the motor a little, and bend what
     friction seems to do with its speed."""
     free = [i for i, loose in enumerate(term.effect.loose) if loose]
+    names, usual = term.effect.shape_names, term.effect.usual
+    if any(other.name == term.name for other in d.terms):
+        # beside another term of the effect an exponent means little, and two of them run away from each other
+        return _refined(d, term, runs, covered, [i for i in free if names[i] not in usual])
     best = _refined(d, term, runs, covered, free)
-    usual = term.effect.usual
     if not usual:
         return best
-    names, shape = term.effect.shape_names, best[0].terms[-1].shape
+    shape = best[0].terms[-1].shape
     laws = [dict(zip(usual, law, strict=True)) for law in itertools.product(*usual.values())]
     begun = [tuple(law.get(name, v) for name, v in zip(names, shape, strict=True)) for law in laws]
     held = [i for i in free if names[i] not in usual]

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
-from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS, known_of
+from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS
 from rig.analysis.tracing.fit.equations import Key, Term
+from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Design, Solution, extended, fit, without
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
@@ -164,7 +165,7 @@ def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
     for _ in range(ROUNDS):
         d, before = s.design, s.design.eq.runs[runs[0]].pieces[0].gear
-        now = known_of(s.values, before)
+        now = learnt(s)
         if change(before, now) < SETTLED:
             break
         terms = d.terms

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
@@ -35,7 +35,7 @@ def _put_right(s: Solution) -> Solution:
     for _ in range(ROUNDS):
         eq = s.design.eq
         before = eq.runs[0].pieces[0].gear
-        now = known_of(s.values, before)
+        now = learnt(s)
         if change(before, now) < ASTRAY:
             break
         s = fit(design(eq.knowing(now), s.design.terms, sorted({run for run, _ in s.design.y})))

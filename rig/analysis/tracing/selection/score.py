@@ -31,6 +31,7 @@ from rig.analysis.tracing.thresholds import (
     SMALLEST,
     UNREAL,
     UNSTEADY,
+    WHATEVER,
 )
 from rig.model.effect import Array
 
@@ -80,6 +81,12 @@ class HeldOutScore:
         rest is in floors says nothing against it: that of a law a little off grows with the effect."""
         one = max(self.unsteady, self.apart) < ABOUT and self.runs >= SEVERAL
         return self.share > PLAINLY and abs(self.true - 1.0) < ABOUT and one
+
+    @property
+    def whatever_the_floor(self) -> bool:
+        """Whether it is so large, and so wholly what there is in every channel it acts in, that a floor no repeats tell
+        may be twice what it is taken for: what is left stands in other channels."""
+        return self.size > WHATEVER and self._explains_all and self.anywhere < MISSING
 
     @property
     def _explains_all(self) -> bool:

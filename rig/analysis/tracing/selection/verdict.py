@@ -101,9 +101,11 @@ def _standing(
     coordinate: str, names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str], told: bool = True
 ) -> tuple[str, ...]:
     """Names that stand beside a rest: those `plain` to see; and where it can be `told` what much is, those beside which
-    nothing is left in any channel they act in, nor in the runs they act in most."""
+    nothing is left in any channel they act in, nor in the runs they act in most; else those that stand whatever the
+    floor is."""
     amiss = {score.name for score in scores if max(score.anywhere, score.left) > MISSING}
-    clean = _beside(coordinate, [name for name in names if name not in amiss]) if told else ()
+    sure = {score.name for score in scores if score.whatever_the_floor}
+    clean = _beside(coordinate, [name for name in names if (name not in amiss if told else name in sure)])
     return tuple(name for name in names if name in plain or name in clean)
 
 

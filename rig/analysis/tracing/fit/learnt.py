@@ -1,0 +1,28 @@
+"""What a fit tells of the gear, as far as columns may lean on it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.model import Solution
+from rig.model.effect import Known
+
+LOUD: Final = 10.0  # RMS that the load's equation leaves over the noise: another load hangs there from time to time
+
+
+def learnt(s: Solution) -> Known:
+    """Of the gear, from the coefficients of a fit; what they do not say is as it was before.
+
+    The zero of the torque sensor is what the load's equation has beside inertia and friction. Where parts of unknown
+    weight are taken and left it is their mean, and with it the sign of the torque would be lost.
+    """
+    before = s.design.eq.runs[0].pieces[0].gear
+    now = known_of(s.values, before)
+    loads = [s.residual(key) for key in s.keys if key[1] == "L"]
+    left = float(np.sqrt(np.mean(np.concatenate(loads) ** 2))) if loads else 0.0
+    known = left < LOUD * s.design.eq.noise.sigma["L"]
+    return now if known else replace(now, torque_zero=before.torque_zero)
