@@ -31,3 +31,14 @@ def shared() -> Path:
 def rng() -> np.random.Generator:
     """The same draws for every test, whatever ran before it in its process."""
     return np.random.default_rng(8)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Refuses to go on where tests of one group would be spread over the workers: what their modules make, minutes of
+    it, would be made once for each."""
+    together = getattr(session.config.option, "loadgroup", False)
+    grouped = [item.nodeid for item in session.items if item.get_closest_marker("xdist_group")]
+    if together and not all("@" in name for name in grouped):
+        raise pytest.UsageError(
+            f"{grouped[0]}: pytest-xdist does not see its group, expected an id that ends in @group"
+        )

@@ -44,7 +44,22 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_th
     monkeypatch.setattr(refine, "fit", lambda d: SimpleNamespace(gain=WITHOUT))
     nothing: Any = None
     noise = SimpleNamespace(kappa={"M": 2.0})
-    d: Any = SimpleNamespace(y={(0, "M"): np.zeros(2 * rows)}, eq=SimpleNamespace(noise=noise))
+    d: Any = SimpleNamespace(y={(0, "M"): np.zeros(2 * rows)}, eq=SimpleNamespace(noise=noise), terms=())
     best, _ = refine.refine(d, STRIBECK, (), nothing)
     assert best.terms[-1].shape[1] == exponent
     assert tried == [((1.0, 1.0, 0.0), [0, 1]), ((1.2, 1.0, 0.0), [0]), ((1.2, 2.0, 0.0), [0])]
+
+
+def test_beside_another_term_of_the_effect_an_exponent_stays_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two of them run away from each other: a difference of two powers is a third one."""
+    tried = []
+
+    def refined(d: Any, term: Term, runs: Any, covered: Any, free: list[int]) -> Any:
+        tried.append(free)
+        return d, None
+
+    monkeypatch.setattr(refine, "_refined", refined)
+    nothing: Any = None
+    d: Any = SimpleNamespace(terms=(Term(StribeckFriction(), (3.0, 1.0, 0.0)),))
+    refine.refine(d, STRIBECK, (), nothing)
+    assert tried == [[0]]

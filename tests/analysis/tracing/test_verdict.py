@@ -29,6 +29,14 @@ def test_where_no_floor_is_known_only_what_is_plain_stands() -> None:
     assert named("load", False, *ALL) == ("hysteretic_stiffness",)
 
 
+def test_where_no_floor_is_known_what_is_large_and_all_there_is_stands_beside_a_rest_in_other_channels() -> None:
+    sure = HeldOutScore("load_dependent_friction", 1.0, 11.8, 0.95, 1.0, (), anywhere=0.96, runs=1)
+    assert named("load", False, sure) == ("load_dependent_friction",)
+    assert named("load", False, replace(sure, size=4.0)) == ()
+    assert named("load", False, replace(sure, anywhere=1.6)) == ()
+    assert named("load", False, replace(sure, share=0.9)) == ()
+
+
 def test_beside_a_memory_a_loop_stands_only_where_it_is_plain() -> None:
     small = replace(PLAIN, share=0.7, anywhere=1.1)
     assert named("memory", True, CLEAN, small) == ("cogging_torque",)

@@ -1,0 +1,50 @@
+"""Of candidates nearly alike in the bank the one is taken that fits best once its shape is refined."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit import search
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.search import Scored
+from rig.model.effects.cogging_torque import CoggingTorque
+from rig.model.effects.support_compliance import SupportCompliance
+from rig.model.effects.torsional_mode import DRIVEN, LOAD, TorsionalMode
+
+SUPPORT = Term(SupportCompliance(), (0.0, 69.0, 0.05))
+MODE, SAME_MODE = (Term(TorsionalMode(), (LOAD, hz, 0.04, 0.0)) for hz in (50.0, 54.0))
+DRIVEN_MODE = Term(TorsionalMode(), (DRIVEN, 68.5, 0.04, 0.0))
+FAR = Term(CoggingTorque(), (4.0,))
+AS_REFINED = {SUPPORT: 5668.0, MODE: 4275.0, SAME_MODE: 9e9, DRIVEN_MODE: 5813.0, FAR: 9e9}
+
+
+@pytest.fixture
+def tried(monkeypatch: pytest.MonkeyPatch) -> list[Term]:
+    seen: list[Term] = []
+
+    def refined(d: Any, term: Term, runs: Any, covered: Any) -> Any:
+        seen.append(term)
+        return d, SimpleNamespace(gain=AS_REFINED[term], x=np.zeros(70))
+
+    monkeypatch.setattr(search, "refine", refined)
+    return seen
+
+
+def chosen(*worth: tuple[Term, float]) -> Term:
+    nothing: Any = None
+    return search._best_refined(nothing, [Scored(t, e, 2 * e, 1.0) for t, e in worth], (), nothing)[0].term
+
+
+def test_one_law_of_each_that_is_nearly_as_good_is_refined(tried: list[Term]) -> None:
+    ranked = ((SUPPORT, 2443.0), (MODE, 2310.0), (SAME_MODE, 2300.0), (DRIVEN_MODE, 2200.0), (FAR, 900.0))
+    assert chosen(*ranked) == DRIVEN_MODE
+    assert tried == [SUPPORT, MODE, DRIVEN_MODE]
+
+
+def test_what_is_far_ahead_is_refined_alone(tried: list[Term]) -> None:
+    assert chosen((SUPPORT, 2443.0), (DRIVEN_MODE, 1500.0)) == SUPPORT
+    assert tried == [SUPPORT]
