@@ -39,7 +39,8 @@ def assembly_sweep_of(folder: Path) -> int:
 
 
 def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
-    """Every completed slow run of the campaign in `folder` that was analysed, and whether on the sweep's way down."""
+    """Every completed slow run of the campaign in `folder` whose peak to peak counts, and whether on the sweep's way
+    down."""
     from rig.analysis.assembly_band import AssemblyRun
     from rig.analysis.intervals import Ranged
     from rig.catalogue.figures import figures
@@ -48,7 +49,12 @@ def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
     found = []
     for path in sorted(folder.glob("*/result.json")):
         manifest, figure = read(path.parent), figures(path.parent).get(FIGURE)
-        if figure is None or manifest.get("status") != "completed" or manifest.get("procedure") != "kinematic_error":
+        if (
+            figure is None
+            or figure.rejected
+            or manifest.get("status") != "completed"
+            or manifest.get("procedure") != "kinematic_error"
+        ):
             continue
         about = manifest.get("conditions") or {}
         load, depth = float(about.get("tau_ext") or 0.0), float(about.get("depth_mm") or 0.0)

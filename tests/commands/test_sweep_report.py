@@ -63,6 +63,14 @@ def test_a_load_sweep_ends_with_its_law_and_a_page(swept_folder: Path, capsys: p
     assert json.loads((swept_folder / "result.json").read_text())["procedure"] == "load_sweep"
 
 
+def test_a_run_whose_figures_do_not_count_is_no_part_of_a_sweep(tmp_path: Path) -> None:
+    path = made(tmp_path) / "03" / "result.json"
+    result = json.loads(path.read_text())
+    result["estimates"]["kinematic_error_peak_to_peak"]["counts"] = False
+    path.write_text(json.dumps(result))
+    assert len(runs_of(tmp_path)) == 19
+
+
 def test_a_sweep_of_which_nothing_was_analysed_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert assembly_sweep_of(tmp_path) == 6
     assert "no run of the sweep was analysed" in capsys.readouterr().out
