@@ -1,5 +1,5 @@
-"""From a bench file to a rig: devices, limits, gains, clock. Beside the first bench, the drill and the commands `devices`
-and `twin` the only place that knows drivers/ and sim/.
+"""From a bench file to a rig: devices, limits, gains, clock. Beside the first bench, the drill and the commands
+`devices` and `twin` the only place that knows drivers/ and sim/.
 """
 
 from __future__ import annotations
