@@ -59,6 +59,10 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = backward_elimination(
             polished(fit(reduced(solution.design, gone)), runs, covered), p.held_out
         )
+    if not solution.design.terms and solution.design.eq is not p.eq:
+        # what eliminated effects made of the gear, and with it of readings it stands in for, goes with them
+        solution = fit(design(p.eq, (), runs))
+        held = unseen(solution, p.held_out)
     selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
     return _without_insignificant(selected, runs, covered)
 
