@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.result import Array
 from rig.analysis.source import Source
-from rig.core.numbers import number as number  # the tracer takes it from here
+from rig.core.numbers import number
 from rig.core.rows import stretches
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts

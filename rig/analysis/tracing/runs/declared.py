@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from rig.analysis.source import Source
-from rig.analysis.tame import LARGEST, number
+from rig.analysis.tame import LARGEST
+from rig.core import numbers
 from rig.model.effect import Known
 from rig.model.fourier import FourierSeries
 
@@ -26,6 +27,6 @@ def believed(run: Source) -> Known:
 
 
 def stated(table: Mapping[str, Any], name: str, default: float) -> float:
-    """The number a manifest states, `default` where it is absent, zero or none."""
-    value = number(table.get(name))
+    """The number a manifest states, bare or with its unit beside it; `default` where it is absent, zero or none."""
+    value = numbers.stated(table.get(name))
     return value if 0 < abs(value) < LARGEST else default
