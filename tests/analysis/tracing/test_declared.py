@@ -23,4 +23,5 @@ from rig.analysis.tracing.runs.declared import UNKNOWN, believed
 )
 def test_a_declared_stiffness_may_have_its_unit_beside_it(declared: dict[str, Any], stiffness: float) -> None:
     run: Any = SimpleNamespace(declared=declared)
-    assert believed(run).K == stiffness
+    found = believed(run).K
+    assert found == stiffness
