@@ -14,7 +14,7 @@ demo: .venv/ready
 test: .venv/ready-dev lint
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not long"
 
-inner: .venv/ready-dev  ## the fast part of the tests: a minute or two on an idle machine
+inner: .venv/ready-dev  ## the fast part of the tests: a minute on an idle machine
 	$(BIN)/python -m pytest -n 2 -m "not slow and not long"
 
 blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to tests/blind/TABLE.md

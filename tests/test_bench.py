@@ -28,6 +28,7 @@ def test_an_override_changes_one_number_says_so_and_keeps_the_rest() -> None:
     assert bench.file.gear == read("twin").file.gear.model_copy(update={"serial": "SN7"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("assignments", "words"),
     [

@@ -26,6 +26,7 @@ def test_a_channel_the_bench_lacks_tells_nothing() -> None:
     assert rig.told() == {}
 
 
+@pytest.mark.slow
 def test_devices_that_latch_at_one_sync_tell_no_offset_and_each_run_counts_anew() -> None:
     w = wired()
     w.instruments.connect()

@@ -10,6 +10,7 @@ from rig.supervisor import TABLE, Act, State, Supervisor
 ENERGISED = {State.ENABLED, State.RUNNING, State.HOLDING, State.STOPPING}
 
 
+@pytest.mark.slow
 @given(st.lists(st.sampled_from(list(Act)), max_size=60))
 def test_any_sequence_of_acts_keeps_the_promises(acts: list[Act]) -> None:
     supervisor = Supervisor()

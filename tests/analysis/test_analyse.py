@@ -32,6 +32,7 @@ def at_speed(rpm: float = 120.0, seconds: float = 10.0, **columns: Any) -> MadeR
     return MadeRun({**made, **columns}, about)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rpm", [60.0, 120.0, -200.0, 400.0])
 def test_a_run_at_speed_gives_speed_and_orders_and_does_not_call_it_the_pure_error(rpm: float) -> None:
     result = analyse(at_speed(rpm))
@@ -44,6 +45,7 @@ def test_a_run_at_speed_gives_speed_and_orders_and_does_not_call_it_the_pure_err
     assert result.verdict is Verdict.MEASURED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("procedure", PROCEDURES)
 def test_any_columns_may_be_missing_in_any_procedure(procedure: str) -> None:
     whole = at_speed(seconds=4.0, tau_l=np.zeros(4000), tau_m=np.zeros(4000), theta_ref=np.zeros(4000))

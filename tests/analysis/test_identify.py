@@ -75,6 +75,7 @@ def campaign(gear: Gear) -> list[Recording]:
     return [r for run in runs if (r := recording(run)) is not None]
 
 
+@pytest.mark.slow
 def test_without_noise_every_parameter_is_that_of_the_simulator(gear: Gear, campaign: list[Recording]) -> None:
     found = identified(fit(campaign, 15), {"declared": {"B_ml": 2.5e-3}}).parameters
     for name in ("J_m", "J_l", "K", "B_sp"):
@@ -184,6 +185,7 @@ def test_runs_that_disagree_widen_the_interval() -> None:
     assert apart.u(0) == pytest.approx(np.std(np.arange(6.0), ddof=1) / np.sqrt(6), rel=0.05)
 
 
+@pytest.mark.slow
 def test_scatter_between_runs_is_found_beside_their_own() -> None:
     generator, found = np.random.default_rng(1), []
     for _ in range(100):

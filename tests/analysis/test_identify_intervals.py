@@ -69,6 +69,7 @@ def test_plateaus_under_two_torques_or_none_known_stay_apart(slow_and_wandering:
         assert len(stretches(plateaus(other))) > 1
 
 
+@pytest.mark.slow
 def test_a_line_through_runs_at_constant_torque_covers_the_drag_as_often_as_it_says() -> None:
     """Eight runs a rig, ten rigs: every plateau by itself gave half as much again."""
     z = []

@@ -32,6 +32,7 @@ def told(columns: Any, manifest: dict[str, Any], procedure: str) -> Result:
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["declared", "encoders", "limits", "conditions", "gear", "files", "status"])
 @pytest.mark.parametrize("value", ODD, ids=lambda v: str(type(v).__name__))
 def test_any_table_of_the_manifest_may_be_anything(key: str, value: Any) -> None:
@@ -42,6 +43,7 @@ def test_any_table_of_the_manifest_may_be_anything(key: str, value: Any) -> None
         told(short, {key: {"mean_speed": {"upper": value}, "ratio": value}}, procedure)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("procedure", PROCEDURES)
 def test_any_column_may_hold_anything(procedure: str) -> None:
     whole = dict(at_speed(seconds=4.0, tau_l=np.zeros(4000), flags=np.zeros(4000)).columns)

@@ -29,6 +29,7 @@ def test_every_run_of_a_campaign_has_figures_and_a_sentence(shared: Path, case: 
             assert np.isfinite(e.value), (folder.name, e.name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [c for c in CASES if c != LOADED])
 def test_the_slow_runs_give_the_true_coefficients_within_their_uncertainty(shared: Path, case: str) -> None:
     truth = json.loads((shared / "cases" / "TRUTH.json").read_text())[case]
@@ -43,6 +44,7 @@ def test_the_slow_runs_give_the_true_coefficients_within_their_uncertainty(share
         assert u.max() < 0.12
 
 
+@pytest.mark.slow
 def test_the_lock_runs_give_the_true_stiffness_within_its_interval(shared: Path) -> None:
     truth = json.loads((shared / "cases" / "TRUTH.json").read_text())
     for case in ("open-1", "open-4", "open-5", "open-6"):

@@ -79,12 +79,14 @@ def sweep(sign: float = 1.0, seed: int = 0) -> MadeRun:
     return MadeRun(columns, {"procedure": "constant_speed", "gear": {"ratio": 50}})
 
 
+@pytest.mark.slow
 def test_a_load_that_moves_freely_gives_the_stiffness_within_its_interval() -> None:
     figure = figures(analyse(sweep()))["torsional_stiffness_apparent"]
     assert figure.ci95[0] <= 7160 <= figure.ci95[1]
     assert abs(figure.value / 7160 - 1) < 0.01
 
 
+@pytest.mark.slow
 def test_a_torque_sensor_with_the_wrong_sign_is_named() -> None:
     result = analyse(sweep(sign=-1.0))
     assert figures(result)["torsional_stiffness_apparent"].value < 0

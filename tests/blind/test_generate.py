@@ -42,6 +42,7 @@ def taken(builder: Builder, on: Stage) -> list[Taken]:
     return simulate(builder, on.plan, on.noise, on.seed)
 
 
+@pytest.mark.slow
 def test_no_line_of_the_blind_test_imports_the_program() -> None:
     for path in HERE.rglob("*.py"):
         if path.name.startswith("test_"):

@@ -36,6 +36,7 @@ def no_bus(tmp_path: Path) -> Path:
     return bench
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verb", VERBS, ids=" ".join)
 def test_a_bus_that_is_missing_leaves_no_folder(
     verb: list[str], no_bus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

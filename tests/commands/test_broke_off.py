@@ -27,6 +27,7 @@ def stumble(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
         monkeypatch.setitem(PROCEDURES, procedure, stumbling)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("error", "code", "words"),
     [

@@ -70,6 +70,7 @@ def test_a_full_disk_is_told_by_its_own_words(tmp_path: Path) -> None:
         raise OSError(28, "No space left on device")
 
 
+@pytest.mark.slow
 def test_a_run_whose_report_finds_no_room_is_complete_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

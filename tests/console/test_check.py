@@ -78,6 +78,7 @@ def test_nothing_a_page_could_send_breaks_it(parameters: Any) -> None:
     assert set(looked_at(parameters)) == {"ok", "problems", "plan", "margins", "sums"}
 
 
+@pytest.mark.slow
 def test_a_run_into_the_resonance_is_refused_as_on_the_command_line() -> None:
     faster = ["limits.speed_rpm=2000"]
     found = check({"procedure": "kinematic-error", "parameters": {"frequency": 1.0}}, "twin", faster)

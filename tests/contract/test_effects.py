@@ -62,6 +62,7 @@ def test_its_file_its_name_and_its_source_agree(effect: Effect):
     assert len(effect.shape_names) == len(effect.loose)
 
 
+@pytest.mark.slow
 @every_effect
 def test_columns_are_finite_and_as_many_at_every_port_for_every_shape(effect: Effect):
     shapes = effect.shapes(REACH)

@@ -71,6 +71,7 @@ def test_its_names_and_needs_are_those_of_the_run_format(name: str) -> None:
     assert procedure.__class__.__doc__
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_it_completes_on_the_twin_within_what_it_announced(name: str) -> None:
     ending, sink, procedure = run(name)
@@ -83,6 +84,7 @@ def test_it_completes_on_the_twin_within_what_it_announced(name: str) -> None:
     assert np.max(np.abs(asked)) <= envelope.torque + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CATALOGUE)
 @pytest.mark.parametrize("stop_at", [1, 700, 3000])
 def test_it_can_be_stopped_anywhere_and_leaves_no_torque(name: str, stop_at: int) -> None:

@@ -70,11 +70,13 @@ def test_a_governor_that_changes_the_clock_is_doubtful():
     assert judge_governor(set()).health is Health.GOOD
 
 
+@pytest.mark.slow
 def test_the_timer_is_measured_every_cycle():
     timing = measure(0.001, 0.05)
     assert timing.ticks + timing.missed >= 50
 
 
+@pytest.mark.slow
 def test_scheduling_is_asked_for_and_said():
     assert check_scheduling(read("twin"))[0].sentence
 
@@ -86,6 +88,7 @@ def test_devices_of_the_twin_answer_and_one_that_is_not_there_is_bad():
     assert "/nowhere/can" in missing[0].sentence
 
 
+@pytest.mark.slow
 def test_the_verb_says_every_finding_and_ends_with_the_worst(capsys: pytest.CaptureFixture[str], monkeypatch):
     from argparse import Namespace
 

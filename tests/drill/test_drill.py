@@ -37,6 +37,7 @@ def test_every_fault_of_an_odrive_in_every_phase_ends_as_it_has_to(cause: Cause,
     assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["host's cable pulled", "drive trips by itself", "safe torque off"])
 def test_a_fault_in_mid_run_takes_the_torque_off_in_time(name: str) -> None:
     outcome = drill(next(c for c in CAUSES if c.name == name), TRACKING)
@@ -46,6 +47,7 @@ def test_a_fault_in_mid_run_takes_the_torque_off_in_time(name: str) -> None:
     assert outcome.rows > 900
 
 
+@pytest.mark.slow
 def test_a_harmless_cause_that_is_expected_to_trip_fails_the_drill() -> None:
     nothing = Cause("nothing at all", lambda rig: None, 0.001)
     outcome = drill(nothing, TRACKING)
@@ -78,6 +80,7 @@ def test_old_targets_queued_in_a_dead_bus_never_reach_the_drive() -> None:
     assert [data for t, data in heard if t > struck + 0.05 and data[:2] == b"\x0f\x00" and data[2:] != b"\0\0"] == []
 
 
+@pytest.mark.slow
 def test_the_verb_prints_one_line_a_fault_and_says_the_worst(capsys: pytest.CaptureFixture[str]) -> None:
     from argparse import Namespace
 
@@ -87,6 +90,7 @@ def test_the_verb_prints_one_line_a_fault_and_says_the_worst(capsys: pytest.Capt
     assert "2 drills, 0 not as expected" in told
 
 
+@pytest.mark.slow
 def test_a_time_nobody_promised_is_in_brackets(capsys: pytest.CaptureFixture[str]) -> None:
     from argparse import Namespace
 

@@ -220,6 +220,7 @@ def test_a_limit_that_cannot_be_set_is_remarked_on(wire: VirtualWire):
     assert "it reacts in a way of its own" in told
 
 
+@pytest.mark.slow
 def test_canopen_s_own_node_is_read_and_mapped_as_it_stands():
     """The SDO server of another author, in real time on python-can's virtual bus."""
     dictionary = canopen.ObjectDictionary()

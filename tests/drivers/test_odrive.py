@@ -155,6 +155,7 @@ def test_a_watchdog_that_is_declared_and_not_set_is_found_out():
     assert "proves nothing" in w.instruments.drive.guarded
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("strike", "words"),
     [

@@ -36,6 +36,7 @@ def test_connecting_energises_nothing_and_says_who_is_there():
     assert all(i.simulated for i in identities.values())
 
 
+@pytest.mark.slow
 def test_a_slow_run_follows_its_reference_and_every_row_is_fresh():
     w = connected()
     ending, sink = run(w)
@@ -48,6 +49,7 @@ def test_a_slow_run_follows_its_reference_and_every_row_is_fresh():
     assert w.twin.drive.drive_state is DriveState.SWITCH_ON_DISABLED
 
 
+@pytest.mark.slow
 def test_what_is_read_is_what_the_plant_does():
     w = connected()
     run(w)
@@ -93,6 +95,7 @@ def test_a_bus_on_which_nobody_speaks_is_told_as_such():
         connected("devices.drive.node=9")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("station", "more"), [("hosts", "; nobody is heard on CAN bus 'rig'"), ("node 1", "")])
 def test_a_heartbeat_that_stays_away_is_told_from_a_bus_that_does(station: str, more: str):
     w = connected("limits.stale_s=0.5", "devices.drive.watchdog=0.6")

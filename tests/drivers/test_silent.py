@@ -63,6 +63,7 @@ def test_of_an_odrive_the_one_message_that_stays_away_is_named(identifier: int, 
     rig.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("identifier", "words", "which"), CANOPEN, ids=["status", "motor position", "load encoder", "torque sensor"]
 )

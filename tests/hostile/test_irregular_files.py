@@ -134,6 +134,7 @@ def test_a_file_the_disk_cannot_read_is_a_finding(folder: Path) -> None:
     assert any("Input/output error" in f.sentence for f in verify(folder))
 
 
+@pytest.mark.slow
 def test_a_line_of_two_hundred_megabytes_is_no_event(folder: Path) -> None:
     with open(folder / "events.jsonl", "ab") as file:
         file.truncate(200 * 2**20)  # sparse: zero bytes, which is what a file system may leave after a power cut

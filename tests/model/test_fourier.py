@@ -28,6 +28,7 @@ def test_the_slope_is_the_derivative_of_the_value(s: FourierSeries, theta: float
     assert float(s.slope(np.array(theta))) == pytest.approx(float(difference), abs=1e-7)
 
 
+@pytest.mark.slow
 @given(series(), st.floats(-10.0, 10.0), st.integers(-5, 5))
 def test_it_repeats_every_motor_turn_and_has_no_mean(s: FourierSeries, theta: float, turns: int) -> None:
     moved = theta + 2 * math.pi * turns

@@ -48,6 +48,7 @@ def forces() -> tuple[object, object, dict[str, object]]:
     return lagrange(s["theta_m"]), lagrange(s["theta_l"]), s
 
 
+@pytest.mark.slow
 def test_the_structure_of_equations_6_and_7_follows_from_the_energies() -> None:
     motor, load, s = forces()
     p, t, phi = s["p"], s["t"], s["phi"]

@@ -69,6 +69,7 @@ def at_angle(curve: Array, theta: Array) -> Array:
     return np.asarray(c[0].real + 2 * np.real(np.exp(1j * np.multiply.outer(theta, n)) @ c[1:]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rpm", [120, 300, 500])
 def test_the_steady_state_is_where_dop853_stays(gear: Gear, rpm: int) -> None:
     wave = at_speed(gear, rpm * RPM)
@@ -131,6 +132,7 @@ def test_above_resonance_the_load_no_longer_follows(gear: Gear) -> None:
     assert np.ptp(wave.kinematic_error) < 0.3 * np.ptp(wave.pure)
 
 
+@pytest.mark.slow
 def test_the_march_keeps_within_a_billionth_of_dop853_and_its_energy_adds_up(gear: Gear) -> None:
     wave = at_speed(gear, 300 * RPM)
     times = np.linspace(0.0, 0.3, 301)

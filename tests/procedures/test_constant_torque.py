@@ -20,6 +20,7 @@ def taken(**parameters: float) -> Taken:
     return Rig().run(ConstantTorque(revolutions=12, settle=2.0, **parameters))  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed_rpm", [pytest.param(120.0, marks=pytest.mark.slow), -310.0, 500.0])
 def test_it_measures_under_one_torque_near_the_speed_and_comes_to_rest(speed_rpm: float) -> None:
     done = taken(speed_rpm=speed_rpm)

@@ -38,6 +38,7 @@ def test_what_is_no_jog_is_refused_with_the_bound(turns: float, speed_rpm: float
         Jog(turns=turns, speed_rpm=speed_rpm)
 
 
+@pytest.mark.slow
 def test_by_name_it_says_how_far_the_motor_turned(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "jog", "--out", str(tmp_path), "--with", "turns=-0.5"]) == 0
     assert re.search(r"the motor turned -1(79|80)\.\d\d°, -180\.00° were asked for", capsys.readouterr().out)

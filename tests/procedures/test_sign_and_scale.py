@@ -42,6 +42,7 @@ def test_a_rig_that_is_what_it_says_is_proven_with_its_numbers() -> None:
     assert "too small to prove" in proof.sentence  # the fake load needs no torque
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("prepare", "words"),
     [
@@ -88,6 +89,7 @@ def test_an_uneven_motor_proves_nothing_about_the_torque_sensor() -> None:
         judge(forward._replace(slowest=0.4), reverse, 0.5, SETTING)
 
 
+@pytest.mark.slow
 def test_a_reversed_torque_sensor_is_refused() -> None:
     def reversed_sensor(world: FakeWorld) -> None:
         advance = world.advance

@@ -147,6 +147,7 @@ def test_a_stiffer_loop_keeps_its_damping() -> None:
     assert four.Kd**2 / four.Kp == pytest.approx(GAINS.Kd**2 / GAINS.Kp)
 
 
+@pytest.mark.slow
 def test_unwinding_by_name_says_what_was_let_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "unwind", "--out", str(tmp_path)]) == 0
     assert re.search(r"^unwound from [+-]\d\.\d\d to [+-]\d\.\d\d N·m$", capsys.readouterr().out, re.MULTILINE)

@@ -125,6 +125,7 @@ def one(way: Callable[[Program], float], root: Path, seed: int) -> float:
         return lost
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 def test_a_kill_loses_no_row_that_was_handed_over(way: Callable[[Program], float], tmp_path: Path) -> None:
     one(way, tmp_path, seed=1)

@@ -65,6 +65,7 @@ def no_file_beyond(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
+@pytest.mark.slow
 def test_every_row_put_is_in_the_run(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -90,6 +91,7 @@ def test_closing_before_starting_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not recorder.ring.exists()
 
 
+@pytest.mark.slow
 def test_virtual_time_is_held_while_the_recorder_catches_up(tmp_path: Path) -> None:
     folder, clock = new_folder(tmp_path), HeldClock()
     recorder = Recorder(folder, clock, capacity=256)
@@ -112,6 +114,7 @@ def test_wall_time_cannot_be_held_and_a_full_ring_ends_the_run(tmp_path: Path) -
     assert recorder.close() == 100
 
 
+@pytest.mark.slow
 def test_a_killed_recorder_is_noticed_and_nothing_is_lost(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -124,6 +127,7 @@ def test_a_killed_recorder_is_noticed_and_nothing_is_lost(tmp_path: Path) -> Non
     assert_prefix(folder, 800)
 
 
+@pytest.mark.slow
 def test_a_killed_recorder_ends_a_run_in_held_time_too(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, HeldClock(), capacity=64)
@@ -135,6 +139,7 @@ def test_a_killed_recorder_ends_a_run_in_held_time_too(tmp_path: Path) -> None:
     assert_prefix(folder, 64)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_meant_for_the_whole_program_do_not_reach_it(tmp_path: Path, number: signal.Signals) -> None:
     folder = new_folder(tmp_path)
@@ -170,6 +175,7 @@ def test_it_runs_at_normal_priority_even_under_a_real_time_loop(tmp_path: Path) 
     recorder.close()
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_told_to_the_loop_and_room_made_in_time_keeps_every_row(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -183,6 +189,7 @@ def test_a_full_disk_is_told_to_the_loop_and_room_made_in_time_keeps_every_row(t
     assert_prefix(folder, 2000)
 
 
+@pytest.mark.slow
 def test_a_disk_that_stays_full_leaves_the_rows_in_memory_and_says_where(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -232,6 +239,7 @@ def test_a_read_only_folder_is_told_before_anything_moves(tmp_path: Path, monkey
     assert not recorder.ring.exists()
 
 
+@pytest.mark.slow
 def test_two_recorders_never_write_one_run(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     first, second = Recorder(folder, WallClock()), Recorder(folder, WallClock())
@@ -252,6 +260,7 @@ def test_while_it_runs_the_manifest_says_where_the_rows_are(tmp_path: Path) -> N
     assert "ring" not in manifest_of(folder)
 
 
+@pytest.mark.slow
 def test_the_run_can_be_read_while_it_is_made(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -275,6 +284,7 @@ def stopped(recorder: Recorder) -> Iterator[None]:
         os.kill(pid_of(recorder), signal.SIGCONT)
 
 
+@pytest.mark.slow
 def test_held_time_does_not_wait_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rig.recorder.recorder.STUCK", 0.2)
     recorder = Recorder(new_folder(tmp_path), HeldClock(), capacity=64)
@@ -284,6 +294,7 @@ def test_held_time_does_not_wait_for_ever(tmp_path: Path, monkeypatch: pytest.Mo
     assert recorder.close() == 64
 
 
+@pytest.mark.slow
 def test_an_operator_who_wants_an_end_need_not_wait_so_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rig.recorder.recorder.STUCK_WHEN_ASKED", 0.2)
     recorder = Recorder(new_folder(tmp_path), HeldClock(), capacity=64, interrupted=lambda: True)
@@ -293,6 +304,7 @@ def test_an_operator_who_wants_an_end_need_not_wait_so_long(tmp_path: Path, monk
     assert recorder.close() == 64
 
 
+@pytest.mark.slow
 def test_rows_in_memory_that_somebody_removed_are_told_as_lost(tmp_path: Path) -> None:
     recorder = Recorder(new_folder(tmp_path), WallClock())
     recorder.start()
@@ -305,6 +317,7 @@ def test_rows_in_memory_that_somebody_removed_are_told_as_lost(tmp_path: Path) -
         recorder.close()
 
 
+@pytest.mark.slow
 def test_a_journal_removed_in_mid_run_is_told_and_what_is_in_memory_is_kept(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock(), capacity=1000)

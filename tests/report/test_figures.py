@@ -87,6 +87,7 @@ KINDS = [
 ]
 
 
+@pytest.mark.slow
 @every_figure
 @given(st.data())
 @settings(max_examples=20, deadline=None)
@@ -117,12 +118,14 @@ def test_a_figure_says_in_words_what_it_shows(drawing: Drawing) -> None:
     assert len(root.get("aria-label", "")) > 30
 
 
+@pytest.mark.slow
 @every_figure
 def test_a_figure_drawn_twice_is_the_same(drawing: Drawing) -> None:
     assert figures.svg(drawing, made_up.curves()) == PLAIN[drawing.name]
     assert figures.png(drawing, CURVES) == figures.png(drawing, made_up.curves())
 
 
+@pytest.mark.slow
 @every_figure
 def test_the_word_stands_across_a_marked_figure_and_not_across_another(drawing: Drawing) -> None:
     marked = ET.fromstring(str(figures.svg(drawing, CURVES, Frame(mark="SIMULATED"))))
@@ -130,6 +133,7 @@ def test_the_word_stands_across_a_marked_figure_and_not_across_another(drawing: 
     assert "SIMULATED" not in str(PLAIN[drawing.name])
 
 
+@pytest.mark.slow
 @every_figure
 def test_on_a_page_every_colour_is_a_variable_and_text_is_text(drawing: Drawing) -> None:
     text = str(figures.svg(drawing, CURVES, prefix="here-"))
@@ -141,6 +145,7 @@ def test_on_a_page_every_colour_is_a_variable_and_text_is_text(drawing: Drawing)
     assert "width" not in root.attrib
 
 
+@pytest.mark.slow
 @every_figure
 def test_ids_begin_with_the_prefix_and_every_reference_is_met(drawing: Drawing) -> None:
     text = str(figures.svg(drawing, CURVES, prefix="here-"))
@@ -150,6 +155,7 @@ def test_ids_begin_with_the_prefix_and_every_reference_is_met(drawing: Drawing) 
     assert set(re.findall(r'(?:href="#|url\(#)([^")]+)', text)) <= set(ids)
 
 
+@pytest.mark.slow
 @every_figure
 def test_a_figure_of_its_own_carries_its_size_fonts_and_light_colours(drawing: Drawing) -> None:
     root = ET.fromstring(str(PLAIN[drawing.name]))
@@ -178,6 +184,7 @@ def test_an_order_whose_interval_reaches_zero_is_not_told_from_it() -> None:
     assert "not told from zero" not in str(PLAIN["orders"])
 
 
+@pytest.mark.slow
 def test_many_revolutions_are_thinned_and_it_is_said() -> None:
     many = CURVES | {"ke.revolutions_forward": np.tile(CURVES["ke.revolutions_forward"], (10, 1))}
     text = str(figures.svg(BY_NAME["kinematic-error"], many))

@@ -25,6 +25,7 @@ ODD: tuple[Any, ...] = ("\ud800", ["a", {}], 10**400, float("nan"), {"x": {"y": 
 PLAIN = replace(result(), curves={}, tables={})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", ODD, ids=lambda v: str(type(v).__name__))
 def test_a_page_is_written_whatever_the_folder_says(tmp_path: Path, value: Any) -> None:
     write(tmp_path, manifest(), value, value, PLAIN)

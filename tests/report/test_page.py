@@ -118,6 +118,7 @@ def test_a_simulated_run_says_so_on_top_in_the_title_at_the_foot_on_paper_and_on
     assert "MEASURED" not in READ.words.replace("No gear was measured", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("backend", "word"),
     [
@@ -135,6 +136,7 @@ def test_any_other_run_says_where_it_comes_from_and_never_simulated(backend: str
     assert "SIMULATED" not in text.replace(HOSTILE, "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", list(Verdict))
 def test_every_verdict_has_a_sign_and_a_word(verdict: Verdict) -> None:
     words = Reader(render(made_up.result(verdict=verdict, curves=FEW))).words
@@ -213,6 +215,7 @@ def test_a_name_in_the_style_sheet_cannot_leave_its_string() -> None:
     assert shell.css_string('a"b\\c</style>\n') == '"a\\22 b\\5c c\\3c \\2f style\\3e \\a "'
 
 
+@pytest.mark.slow
 @given(st.sets(st.sampled_from(sorted(made_up.manifest()))), st.booleans(), st.booleans(), st.data())
 @settings(max_examples=10, deadline=None)
 def test_a_folder_made_by_somebody_else_gives_a_page_with_what_there_is(
@@ -237,10 +240,12 @@ def test_a_folder_made_by_somebody_else_gives_a_page_with_what_there_is(
     assert "None" not in reader.words
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_page() -> None:
     assert render(made_up.result(curves=made_up.curves(revolutions=5, grid=96))) == FULL
 
 
+@pytest.mark.slow
 def test_the_page_of_a_200_s_run_is_below_one_and_a_half_megabytes() -> None:
     assert len(render(made_up.result()).encode()) < 1_500_000
 

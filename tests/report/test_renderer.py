@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
@@ -58,6 +59,7 @@ def told(element: ET.Element) -> dict[str, str]:
     return {key: NAMED.sub(r"#\1", value) for key, value in element.attrib.items() if key not in ("d", "id")}
 
 
+@pytest.mark.slow
 def test_everything_is_drawn_where_matplotlib_draws_it() -> None:
     with mpl.rc_context(STYLE):
         mine, usual = elements(drawn(figure())), elements(theirs())

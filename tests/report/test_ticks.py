@@ -57,6 +57,7 @@ def svg(kind: type[Axes], change: Callable[[Any], None]) -> str:
         return drawn(figure)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [turned_round, by_decades, with_an_offset, with_minor_ticks, named_and_without_labels, beyond_the_view, hidden],

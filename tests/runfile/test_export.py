@@ -123,6 +123,7 @@ def test_nothing_is_ever_overwritten(run: Run, kind: str) -> None:
     assert not list(run.path.glob(".*"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", FORMATS)
 def test_it_goes_where_it_is_told(run: Run, kind: str, tmp_path: Path) -> None:
     assert export(run, kind, tmp_path / f"x{FORMATS[kind].suffix}").stat().st_size > 1000

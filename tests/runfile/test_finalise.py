@@ -138,6 +138,7 @@ def test_a_kill_before_any_step_leaves_a_run_that_recover_closes(tmp_path: Path,
         assert "the run itself was completed: the end" in manifest_of(folder)["exit_reason"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("second", STEPS)
 @pytest.mark.parametrize("first", STEPS)
 def test_a_recovery_killed_before_any_step_twice_still_gives_every_row(tmp_path: Path, first: str, second: str) -> None:

@@ -47,6 +47,7 @@ def ends_of(path: Path, batch: int, rows: int) -> list[int]:
     return ends
 
 
+@pytest.mark.slow
 def test_a_file_cut_at_any_byte_of_its_last_batch_loses_that_batch_and_nothing_else(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     path = write_journal(folder, 0, 60, batch=20)
@@ -60,6 +61,7 @@ def test_a_file_cut_at_any_byte_of_its_last_batch_loses_that_batch_and_nothing_e
     assert rows_of(folder) == 40
 
 
+@pytest.mark.slow
 def test_a_file_cut_anywhere_gives_every_batch_before_the_cut(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     path = write_journal(folder, 0, 200, batch=20)
@@ -69,6 +71,7 @@ def test_a_file_cut_anywhere_gives_every_batch_before_the_cut(tmp_path: Path) ->
         assert rows_of(folder) == 20 * max(sum(end <= cut for end in ends) - 1, 0)
 
 
+@pytest.mark.slow
 def test_a_file_the_power_cut_filled_with_zeros_ends_where_it_was_whole(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     path = write_journal(folder, 0, 100, batch=20)
@@ -168,6 +171,7 @@ def archive_of(folder: Path, batches: list[pa.RecordBatch]) -> bytes:
     return (folder / "samples.parquet").read_bytes()
 
 
+@pytest.mark.slow
 @OURS
 @given(cuts=st.lists(st.integers(0, 400), max_size=30))
 def test_the_same_samples_give_the_same_bytes_whatever_the_batches_were(tmp_path: Path, cuts: list[int]) -> None:

@@ -62,6 +62,7 @@ def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, S
     return ending, sink, rig, supervisor, struck
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("name", FAULTS)
 def test_every_fault_in_every_phase_ends_without_torque_in_time(name: str, phase: str) -> None:

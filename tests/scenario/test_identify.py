@@ -106,6 +106,7 @@ def test_runs_of_two_gears_are_refused(shared: Path, tmp_path: Path, capsys: pyt
     assert "2 gear ratios (50.0, 51.0)" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_lock_run_alone_is_not_enough_for_a_gear_file(shared: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """open-1 declares inertias and stiffness: without those nothing would stand in for them."""
     assert main(["identify", str(shared / "cases" / "open-1" / "lock_20_1")]) == 6

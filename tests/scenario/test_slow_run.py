@@ -33,6 +33,7 @@ def slow_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run_of(root)
 
 
+@pytest.mark.slow
 def test_the_run_folder_is_complete_and_keeps_its_promises(slow_run: Path) -> None:
     names = {p.name for p in slow_run.iterdir()}
     assert {"manifest.json", "bench.toml", "journal-0001.arrows", "samples.parquet", "events.jsonl"} <= names
@@ -76,6 +77,7 @@ def test_the_same_seed_gives_byte_identical_samples_and_another_does_not(slow_ru
     assert (run_of(tmp_path / "other") / "samples.parquet").read_bytes() != first
 
 
+@pytest.mark.slow
 def test_analysing_again_gives_the_same_figures_and_leaves_the_samples_alone(slow_run: Path) -> None:
     before = {n: (slow_run / n).read_bytes() for n in ("result.json", "samples.parquet", "report.html")}
     assert main(["analyse", str(slow_run)]) == 0
@@ -95,6 +97,7 @@ def test_a_run_that_sticks_is_rejected_with_the_number_and_the_gain_to_change(
     assert "raise Kd" in out
 
 
+@pytest.mark.slow
 def test_gains_too_weak_to_hold_the_reference_trip_with_the_way_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

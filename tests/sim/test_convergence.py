@@ -45,6 +45,7 @@ def independent(parameters: TwinParameters, rpm: float, n: int) -> Array:
     return np.column_stack([states[:, 0] / gear.ratio - states[:, 1], tau_l])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rpm", [9.6, 120.0, 300.0, 500.0])
 def test_smooth_turning_is_exact_far_below_a_count_and_converges(calm: TwinParameters, rpm: float) -> None:
     expected = independent(calm, rpm, 400)

@@ -105,6 +105,7 @@ def power_terms(plant: Plant, tau: float) -> list[float]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0, 1])
 def test_power_balances_at_any_state_with_everything_on(calm: TwinParameters, sigma: int) -> None:
     plant, rng, held = Plant(with_gear(having(calm, EVERYTHING), sigma=sigma)), np.random.default_rng(1), 0
@@ -128,6 +129,7 @@ def run_with_reversals(parameters: TwinParameters, refine: float = 1.0, n: int =
     return plant, np.array(rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("section", SECTIONS)
 def test_energy_ledger_closes_with_each_of_them(calm: TwinParameters, section: str) -> None:
     # reached: 6e-10 to 4e-9 as the substeps are chosen

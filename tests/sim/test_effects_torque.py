@@ -48,6 +48,7 @@ def test_friction_grows_with_the_torque_that_is_driven_and_with_that_which_drive
     assert against == pytest.approx(10.0 / 50, abs=1e-3)  # the paper's model: no more than the load's own share
 
 
+@pytest.mark.slow
 def test_drag_has_its_power_of_speed(calm: TwinParameters) -> None:
     for friction, law in (
         (Friction(quadratic_drag=1e-4), lambda w: 1e-4 * w**2),

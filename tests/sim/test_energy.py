@@ -55,6 +55,7 @@ def power_terms(plant: Plant) -> tuple[list[float], bool]:
     return terms, (omega_m == 0.0 and a_m == 0.0) or (omega_l == 0.0 and a_l == 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0, 1])
 def test_power_balances_at_any_state_with_every_loss_on(calm: TwinParameters, sigma: int) -> None:
     plant, rng, held = Plant(with_gear(calm, sigma=sigma)), np.random.default_rng(1), 0

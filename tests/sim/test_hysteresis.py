@@ -89,6 +89,7 @@ def test_the_first_winding_bends_from_the_stiffness_of_all_elements_to_the_full_
     assert spring.torque == pytest.approx(0.6, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.2, 0.6, 1.0, 2.0])
 @pytest.mark.parametrize("longest", [1e-6, 1e-3])
 def test_a_closed_cycle_loses_the_area_of_its_loop_whatever_the_steps(

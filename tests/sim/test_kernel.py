@@ -19,6 +19,7 @@ from tests.sim.conftest import with_gear
 from tests.sim.everything import EVERYTHING
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree(plain: ModuleType, twin: TwinParameters) -> None:
     assert not hasattr(plain.advance, "py_func")  # nothing compiled in it
     assert not hasattr(plain.entries.__globals__["substeps"], "py_func")
@@ -124,6 +125,7 @@ def test_a_sliver_of_time_changes_nothing(calm: TwinParameters, sliver: float) -
     assert plant.shaft == pytest.approx(before[1], rel=1e-6)  # its slope among them
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{"B_sp": 3000.0}, {"B_m": 10.0}, {"B_l": 1e5}, {"K": 1e8}, {"omega_s": 0.001}])
 def test_stiff_parameters_shorten_the_substeps_and_stay_true(calm: TwinParameters, changes: dict[str, float]) -> None:
     plant = Plant(with_gear(calm, **changes))

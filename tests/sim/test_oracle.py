@@ -125,6 +125,7 @@ def test_behaviour_at_speed_is_that_of_an_independent_simulation(calm: TwinParam
     assert c[0].real / DEG == pytest.approx(mean, rel=0.05, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_locked_output_winds_up_with_the_stiffness(calm: TwinParameters) -> None:
     plant = Plant(calm)
     plant.locked = True

@@ -69,6 +69,7 @@ def test_the_motor_breaks_away_at_its_breakaway_torque(calm: TwinParameters, sig
     assert sign * plant.truth().omega_m > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_load_breaks_away_at_its_friction_torque(calm: TwinParameters, sign: float) -> None:
     plant, tau = Plant(calm, theta_m=0.7), 0.0

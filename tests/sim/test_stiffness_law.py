@@ -52,6 +52,7 @@ def locked_at_rest(parameters: TwinParameters) -> tuple[np.ndarray, np.ndarray]:
     return tau, wind_up
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LAWS)
 def test_wind_up_in_the_lock_test_is_the_inverse_of_the_law(calm: TwinParameters, name: str) -> None:
     law, inverse = LAWS[name]

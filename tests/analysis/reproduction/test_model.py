@@ -11,6 +11,7 @@ from rig.model.gear import sigma_of
 from tests.commands.made_run import made_run, manifest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("output", "sigma"), [("flexspline", 1), ("circular_spline", 0)])
 def test_the_gear_is_simulated_with_the_output_it_was_identified_with(tmp_path: Path, output: str, sigma: int) -> None:
     run = made_run(tmp_path / "run", {"gear": {**manifest()["gear"], "output": output}})

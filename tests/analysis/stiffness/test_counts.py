@@ -41,6 +41,7 @@ def test_a_motor_that_stands_half_a_count_apart_looks_like_a_loop_and_the_interv
     assert "the motor stood on either branch" in loss.how
 
 
+@pytest.mark.slow
 def test_more_cycles_make_that_part_no_smaller() -> None:
     few, many = (figures(analyse(LockedGear(rates=(1.0,), cycles=n).run()))["hysteresis_loss"] for n in (1, 4))
     least = of_width(COUNT) / ARCMIN

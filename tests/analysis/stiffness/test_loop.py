@@ -61,6 +61,7 @@ def test_one_rate_tells_neither_from_the_other_and_says_so() -> None:
     assert any("ramps have one rate" in s for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_an_elastic_gear_has_no_loop_and_the_headline_says_below_what() -> None:
     result = analyse(LockedGear().run())
     assert abs(figures(result)["hysteresis_loss"].value) < 0.01

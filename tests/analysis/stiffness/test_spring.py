@@ -36,6 +36,7 @@ def bent(**changes: Any) -> LockedGear:
     return LockedGear(spring=spring, reach=reach_at_15(spring), **changes)
 
 
+@pytest.mark.slow
 def test_one_line_is_found_to_do_and_every_stiffness_is_its_slope() -> None:
     result = analyse(LockedGear().run())
     found = figures(result)
@@ -80,6 +81,7 @@ def lines_through(spring: Any, reach: float) -> Array:
     return np.asarray(found.x * 1e4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gear", [bent(slip=SLIP), bent(slip=SLIP, drag=1500.0)])
 def test_a_loop_does_not_change_what_the_spring_is_found_to_be(gear: LockedGear) -> None:
     found = figures(analyse(gear.run(seed=3)))
@@ -87,6 +89,7 @@ def test_a_loop_does_not_change_what_the_spring_is_found_to_be(gear: LockedGear)
         assert abs(found[name].value / true - 1) < 0.02, name
 
 
+@pytest.mark.slow
 def test_a_dead_zone_is_play_and_not_a_soft_spring() -> None:
     def spring(u: Array) -> Array:
         return np.asarray(K * np.sign(u) * np.maximum(np.abs(u) - 4e-5, 0.0))

@@ -44,6 +44,7 @@ def test_an_output_that_follows_fails_the_check_of_the_lock() -> None:
     assert "25" in check.sentence
 
 
+@pytest.mark.slow
 def test_what_lies_in_series_is_taken_off() -> None:
     result = analyse(LockedGear().run(manifest={"declared": {"K_sensor": 20_000.0, "K_fixture": 1e6}}))
     figure = figures(result)["torsional_stiffness_gear"]

@@ -93,6 +93,7 @@ def behind_the_encoder(s: Signals, behind: Array) -> tuple[Array, Array]:
     return error, -s.torque * (p.slope(behind) - p.slope(s.theta_m))
 
 
+@pytest.mark.slow
 def test_a_soft_coupling_swings_as_its_own_equation_of_motion_says() -> None:
     """J_2·(ω̇_m − ψ̈) = k·ψ + c·ψ̇ − T·(1/N − θ̃_p′(θ_m − ψ)), integrated apart."""
     s, p, omega, zeta, inertia = motion(), KNOWN.kinematic_error, 2 * np.pi * 9.0, 0.06, 5e-4

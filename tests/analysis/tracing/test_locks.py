@@ -33,6 +33,7 @@ def made(stiffness: str, thermometer: bool, rng: np.random.Generator) -> Rest:
     return Rest(e, np.repeat(np.arange(4), T.size), at, 0.04, np.zeros((ROWS, 0)), np.zeros((0, 0)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stiffness", "thermometer", "coordinate"),
     [
@@ -52,6 +53,7 @@ def test_what_the_stiffness_follows_is_said(
         assert found.frequency_hz == pytest.approx(0.1227, abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("times", "said"), [(1.4, False), (4.0, True)])
 def test_lock_tests_that_differ_like_all_others_are_no_finding(
     monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, times: float, said: bool

@@ -92,6 +92,7 @@ def test_friction_may_fall_by_more_one_way_than_the_other() -> None:
     assert not effect.plausible(dataclasses.replace(fit, coefficients=np.array([0.02, -0.001])))
 
 
+@pytest.mark.slow
 def test_a_disc_on_a_hub_swings_as_the_torque_tells() -> None:
     """Hub and disc of 0.4 and 0.45 kg·m² on a shaft of 4e4 N·m/rad, turned by a torque that sweeps to 60 Hz."""
     hub, disc, k, c = 0.4, 0.45, 4e4, 4.0

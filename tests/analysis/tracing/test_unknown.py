@@ -92,6 +92,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", MADE)
 def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     rng = np.random.default_rng(5)
@@ -110,6 +111,7 @@ def said(at: At, e: np.ndarray, channel: str = "A") -> str:
     return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))[0].coordinate
 
 
+@pytest.mark.slow
 def test_a_torque_of_the_motor_that_is_alike_both_ways_at_a_speed_is_what_one_way_has_more() -> None:
     """Friction turns with the way, what the baseline's own friction leaves of one way alone does not."""
     rng = np.random.default_rng(6)
@@ -121,6 +123,7 @@ def test_a_torque_of_the_motor_that_is_alike_both_ways_at_a_speed_is_what_one_wa
     assert said(forth, hump + noise, "M") == "speed"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("warmth", "waves"),
     [
@@ -151,6 +154,7 @@ def test_waves_that_are_smaller_for_a_while_after_each_reversal_live_in_memory()
     assert said(at, e + rng.normal(0, 1, e.size)) == "memory"
 
 
+@pytest.mark.slow
 def test_order_and_frequency_are_said_with_it() -> None:
     rng = np.random.default_rng(7)
     at = coordinates(rng)
@@ -170,6 +174,7 @@ def test_order_and_frequency_are_said_with_it() -> None:
         assert said == pytest.approx(expected, abs=near)
 
 
+@pytest.mark.slow
 def test_noise_lives_nowhere() -> None:
     rng = np.random.default_rng(6)
     at = coordinates(rng)
@@ -187,6 +192,7 @@ def test_noise_lives_nowhere() -> None:
     assert found[0].share < 0.1
 
 
+@pytest.mark.slow
 def test_what_the_baseline_has_taken_on_does_not_hide_the_coordinate() -> None:
     """An even spring in a lock test: θ̃_p, fitted without it, bends to it and is wrong in the slow runs instead."""
     rng = np.random.default_rng(8)

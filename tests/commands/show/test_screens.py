@@ -109,6 +109,7 @@ def test_a_run_whose_ring_is_gone_has_no_peak_to_peak() -> None:
     assert "p-p –" in stream.getvalue()
 
 
+@pytest.mark.slow
 def test_a_terminal_that_is_stopped_holds_up_nobody_and_nothing_grows() -> None:
     reading, writing = os.pipe()
     os.set_blocking(writing, False)

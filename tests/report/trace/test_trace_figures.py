@@ -68,6 +68,7 @@ def test_the_motor_torque_is_shown_in_millinewton_metres() -> None:
     assert "RMS 8.5 mN·m off before" in before_after.MOTOR_TORQUE.say(CURVES)  # a fifth of 60 mN·m/√2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("low", "high"), [(0.2, 5.6), (-50.0, 50.0), (60.0, 330.0), (7.0, 420.0)])
 def test_a_scale_of_torque_or_speed_has_ticks_to_read_it_by(low: float, high: float) -> None:
     """Torques of a campaign under small loads lie between two decades."""

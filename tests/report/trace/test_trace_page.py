@@ -38,6 +38,7 @@ def pages() -> dict[str, Reader]:
     return {name: read(bare(make())) for name, make in made_up.ALL.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("status", made_up.ALL)
 def test_the_page_holds_together(pages: dict[str, Reader], status: str) -> None:
     found = pages[status]
@@ -176,6 +177,7 @@ def test_beside_each_parameter_of_an_effect_stands_what_it_is(pages: dict[str, R
     assert "lag time constant by which the kinematic error follows the torque 4.30 ± 0.20 ms" in words
 
 
+@pytest.mark.slow
 def test_errors_of_the_free_simulation_stand_in_a_table_of_their_own_with_their_unit() -> None:
     base = made_up.explained()
 
@@ -320,6 +322,7 @@ def test_what_stands_only_where_the_motor_turns_back_is_told_beside_the_whole_mo
     assert not any("turns back" in f"{c.ratio}{c.how}" for c in quiet)
 
 
+@pytest.mark.slow
 def test_the_header_says_how_many_of_how_many_runs_were_read_and_names_the_others() -> None:
     whole = replace(bare(made_up.explained()), read=7)
     assert "Trace of 7 runs, simulated" in read(whole).words

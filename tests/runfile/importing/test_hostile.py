@@ -53,6 +53,7 @@ def test_a_file_under_another_suffix_is_recognised(foreign: Foreign, name: str, 
     assert f"expected the suffix {Path(name).suffix}" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in WRITERS if n != "run.csv"])
 @pytest.mark.parametrize("share", [0.03, 0.3, 0.6, 0.95, 0.999])
 def test_a_file_cut_short(
@@ -66,6 +67,7 @@ def test_a_file_cut_short(
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIRST)
 @pytest.mark.parametrize("seed", range(8))
 def test_flipped_bytes_end_in_a_run_or_a_sentence(foreign: Foreign, name: str, seed: int) -> None:
@@ -120,6 +122,7 @@ def test_decimal_commas_that_were_not_declared(foreign: Foreign) -> None:
     assert "column 'time' is not numbers: row 1 holds '5000,0'; set [csv] decimal = \",\"" in said
 
 
+@pytest.mark.slow
 def test_a_row_with_a_cell_too_few(foreign: Foreign) -> None:
     path = foreign.file()
     lines = path.read_text().splitlines()
@@ -134,6 +137,7 @@ def test_a_csv_cut_within_its_last_number_is_noted(foreign: Foreign) -> None:
     assert any("the last line has no line end" in note for note in foreign.imported(path).manifest["notes"])
 
 
+@pytest.mark.slow
 def test_a_header_of_many_megabytes(foreign: Foreign) -> None:
     said = foreign.refused(foreign.bytes(b"a" * (3 << 20) + b"\n1\n2\n"))
     assert said == "run.csv: line 1 is longer than 1048576 characters; expected a table"
@@ -196,6 +200,7 @@ def test_a_channel_name_that_stands_in_two_groups(foreign: Foreign) -> None:
     assert foreign.imported(path, mapping).rows == 400
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "package"), [("run.h5", "h5py"), ("run.mf4", "asammdf"), ("run.tdms", "nptdms")])
 def test_an_optional_package_that_is_absent(
     foreign: Foreign, name: str, package: str, monkeypatch: pytest.MonkeyPatch
