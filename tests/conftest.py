@@ -38,7 +38,6 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     it, would be made once for each."""
     together = getattr(session.config.option, "loadgroup", False)
     grouped = [item.nodeid for item in session.items if item.get_closest_marker("xdist_group")]
-    if together and not all("@" in name for name in grouped):
-        raise pytest.UsageError(
-            f"{grouped[0]}: pytest-xdist does not see its group, expected an id that ends in @group"
-        )
+    apart = [name for name in grouped if "@" not in name]
+    if together and apart:
+        raise pytest.UsageError(f"{apart[0]}: pytest-xdist does not see its group, expected an id that ends in @group")

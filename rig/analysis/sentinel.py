@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
+from rig.analysis.intervals import Z95
 from rig.analysis.result import Array, Estimate
 
 WATCHED = ("mean_speed", "mean_motor_torque", "kinematic_error_peak_to_peak", "fourier_amplitude_2")
 """The figures that are compared, by their machine names."""
-Z95 = 1.959964  # standard errors in half an interval
 ONCE_IN = 20  # campaigns of an unchanged rig, at most, one is said to have changed
 
 

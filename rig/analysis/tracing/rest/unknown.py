@@ -24,7 +24,6 @@ WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
 LEAST_WAY = 0.1  # of the rows, forth and back each: with fewer, single runs are all there is of one of them
-SPEED_ALONE = list(INDICES).index("speed")
 WITH_TIME = ("time", "temperature")
 
 
@@ -64,7 +63,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
     if channel == "A":
         out = _told_by_the_way(out, alone)
     if channel == "M" and _goes_both_ways(r):
-        out = [replace(found, coordinate="direction") if found is alone[SPEED_ALONE] else found for found in out]
+        out = [replace(h, coordinate="direction") if h.coordinate == "speed" and h in alone else h for h in out]
     if not np.isfinite(r.at["temperature"]).any():
         out = [found for found in out if found.coordinate != "temperature"]
     return [replace(found, own_zeros=r.own_zeros) for found in sorted(out, key=lambda found: -found.share)]

@@ -18,7 +18,19 @@ from rig.model.memory import follower, play
 from rig.model.waves import wave
 
 
-class Creep(Effect):
+class Nameless(Effect):
+    """A law that is never named: of one shape unless it says otherwise, and without figures."""
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
+class Creep(Nameless):
     """A part of the wind-up that comes late: φ gains Σ c_i·(T through a first-order lag of T_i)      [findley1976]
 
     A loop in torque against wind-up as hysteresis makes it, but one that closes when it is gone round slowly.
@@ -45,12 +57,8 @@ class Creep(Effect):
         late = [torque[0] + follower(torque - torque[0], 1 - k, 0.0, k, 0.0) for k in keep]
         return {Port.WIND_UP: np.stack(late, 1)}
 
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
 
-
-class Droop(Effect):
+class Droop(Nameless):
     """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
 
     Under a steady load it is what friction would be that grows with the square of it, but it gives as it takes.
@@ -60,21 +68,13 @@ class Droop(Effect):
     in_short: ClassVar[str] = "the torque constant falls with the current"
     source: ClassVar[str] = "krause2013"
 
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One."""
-        return ((),)
-
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
         torque = np.nan_to_num(signals.tau_m)
         return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
 
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
 
-
-class CouplingPlay(Effect):
+class CouplingPlay(Nameless):
     """The load encoder's coupling has play: its reading stays behind by half of it, whichever way it is turned, and
     whatever the torque      [nordin2002]
 
@@ -86,10 +86,6 @@ class CouplingPlay(Effect):
     source: ClassVar[str] = "nordin2002"
     HALF: Final = 2e-5  # rad: gone through within a row of the slow run, so its size tells nothing but the height
 
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One."""
-        return ((),)
-
     def has_state(self) -> bool:
         """It stays behind."""
         return True
@@ -99,16 +95,12 @@ class CouplingPlay(Effect):
         angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
         return {Port.READS_THETA_L: ((play(angle, self.HALF) - angle) / self.HALF)[:, None]}
 
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
-
     def plausible(self, fit: Fit) -> bool:
         """It stays behind."""
         return bool(fit.coefficients[0] > 0)
 
 
-class EvenSpring(Effect):
+class EvenSpring(Nameless):
     """A spring harder one way than the other: φ loses c·T²      [tuttle1992]
 
     In a lock test the motor's angle goes with the torque, and any stiffness that changes with that angle does the same.
@@ -118,20 +110,12 @@ class EvenSpring(Effect):
     in_short: ClassVar[str] = "the spring is harder one way than the other"
     source: ClassVar[str] = "tuttle1992"
 
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One."""
-        return ((),)
-
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         return {Port.WIND_UP: -(np.nan_to_num(signals.torque) ** 2)[:, None]}
 
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
 
-
-class SensorLoop(Effect):
+class SensorLoop(Nameless):
     """The torque sensor's own hysteresis: it reads Σ c_i·P_{r_i}[T] too much, play operators of the torque [kuhnen2003]
 
     In a lock test it is a loop in the spring; where the output is free the torque it makes up accelerates no load and
@@ -157,12 +141,8 @@ class SensorLoop(Effect):
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
         return {Port.READS_TAU_L: np.stack([torque - play(torque, width) for width in self.WIDTHS], 1)}
 
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
 
-
-class SensorWaves(Effect):
+class SensorWaves(Nameless):
     """The torque sensor feels the wave generator: it reads waves of the motor's angle too much      [taghirad1999]
 
     The motor's torque has an Nth of them left over, as if it cogged; the load's inertia knows of none.
@@ -180,10 +160,6 @@ class SensorWaves(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order in the reading."""
         return {Port.READS_TAU_L: np.concatenate([wave(k * signals.theta_m) for k in self.ORDERS], 1)}
-
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
-        return ()
 
 
 @dataclass(frozen=True)
