@@ -33,11 +33,14 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(8)
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_node_collection_finished(node, ids: list[str]) -> None:
     """Refuses to go on where tests of one group would be spread over the workers: what their modules make, minutes of
-    it, would be made once for each."""
-    together = getattr(session.config.option, "loadgroup", False)
-    grouped = [item.nodeid for item in session.items if item.get_closest_marker("xdist_group")]
-    apart = [name for name in grouped if "@" not in name]
-    if together and apart:
-        raise pytest.UsageError(f"{apart[0]}: pytest-xdist does not see its group, expected an id that ends in @group")
+    it, would be made once for each. The ids of tests that pytest-xdist keeps together end in @ and their group.
+    """
+    if node.config.option.dist != "loadgroup" or any("@" in name for name in ids):
+        return
+    files = {node.config.rootpath / name.split("::")[0] for name in ids}
+    marked = sorted(path for path in files if "xdist_group" in path.read_text(encoding="utf-8"))
+    if marked:
+        raise pytest.UsageError(f"pytest-xdist sees no group in {marked[0]}: expected ids that end in @group")

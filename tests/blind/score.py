@@ -1,4 +1,4 @@
-"""Trace every case of a suite and mark it: `python -m tests.blind.score DIR`.
+"""Trace every case of one or more suites and mark it: `python -m tests.blind.score DIR…`.
 
 Runs `hdrig trace DIR/case-001 --json DIR/traces/case-001.json` for every case that has no trace yet, after a check that
 truth and campaigns are still those of HASHES; prints the table, and writes it where --table says.
@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -91,6 +92,13 @@ def marks(suite: Path) -> list[Mark]:
     return out
 
 
+def marks_of_all(suites: list[Path]) -> list[Mark]:
+    """Every case of several suites; a case has its suite's name before its own where there is more than one."""
+    if len(suites) == 1:
+        return marks(suites[0])
+    return [replace(one, case=f"{suite.name}/{one.case}") for suite in suites for one in marks(suite)]
+
+
 def head_commit() -> str:
     """Commit of the tree this file lies in, in short."""
     asked = ["git", "-C", str(Path(__file__).parent), "rev-parse", "--short", "HEAD"]
@@ -101,17 +109,19 @@ def head_commit() -> str:
 def main(arguments: list[str]) -> int:
     """Exit code 0 when every case was marked, 2 with a sentence when the suite cannot be trusted."""
     parser = argparse.ArgumentParser(prog="tests.blind.score", description=__doc__)
-    parser.add_argument("suite", type=Path)
+    parser.add_argument("suites", type=Path, nargs="+", metavar="suite", help="several make one table")
     parser.add_argument("--table", type=Path, help="also write the table to this file")
     parser.add_argument("--commit", default="", help="commit that was traced, where it is not this tree's")
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a trace may take")
     parser.add_argument("--jobs", type=int, default=1, help="traces at a time")
     options = parser.parse_args(arguments)
     try:
-        check_hashes(options.suite)
-        trace_all(options.suite, options.limit, options.jobs)
+        for suite in options.suites:
+            check_hashes(suite)
+        for suite in options.suites:
+            trace_all(suite, options.limit, options.jobs)
         today = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"
-        page = markdown(marks(options.suite), f"{today}, commit {options.commit or head_commit()}")
+        page = markdown(marks_of_all(options.suites), f"{today}, commit {options.commit or head_commit()}")
     except (Tampered, FileNotFoundError) as refusal:
         print(refusal, file=sys.stderr)
         return 2

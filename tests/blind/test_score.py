@@ -13,7 +13,7 @@ from tests.blind.folder import digest
 from tests.blind.generate import main as generate
 from tests.blind.intervals import Rate
 from tests.blind.marks import Mark, mark, worst_ratio
-from tests.blind.score import Tampered, check_hashes, read_answer
+from tests.blind.score import Tampered, check_hashes, marks_of_all, read_answer
 from tests.blind.table import confusion, is_miss, markdown, rows
 
 
@@ -156,3 +156,13 @@ def test_an_unknown_effect_is_refused_with_the_names_there_are(
     code = generate(["--effect", "stiction", "--seed", "1", "--out", str(tmp_path / "suite")])
     assert code == 2
     assert "no effect called 'stiction': there are angle_dependent_stiffness" in capsys.readouterr().err
+
+
+def test_cases_of_several_suites_keep_their_suites_name(tmp_path: Path) -> None:
+    for suite in ("first", "second"):
+        (tmp_path / suite / "truth").mkdir(parents=True)
+        text = json.dumps(truth("clean"))
+        (tmp_path / suite / "truth" / "case-001.json").write_text(text, encoding="utf-8")
+    both = marks_of_all([tmp_path / "first", tmp_path / "second"])
+    assert [one.case for one in both] == ["first/case-001", "second/case-001"]
+    assert [one.case for one in marks_of_all([tmp_path / "first"])] == ["case-001"]
