@@ -63,3 +63,11 @@ def test_a_folder_of_campaigns_is_told_from_a_campaign(tmp_path: Path) -> None:
     (run / "manifest.json").write_text("{}")
     with pytest.raises(UsageError, match=r"holds no run.*campaign-a in it does"):
         campaign.read_campaign(tmp_path)
+
+
+def test_runs_laid_by_the_day_are_one_campaign(tmp_path: Path) -> None:
+    runs = [tmp_path / "2026-11-20" / "run-1", tmp_path / "2026-11-21" / "run-2"]
+    for run in runs:
+        run.mkdir(parents=True)
+        (run / "manifest.json").write_text("{}")
+    assert campaign.folders_of_runs(tmp_path) == runs

@@ -20,6 +20,7 @@ from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
 SAMPLES = ("samples.*", "journal-*.arrows")
+DAY = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]"  # a folder of the runs of one day
 LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
 """Channels that something stands in for where they were not measured, in words."""
 
@@ -36,12 +37,14 @@ class Campaign:
 
 
 def folders_of_runs(folder: Path) -> list[Path]:
-    """Those directly in `folder`. Raises UsageError when there are none."""
+    """Those directly in `folder`, or in the days it holds, as `hdrig import` lays them. Raises UsageError without any."""
     if not folder.is_dir():
         raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
     places = sorted(path.parent for path in folder.glob("*/manifest.json"))
     if not places and (folder / "manifest.json").is_file():
         raise UsageError(f"{folder} is a run: expected a campaign, the folder of runs it lies in")
+    if not places:
+        places = sorted(path.parent for path in folder.glob(f"{DAY}/*/manifest.json"))
     if not places:
         deeper = sorted({path.parent.parent.name for path in folder.glob("*/*/manifest.json")})
         hint = f"; {deeper[-1]} in it does" if deeper else ""
