@@ -37,7 +37,7 @@ class Campaign:
 
 
 def folders_of_runs(folder: Path) -> list[Path]:
-    """Those directly in `folder`, or in the days it holds, as `hdrig import` lays them. Raises UsageError without any."""
+    """Those directly in `folder`, or in its days, as `hdrig import` lays them. Raises UsageError without any."""
     if not folder.is_dir():
         raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
     places = sorted(path.parent for path in folder.glob("*/manifest.json"))
