@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
+import numpy as np
+
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.gloss import waved
 from rig.model.waves import wave
 
+TOGETHER = 0.0  # of the first shape parameter: orders 1, 2 and 4 at once, as a wave generator with two lobes has them
 MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
 REACTION: Final = {MOTOR: Port.MOTOR_TORQUE, OUTPUT: Port.LOAD_TORQUE}
 
 
 class AngleDependentStiffness(Effect):
-    """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4: the wind-up gains T·κ/K·cos …, the motor is resisted by ½·φ²·dK/dθ_m
+    """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4, each alone or all together: the wind-up gains T·κ/K·cos …, the motor
+    is resisted by ½·φ²·dK/dθ_m.
 
     That reaction, −½·T²·d(1/K)/dθ_m, is 0.01 N·m with κ = 5 % at 40 N·m. Where the angle at which the stiffness changes
     is not that of the spring's own energy it is absent: the data choose.
@@ -33,26 +37,39 @@ class AngleDependentStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
+    LOBES: Final = (1.0, 2.0, 4.0)
     OF_OUTPUT: Final = (1.0, 2.0)
     TURNS: Final = 0.5  # of the output, least travel: an order 1 has shown both its ends then
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the wave generator, and of the output where it turns far enough."""
-        of_motor = [(k, reaction, MOTOR) for k in self.ORDERS for reaction in (1.0, 0.0)]
+        of_motor = [(k, reaction, MOTOR) for k in (*self.ORDERS, TOGETHER) for reaction in (1.0, 0.0)]
         orders = self.OF_OUTPUT if reach.load_turns >= self.TURNS else ()
         return (*of_motor, *((k, reaction, OUTPUT) for k in orders for reaction in (1.0, 0.0)))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """T times cosine and sine, and what they do to the shaft whose angle it is."""
-        k, reaction, side = shape
-        x, torque = k * (signals.theta_m if side == MOTOR else signals.theta_l), signals.torque[:, None]
-        waves, back = wave(x), reaction * k / 2 * torque**2
-        return {
-            Port.WIND_UP: waves * torque,
-            REACTION[side]: waves[:, ::-1] * (1.0, -1.0) * back,
-        }
+        """T times cosine and sine of each order, and what they do to the shaft whose angle it is."""
+        _, reaction, side = shape
+        angle, torque = signals.theta_m if side == MOTOR else signals.theta_l, signals.torque[:, None]
+        orders = self._orders(shape)
+        waves = [wave(k * angle) for k in orders]
+        back = [(reaction * k / 2) * w[:, ::-1] * (1.0, -1.0) for k, w in zip(orders, waves, strict=True)]
+        return {Port.WIND_UP: np.hstack(waves) * torque, REACTION[side]: np.hstack(back) * torque**2}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Relative amplitude of the compliance, and phase."""
+        """Relative amplitude of the compliance, and phase, of each order, the largest first."""
         of = "" if fit.shape[2] == MOTOR else "_of_output"
-        return harmonic(fit, f"kappa_order_{fit.shape[0]:g}{of}", "1", scale=fit.known.K)
+        each = [
+            harmonic(fit, f"kappa_order_{k:g}{of}", "1", first=2 * i, scale=fit.known.K)
+            for i, k in enumerate(self._orders(fit.shape))
+        ]
+        return tuple(
+            p for amplitude_and_phase in sorted(each, key=_amplitude, reverse=True) for p in amplitude_and_phase
+        )
+
+    def _orders(self, shape: Shape) -> tuple[float, ...]:
+        return self.LOBES if shape[0] == TOGETHER else (shape[0],)
+
+
+def _amplitude(amplitude_and_phase: tuple[Parameter, Parameter]) -> float:
+    return amplitude_and_phase[0].value
