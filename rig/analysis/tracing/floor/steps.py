@@ -28,6 +28,7 @@ SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth o
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
 EDGE = 3  # rows over which the low-pass spreads a step
+MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,9 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     rows: dict[int, tuple[int, ...]] = {}
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
-        found = _jumps(e[key], onward[key], STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        anywhere = onward[key] | (_for_good(e[key], usual) if len(sure) >= MANY else False)
+        again = (e[key], anywhere, STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        found = _jumps(*again) or _jumps(*again, window=FAR)  # over longer means wander counts less
         found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
         if found and _lasts(eq, e, key, found):
             rows[key[0]] = tuple(at for at, _ in found)
@@ -98,7 +101,7 @@ def _of_the_torque(eq: Equations, e: Mapping[Key, Array], key: Key, row: int, si
     if compliance <= 0 or other not in e:
         return False
     at = int(np.searchsorted(clock(eq, other), clock(eq, key)[row]))
-    before, after = e[other][max(0, at - EDGE - WINDOW) : max(0, at - EDGE)], e[other][at + EDGE : at + EDGE + WINDOW]
+    before, after = e[other][max(0, at - EDGE - FAR) : max(0, at - EDGE)], e[other][at + EDGE : at + EDGE + FAR]
     if min(before.size, after.size) < WINDOW // 2:
         return False
     return abs(float(after.mean() - before.mean())) * compliance > IN_THE_TORQUE * abs(size)
@@ -144,6 +147,15 @@ def _onward(eq: Equations, key: Key) -> Array:
     return np.asarray((turned[first] == turned[last]) & _at_one_speed(theta, t, reach))
 
 
+def _for_good(e: Array, size: float) -> Array:
+    """True for rows between which and the end of the run all is on average `size` [rad] off what was before, (n,). What
+    goes over to another branch at a reversal comes back at the next."""
+    n = np.arange(1, e.size + 1)
+    total = np.cumsum(e)
+    off = np.abs((total[-1] - total) / np.maximum(e.size - n, 1) - total / n)
+    return np.asarray((off > 0.65 * size) & (off < 1.35 * size))
+
+
 def _at_one_speed(theta: Array, t: Array, reach: int) -> Array:
     """Rows (n,) around which the mean speed is the same in half windows as far as one and a half times `reach` rows."""
     rows = np.arange(t.size)
@@ -171,17 +183,19 @@ def _filled(way: Array) -> Array:
     return np.asarray(way[at])
 
 
-def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) -> list[tuple[int, float]]:
-    """Row and size of every jump: the means of the windows on both sides differ, nearly all of it at once and for good.
+def _jumps(
+    e: Array, onward: Array, least: float, between: tuple[float, float], window: int = WINDOW
+) -> list[tuple[int, float]]:
+    """Row and size of every jump: means of `window` rows on both sides differ, nearly all of it at once and for good.
 
     `least` in usual differences of such windows, size `between` two bounds [rad]; only where the motor goes `onward`.
     """
-    if e.size < 6 * WINDOW:
+    if e.size < 6 * window:
         return []
     total = np.concatenate([[0.0], np.cumsum(e)])
-    at = np.arange(WINDOW + EDGE, e.size - WINDOW - EDGE)
-    after = (total[at + EDGE + WINDOW] - total[at + EDGE]) / WINDOW
-    before = (total[at - EDGE] - total[at - EDGE - WINDOW]) / WINDOW
+    at = np.arange(window + EDGE, e.size - window - EDGE)
+    after = (total[at + EDGE + window] - total[at + EDGE]) / window
+    before = (total[at - EDGE] - total[at - EDGE - window]) / window
     jump = after - before
     usual = float(np.median(np.abs(jump))) / 0.6745
     out: list[tuple[int, float]] = []
@@ -194,7 +208,7 @@ def _jumps(e: Array, onward: Array, least: float, between: tuple[float, float]) 
         stays = (_mean(total, row + WINDOW, row + FAR) - _mean(total, row - FAR, row - WINDOW)) / jump[top] > 0.5
         if sharp and stays and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
             out.append((row, float(jump[top])))
-        strength[max(0, top - WINDOW) : top + WINDOW] = 0.0
+        strength[max(0, top - window) : top + window] = 0.0
     return out
 
 
