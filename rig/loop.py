@@ -126,26 +126,17 @@ class Loop:
             late(lateness if lateness > 0.0 else 0.0)
             skipped = 0
             if lateness > period:
-                skipped = int(lateness / period)
+                skipped = self._skipped(now, lateness, period)
                 k += skipped
-                self.timing.skip(skipped)
-                self.away = (now, lateness)
             sample = read(now)
             if skipped:
                 sample = sample._replace(flags=sample.flags | Flag.MISSED)
             trip = check(sample, asked)
             if trip is not None:
-                self.instruments.cut()
-                trip = self._explained(trip, sample, asked, now)
-                self.tripped(trip.sentence)
-                self.instruments.safe()
-                self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
-                return Ending("tripped", trip.sentence, Exit.TRIPPED)
+                return self._tripped(trip, sample, asked, now)
             ends = interrupts.count
             if ends > 1:
-                self.instruments.safe()  # before any word about it is written down
-                self._last_row(sample, asked)
-                return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
+                return self._halted(sample, asked)
             if ends or interrupts.held:
                 steps = self._course(steps, procedure, setting)
             try:
@@ -155,17 +146,41 @@ class Loop:
                 self._last_row(sample, asked)  # the sample it refused on is part of the run
                 raise
             except StopIteration as end:
-                self.instruments.safe()
-                self._last_row(sample, asked)
-                if self.supervisor.state is State.STOPPING:
-                    why = f"stopped {self.interrupts.who}: brought to rest, torque off"
-                    return Ending("stopped", why, Exit.STOPPED)
-                return Ending("completed", "the procedure came to its end", Exit.PASS, end.value)
+                return self._ended(sample, asked, end.value)
             put(sample, asked[0], write(allowed(asked)), asked.theta_ref)
             self.rows += 1
             if k % WATCH_TICKS == 0:
                 self.sink.check()
                 self.watch(sample)
+
+    def _skipped(self, now: float, lateness: float, period: float) -> int:
+        """How many ticks this program was away for."""
+        skipped = int(lateness / period)
+        self.timing.skip(skipped)
+        self.away = (now, lateness)
+        return skipped
+
+    def _tripped(self, trip: Trip, sample: Sample, asked: Setpoint, now: float) -> Ending:
+        self.instruments.cut()  # before any word about it is made
+        trip = self._explained(trip, sample, asked, now)
+        self.tripped(trip.sentence)
+        self.instruments.safe()
+        self._last_row(sample._replace(flags=sample.flags | Flag.TRIPPED), asked)
+        return Ending("tripped", trip.sentence, Exit.TRIPPED)
+
+    def _halted(self, sample: Sample, asked: Setpoint) -> Ending:
+        self.instruments.safe()  # before any word about it is written down
+        self._last_row(sample, asked)
+        return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
+
+    def _ended(self, sample: Sample, asked: Setpoint, finding: Any) -> Ending:
+        """The procedure is through, or the motor was brought to rest as the operator asked."""
+        self.instruments.safe()
+        self._last_row(sample, asked)
+        if self.supervisor.state is State.STOPPING:
+            why = f"stopped {self.interrupts.who}: brought to rest, torque off"
+            return Ending("stopped", why, Exit.STOPPED)
+        return Ending("completed", "the procedure came to its end", Exit.PASS, finding)
 
     def _course(self, steps: Steps, procedure: Procedure, setting: Setting) -> Steps:
         """What is stepped on with: something else once the operator has asked for a hold or a stop."""

@@ -64,8 +64,8 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     rows: dict[int, tuple[int, ...]] = {}
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
-        anywhere = onward[key] | (_for_good(e[key], usual) if len(sure) >= MANY else False)
-        again = (e[key], anywhere, STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        where = onward[key] if len(sure) < MANY else onward[key] | _for_good(e[key], usual)
+        again = (e[key], where, STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
         found = _jumps(*again) or _jumps(*again, window=FAR)  # over longer means wander counts less
         found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
         if found and _lasts(eq, e, key, found):
