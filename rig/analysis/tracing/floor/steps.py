@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.local import clock
@@ -15,6 +16,8 @@ from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
 from rig.model.effects.missed_counts import LOAD, MOTOR
+
+Mask = npt.NDArray[np.bool_]
 
 LOST = EACH_RUN["missed_counts"]
 WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
@@ -132,7 +135,7 @@ def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]
     return dict(eq.term(run, Term(LOST, (side, 0.5 * (t[row] + t[max(row - 1, 0)])))))
 
 
-def _onward(eq: Equations, key: Key) -> Array:
+def _onward(eq: Equations, key: Key) -> Mask:
     """True for rows with a window on both sides in which the motor neither turned back nor rested, and goes on at one
     speed, (n,).
 
@@ -147,7 +150,7 @@ def _onward(eq: Equations, key: Key) -> Array:
     return np.asarray((turned[first] == turned[last]) & _at_one_speed(theta, t, reach))
 
 
-def _for_good(e: Array, size: float) -> Array:
+def _for_good(e: Array, size: float) -> Mask:
     """True for rows between which and the end of the run all is on average `size` [rad] off what was before, (n,). What
     goes over to another branch at a reversal comes back at the next."""
     n = np.arange(1, e.size + 1)
@@ -156,7 +159,7 @@ def _for_good(e: Array, size: float) -> Array:
     return np.asarray((off > 0.65 * size) & (off < 1.35 * size))
 
 
-def _at_one_speed(theta: Array, t: Array, reach: int) -> Array:
+def _at_one_speed(theta: Array, t: Array, reach: int) -> Mask:
     """Rows (n,) around which the mean speed is the same in half windows as far as one and a half times `reach` rows."""
     rows = np.arange(t.size)
     edges = [np.clip(rows + share * reach // 2, 0, t.size - 1) for share in range(-3, 4)]
@@ -184,7 +187,7 @@ def _filled(way: Array) -> Array:
 
 
 def _jumps(
-    e: Array, onward: Array, least: float, between: tuple[float, float], window: int = WINDOW
+    e: Array, onward: Mask, least: float, between: tuple[float, float], window: int = WINDOW
 ) -> list[tuple[int, float]]:
     """Row and size of every jump: means of `window` rows on both sides differ, nearly all of it at once and for good.
 
