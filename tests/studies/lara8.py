@@ -95,7 +95,9 @@ def imported(folder: Path) -> Path:
     mapping = folder / "mapping.toml"
     mapping.write_text(MAPPING.read_text() + MOTOR_TORQUE)
     with contextlib.redirect_stdout(io.StringIO()):
-        main(["import", str(SOURCE), "--map", str(mapping), "--out", str(folder / "raw")])
+        code = main(["import", str(SOURCE), "--map", str(mapping), "--out", str(folder / "raw")])
+    if code:
+        raise SystemExit(f"{SOURCE} was not imported; HDRIG_SHARED names the folder that holds data/lara8")
     run = next((folder / "raw").glob("*/*"))
     target = folder / "campaign" / "validate"
     shutil.copytree(run, target)
