@@ -68,20 +68,23 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
-    """Without names whose size may as well be zero, unless something is left to explain without them."""
+    """Without names whose size may as well be zero, unless something is left to explain without them. Of two that
+    stand in for each other either may be the one that can go: the one that does less is tried first."""
     insignificant = [
         score for score in selected.scores if (words := selected.words.get(score.name)) and words[0].holds_zero
     ]
-    if not insignificant:
-        return selected
-    least = min(insignificant, key=lambda score: score.work).name
+    for least in sorted(insignificant, key=lambda score: score.work):
+        fewer = _without(selected, least.name, runs, covered)
+        if not fewer.loud and len(fewer.scores) == len(selected.scores) - 1:
+            return _without_insignificant(fewer, runs, covered)
+    return selected
+
+
+def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach) -> Selected:
     s = selected.solution
-    gone = [i for i, term in enumerate(s.design.terms) if term.name == least]
+    gone = [i for i, term in enumerate(s.design.terms) if term.name == name]
     s, held, scores = backward_elimination(polished(fit(reduced(s.design, gone)), runs, covered), selected.p.held_out)
-    other = Selected(selected.p, s, held, scores, _in_words(s, runs, covariance))
-    if other.loud or len(scores) < len(selected.scores) - 1:
-        return selected
-    return _without_insignificant(other, runs, covered)
+    return Selected(selected.p, s, held, scores, _in_words(s, runs, covariance))
 
 
 def is_certain(selected: Selected) -> bool:
