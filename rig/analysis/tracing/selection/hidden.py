@@ -13,6 +13,7 @@ from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
@@ -31,7 +32,7 @@ from rig.model.effect import Array
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:
     """What unseen runs leave is no more than their floor, but there is something all the same; None where not. What
     foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
-    return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after)
+    return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after) or _in_a_burst(p, s)
 
 
 def _in_the_floor(
@@ -86,6 +87,34 @@ def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
         coordinate = where[0].coordinate
         what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
     sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
+    verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
+    return Conclusion(verdict, None, (coordinate,), along(coordinate))
+
+
+def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
+    """Seconds of a fitted run that stand out against the rest of it; None where none do. They have raised the floor."""
+    e = {key: s.residual(key) for key in s.keys}
+    found = loudest_burst(p.eq, e)
+    if found is None:
+        return None
+    run, channel = p.eq.runs[found.key[0]], CHANNEL[found.key[1]].name
+    others = [
+        key[0] for key in e if key[1] == found.key[1] and whole_run(p.eq.runs[key[0]].name) != whole_run(run.name)
+    ]
+    twins = [i for i in others if alike(p.eq.runs[i], run)]
+    quiet = [i for i in twins if burst(p.eq, (i, found.key[1]), e[i, found.key[1]]) is None]
+    if quiet:
+        coordinate, what = "time", f"{p.eq.runs[quiet[0]].name}, taken alike, does not: something happened there"
+    else:
+        levels = usual_levels(p.eq, {key: x for key, x in e.items() if key[1] == found.key[1]})
+        where = home(p.eq, {key: e[key] for key in levels}, levels)
+        coordinate = where[0].coordinate if where else "time"
+        what = f"it lives in {coordinate.replace('_', ' ')}"
+    sentence = (
+        f"Between {found.since:.1f} and {found.until:.1f} s {run.name} stands out in {channel}, which makes all of it "
+        f"{found.over:.1f} times its usual half second; {what}. It is in the floor, and no effect of the library "
+        "explains it."
+    )
     verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
     return Conclusion(verdict, None, (coordinate,), along(coordinate))
 

@@ -1,0 +1,68 @@
+"""Seconds of a run that stand out against the rest of the same run: something that grabs, a dent that is passed.
+
+It raises what repeats, or neighbouring turns, differ by, and with them the floor it is held against; the usual half
+second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.3 times the usual
+one, and no run more than 1.2 times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.thresholds import BURST, BURST_RUN
+from rig.model.effect import Array
+
+LENGTH: Final = 0.5  # s
+FEWEST: Final = 12  # half seconds in a run: of fewer the usual one is not known
+
+
+@dataclass(frozen=True)
+class Burst:
+    """The loudest of a run and channel: between which times [s], RMS of the run over the usual half second's."""
+
+    key: Key
+    since: float
+    until: float
+    over: float
+
+
+def loudest_burst(eq: Equations, e: Mapping[Key, Array]) -> Burst | None:
+    """Of all residuals (n,) by run and channel, reversals left out; None where nothing stands out."""
+    found = (burst(eq, key, e[key]) for key in e if key[1] != "R")
+    return max((b for b in found if b is not None), key=lambda b: b.over, default=None)
+
+
+def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
+    """From the first to the last half second that stands out; None where none does, or the run is too short."""
+    t, levels = half_seconds(eq, key, e)
+    if levels.size < FEWEST:
+        return None
+    usual = float(np.median(levels))
+    over = float(np.sqrt(np.mean(e**2))) / max(usual, 1e-300)
+    loud = np.flatnonzero(levels > BURST * usual)
+    if over < BURST_RUN or not loud.size:
+        return None
+    return Burst(key, float(t[loud[0]]), float(t[loud[-1]]) + LENGTH, over)
+
+
+def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array]:
+    """When each begins, since the run did [s], and RMS of `e` (n,) in it."""
+    t = clock(eq, key)
+    if t.size == 0:
+        return t, t
+    place = np.floor((t - t[0]) / LENGTH).astype(int)
+    count = np.bincount(place)
+    full = count > 0.5 * np.median(count[count > 0])
+    square = np.bincount(place, e**2)
+    return np.asarray(LENGTH * np.flatnonzero(full)), np.asarray(np.sqrt(square[full] / count[full]))
+
+
+def usual_levels(eq: Equations, e: Mapping[Key, Array]) -> dict[Key, float]:
+    """RMS of the usual half second of every run and channel."""
+    return {key: max(float(np.median(half_seconds(eq, key, x)[1])), 1e-300) for key, x in e.items() if x.size}
