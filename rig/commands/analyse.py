@@ -21,7 +21,7 @@ from rig.commands.traceback_file import keep
 from rig.core.errors import DataError, Exit
 
 if TYPE_CHECKING:
-    from rig.analysis.result import Result
+    from rig.analysis.findings.result import Result
     from rig.runfile.run import Run
 
 PAGE = "rig.report.page"
@@ -82,7 +82,7 @@ def limits_for(folder: Path, limits: Mapping[str, Any]) -> Mapping[str, Any]:
     error it does not measure, a run for one that lacks it is."""
     if not limits:
         return limits
-    from rig.analysis.figure_names import is_run_for
+    from rig.analysis.findings.figure_names import is_run_for
     from rig.runfile.manifest import read
 
     procedure = str(read(folder).get("procedure", ""))
@@ -181,7 +181,7 @@ def exit_of(result: Result) -> Exit:
 
 def print_result(result: Result, target: Path, folder: Path, simulated: bool) -> None:
     """Verdict, figures with unit and interval, and where the report is, on stdout."""
-    from rig.analysis.latch_skew_words import bench_lines
+    from rig.analysis.sensors.latch_skew_words import bench_lines
     from rig.report.history import told
     from rig.report.numbers import estimate
 

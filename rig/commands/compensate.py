@@ -21,7 +21,7 @@ from rig.runfile.manifest import told, utc_now, write_atomic
 from rig.session import Session
 
 if TYPE_CHECKING:
-    from rig.analysis.align import Alignment
+    from rig.analysis.orders.align import Alignment
     from rig.closing.compensate import Compared
     from rig.model.gearfile import GearFile
 

@@ -16,10 +16,10 @@ from rig.core.errors import DataError, Exit, UsageError
 from rig.core.units import ARCMIN, ARCSEC, DEG, RPM
 
 if TYPE_CHECKING:
+    from rig.analysis.findings.result import Result
     from rig.analysis.identify.identified import Identified
     from rig.analysis.identify.predictions import Prediction
     from rig.analysis.identify.recording import Recording
-    from rig.analysis.result import Result
     from rig.model.gearfile import Covered, GearFile, MeasuredSeries, Parameter
     from rig.runfile.run import Run
 
@@ -241,7 +241,7 @@ def coasting(runs: list[Run], found: Identified) -> list[str]:
 def beside(runs: list[Run]) -> dict[str, Parameter]:
     """What lock tests and friction runs say that the model has no parameter for, each analysed as by itself."""
     from rig.analysis import analyse
-    from rig.analysis.characteristics import characteristics
+    from rig.analysis.friction.characteristics import characteristics
     from rig.commands.reference import reference_of_one_zero
 
     told = [r for r in runs if r.procedure in ("stiffness_lock", "friction")]

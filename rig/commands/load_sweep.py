@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rig.analysis.intervals import Ranged
-    from rig.analysis.load_law import LoadRun
+    from rig.analysis.across_runs.load_law import LoadRun
+    from rig.analysis.findings.intervals import Ranged
 
 
 def told(runs: Sequence[LoadRun]) -> list[str]:
     """Lines for people."""
-    from rig.analysis.load_law import down_less_up, load_law
+    from rig.analysis.across_runs.load_law import down_less_up, load_law
 
     lines = ["peak to peak of the kinematic error by load, arcsec", "     N·m      up    down"]
     for load in sorted({r.load for r in runs}, key=abs):

@@ -29,7 +29,7 @@ from rig.session.observer import Observer
 from rig.supervisor import State
 
 if TYPE_CHECKING:
-    from rig.analysis.step_response import StepResponse
+    from rig.analysis.friction.step_response import StepResponse
 
 
 def let_be(session: Session, show: Show) -> None:
@@ -121,7 +121,7 @@ def finding(procedure: Procedure, done: Done) -> str:
 
 def response_of(folder: Path) -> StepResponse:
     """Inertia and friction from a recorded step test."""
-    from rig.analysis.step_response import step_response
+    from rig.analysis.friction.step_response import step_response
     from rig.runfile.run import Run
 
     run = Run.open(folder)

@@ -48,9 +48,9 @@ def _of_another_session(run: Run) -> Run | None:
     slow = _beside(run, _one_campaign)
     if slow is None:
         return None
-    from rig.analysis.one_zero import shown_common, zero_between
-    from rig.analysis.reference import kinematic_error_reference
-    from rig.analysis.tame import Tame
+    from rig.analysis.across_runs.one_zero import shown_common, zero_between
+    from rig.analysis.kinematic_error.reference import kinematic_error_reference
+    from rig.analysis.motion.tame import Tame
 
     series = kinematic_error_reference(Tame(slow))
     if series is None:

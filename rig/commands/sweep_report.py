@@ -11,8 +11,8 @@ from rig.core.errors import DataError, Exit
 from rig.runfile.manifest import told
 
 if TYPE_CHECKING:
-    from rig.analysis.assembly_band import AssemblyRun, Cell
-    from rig.analysis.result import Result
+    from rig.analysis.across_runs.assembly_band import AssemblyRun, Cell
+    from rig.analysis.findings.result import Result
 
 FIGURE = "kinematic_error_peak_to_peak"
 KEPT = ("gear", "backend", "declared", "encoders", "software", "started_utc", "schema")  # of the first run's manifest
@@ -20,8 +20,8 @@ KEPT = ("gear", "backend", "declared", "encoders", "software", "started_utc", "s
 
 def load_sweep_of(folder: Path) -> int:
     """Table and law, result.json and report.html, of the load sweep in `folder`; the exit code."""
-    from rig.analysis.load_law import LoadRun
-    from rig.analysis.sweep_result import load_sweep
+    from rig.analysis.across_runs.load_law import LoadRun
+    from rig.analysis.across_runs.sweep_result import load_sweep
 
     runs = runs_of(folder)
     ways = [LoadRun(r.load, r.peak_to_peak.value, down) for r, down in runs]
@@ -30,8 +30,8 @@ def load_sweep_of(folder: Path) -> int:
 
 def assembly_sweep_of(folder: Path) -> int:
     """Table by depth with the reproducibility band, result.json and report.html; the exit code."""
-    from rig.analysis.assembly_band import cells, repeat
-    from rig.analysis.sweep_result import assembly_sweep
+    from rig.analysis.across_runs.assembly_band import cells, repeat
+    from rig.analysis.across_runs.sweep_result import assembly_sweep
 
     runs = [run for run, _ in runs_of(folder)]
     lines = depth_lines(cells(runs, repeat(runs))) if runs else []
@@ -41,8 +41,8 @@ def assembly_sweep_of(folder: Path) -> int:
 def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
     """Every completed slow run of the campaign in `folder` whose peak to peak counts, and whether on the sweep's way
     down."""
-    from rig.analysis.assembly_band import AssemblyRun
-    from rig.analysis.intervals import Ranged
+    from rig.analysis.across_runs.assembly_band import AssemblyRun
+    from rig.analysis.findings.intervals import Ranged
     from rig.catalogue.figures import figures
     from rig.runfile.manifest import read
 

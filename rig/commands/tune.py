@@ -25,8 +25,8 @@ from rig.procedures.step_test import StepTest
 from rig.session import Ended, Session
 
 if TYPE_CHECKING:
-    from rig.analysis.smoothness import Smoothness
-    from rig.analysis.step_response import StepResponse
+    from rig.analysis.friction.step_response import StepResponse
+    from rig.analysis.smoothness.measure import Smoothness
     from rig.core.gains import Gains
 
 BANDWIDTHS = (60.0, 90.0, 130.0, 180.0, 250.0, 350.0)  # rad/s of the speed loop, tried from the gentlest
@@ -123,7 +123,7 @@ def _trial(session: Session, bench: Bench) -> Smoothness | str:
     """A short slow triangle with these gains; a sentence where it tells nothing of smoothness. Raises Ended when it
     was stopped or tripped: nothing enables a tripped drive again by itself.
     """
-    from rig.analysis.trial import smoothness_of
+    from rig.analysis.smoothness.trial import smoothness_of
     from rig.runfile.run import Run
 
     session.rewire(bench)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from rig.analysis.result import Verdict
+from rig.analysis.findings.result import Verdict
 
 
 class Origin(NamedTuple):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rig.commands.sweep_report import assembly_sweep_of, load_sweep_of, runs_of
-from tests.analysis.test_assembly_band import swept
+from tests.analysis.across_runs.test_assembly_band import swept
 
 pytestmark = pytest.mark.xdist_group("sweep report")  # what the module makes is made once, not for every worker
 

@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.recording import Plateau
-from rig.analysis.result import Array
-from rig.analysis.sums import harmonics
+from rig.analysis.orders.sums import harmonics
 from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]

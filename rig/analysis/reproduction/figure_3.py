@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rig.analysis.intervals import Z95
+from rig.analysis.findings.intervals import Z95
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, covers, missing
 from rig.analysis.reproduction.exhibit import Exhibit

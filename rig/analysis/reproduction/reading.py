@@ -11,16 +11,17 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.analyse import analyse
-from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.findings.result import Array, Result
+from rig.analysis.kinematic_error.measure import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.motion.strokes import Stroke, find_strokes
+from rig.analysis.motion.tame import Tame
+from rig.analysis.motion.window import measured_window, part
 from rig.analysis.reproduction.shaft import Shaft, shaft_of
 from rig.analysis.reproduction.waveform_spectrum import Spectrum, spectrum_of
 from rig.analysis.reproduction.ways import Way, ways_of
-from rig.analysis.result import Array, Result
-from rig.analysis.smoothness import sentence, smoothness
-from rig.analysis.source import Motion, Source, motion_of
-from rig.analysis.strokes import Stroke, find_strokes
-from rig.analysis.tame import Tame
-from rig.analysis.window import measured_window, part
+from rig.analysis.smoothness.measure import smoothness
+from rig.analysis.smoothness.words import sentence
 from rig.core.numbers import number
 from rig.runfile.run import Run
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import transmission_error
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
-from rig.analysis.source import Motion
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.angle import transmission_error
+from rig.analysis.motion.source import Motion
 from rig.analysis.stiffness.branches import Hold, Ramp, cut
 from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.creep import Creep, creep

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.points import Points
 from rig.analysis.stiffness.share import Share

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
 from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Status, Trace
