@@ -11,6 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rig.commands.folders import expand
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.person import Person
 from rig.commands.targets import refuse_unwritable
@@ -94,17 +95,9 @@ def _gear(args: argparse.Namespace) -> GearFile:
     if args.gear:
         found = gearfile.read(Path(args.gear))
     else:
-        from rig.analysis.identify.fit import fit
-        from rig.analysis.identify.identified import identified
-        from rig.commands.identify import made_with, open_runs
+        from rig.evaluation.identification import gear_of
 
-        runs, recordings = open_runs([args.campaign])
-        about = runs[0].manifest.get("gear") or {}
-        found = identified(fit(recordings, TERMS, say), runs[0].manifest).gear_file(
-            str(about.get("serial") or ""),
-            any(r.simulated for r in runs),
-            made_with(runs),
-        )
+        found = gear_of(expand([args.campaign]), TERMS, say)
     if not found.kinematic_error.series.a:
         raise UsageError("the gear file holds no kinematic error; identify the gear from slow runs first")
     return found

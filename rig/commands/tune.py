@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING
 
 from rig.bench import Bench, override
 from rig.commands.options import bench_arguments, open_bench
-from rig.commands.perform import response_of
-from rig.commands.targets import refuse_unwritable, writing
+from rig.commands.targets import refuse_unwritable
 from rig.config import read_bench
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.evaluation.step_test import response_of
 from rig.interrupts import Interrupts
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.step_test import StepTest
+from rig.runfile.writing import writing
 from rig.session import Ended, Session
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.analyse import BESIDE
+from rig.evaluation.run import BESIDE
 from rig.model import gearfile
 
 PLAN = """schema = "hdrig.plan/1"

@@ -10,8 +10,8 @@ import pytest
 
 from rig.analysis.across_runs.load_law import LoadRun, down_less_up, load_law
 from rig.analysis.findings.intervals import Ranged
-from rig.commands.load_sweep import told
-from rig.commands.sweep_report import runs_of
+from rig.evaluation.sweep import runs_of
+from rig.report.text.load_law import told
 
 LOADS = (0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0)  # N·m
 P_0, P_INF, T_C = 80.0, 50.0, 2.5  # arcsec, arcsec, N·m

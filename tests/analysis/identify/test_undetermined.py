@@ -12,10 +12,11 @@ from rig.analysis.identify.identified import Identified, identified
 from rig.analysis.identify.recording import Recording, recording
 from rig.analysis.identify.undetermined import NOTHING, WANTED
 from rig.bench import read, twin_parameters
-from rig.commands.identify import parameter_line, refuse_nothing
 from rig.core.errors import DataError
+from rig.evaluation.identification import refuse_nothing
 from rig.model import gearfile
 from rig.model.gear import Gear
+from rig.report.text.gear import parameter_line
 from tests.analysis.identify.test_identify import Made, turning
 
 DECLARED = {"K": 7160.0, "J_l": 0.32, "J_m": 1.1e-3, "B_m": 5e-4, "B_ml": 2.5e-3, "B_l": 0.5, "B_sp": 3.6}

@@ -1,19 +1,16 @@
-"""A load sweep in lines for people: peak to peak by load, up and down, and the law through them."""
+"""A load sweep in lines: peak to peak by load, up and down, and the law through them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rig.analysis.across_runs.load_law import LoadRun
-    from rig.analysis.findings.intervals import Ranged
+from rig.analysis.across_runs.load_law import LoadRun, down_less_up, load_law
+from rig.analysis.findings.intervals import Ranged
+from rig.report.numbers import estimate
 
 
 def told(runs: Sequence[LoadRun]) -> list[str]:
     """Lines for people."""
-    from rig.analysis.across_runs.load_law import down_less_up, load_law
-
     lines = ["peak to peak of the kinematic error by load, arcsec", "     N·m      up    down"]
     for load in sorted({r.load for r in runs}, key=abs):
         ways = [[r.peak_to_peak for r in runs if r.load == load and r.down is down] for down in (False, True)]
@@ -34,6 +31,4 @@ def told(runs: Sequence[LoadRun]) -> list[str]:
 
 
 def _shown(found: Ranged, unit: str) -> str:
-    from rig.report.numbers import estimate
-
     return estimate(found.value, (found.low, found.high), unit)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from rig.commands.sweep_report import assembly_sweep_of, load_sweep_of, runs_of
+from rig.evaluation.afterwards import to_depths, to_load_law
+from rig.evaluation.sweep import runs_of
 from tests.analysis.across_runs.test_assembly_band import swept
 
 pytestmark = pytest.mark.xdist_group("sweep report")  # what the module makes is made once, not for every worker
@@ -36,12 +37,15 @@ def swept_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made(tmp_path_factory.mktemp("sweep"))
 
 
-def test_an_assembly_sweep_ends_with_every_depth_and_the_band(
-    swept_folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert assembly_sweep_of(swept_folder) == 0
-    said = capsys.readouterr().out
-    head = next(line for line in said.splitlines() if "N·m" in line and "band of one fitting" in line)
+def silent(text: str) -> None:
+    """Nobody asks for progress."""
+
+
+def test_an_assembly_sweep_ends_with_every_depth_and_the_band(swept_folder: Path) -> None:
+    made = to_depths(swept_folder, silent)
+    assert made.exit == 0
+    said = "\n".join(made.lines)
+    head = next(line for line in made.lines if "N·m" in line and "band of one fitting" in line)
     assert head.split()[:4] == ["N·m", "reference", "+0.15", "mm"]
     assert "Re-assembly at one depth, 1 σ" in said
     assert "* differs from the reference depth by more than fitting the wave generator anew does" in said
@@ -57,9 +61,10 @@ def test_an_assembly_sweep_ends_with_every_depth_and_the_band(
     assert len(runs_of(swept_folder)) == 20, "the campaign's own result is none of its runs"
 
 
-def test_a_load_sweep_ends_with_its_law_and_a_page(swept_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert load_sweep_of(swept_folder) == 0
-    assert "P(T) = P_∞" in capsys.readouterr().out
+def test_a_load_sweep_ends_with_its_law_and_a_page(swept_folder: Path) -> None:
+    made = to_load_law(swept_folder, silent)
+    assert made.exit == 0
+    assert any("P(T) = P_∞" in line for line in made.lines)
     assert json.loads((swept_folder / "result.json").read_text())["procedure"] == "load_sweep"
 
 
@@ -71,6 +76,7 @@ def test_a_run_whose_figures_do_not_count_is_no_part_of_a_sweep(tmp_path: Path) 
     assert len(runs_of(tmp_path)) == 19
 
 
-def test_a_sweep_of_which_nothing_was_analysed_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert assembly_sweep_of(tmp_path) == 6
-    assert "no run of the sweep was analysed" in capsys.readouterr().out
+def test_a_sweep_of_which_nothing_was_analysed_says_so(tmp_path: Path) -> None:
+    made = to_depths(tmp_path, silent)
+    assert made.exit == 6
+    assert "no run of the sweep was analysed" in made.lines[0]

@@ -10,9 +10,8 @@ import pytest
 
 from rig.analysis.analyse import PROCEDURES
 from rig.cli import main
-from rig.commands.campaign import broke_off
-from rig.commands.identify import beside
-from rig.commands.traceback_file import NAME
+from rig.evaluation.identification import beside
+from rig.evaluation.traceback_file import NAME, broke_off
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run
 
@@ -69,9 +68,10 @@ def test_what_a_report_breaks_off_with_in_a_campaign_is_a_sentence_and_a_traceba
 
 
 def test_identify_says_which_run_beside_it_could_not_be_analysed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = Run.open(made_run(tmp_path / "rubbing", {"procedure": "friction"}))
     stumble(monkeypatch, AttributeError("no such thing"))
-    assert beside([run]) == {}
-    assert "rubbing: The analysis broke off on a defect of hdrig" in capsys.readouterr().err
+    said: list[str] = []
+    assert beside([run], said.append) == {}
+    assert any("rubbing: The analysis broke off on a defect of hdrig" in text for text in said)

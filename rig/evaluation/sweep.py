@@ -1,41 +1,54 @@
-"""What stands below the summary of a sweep, and in the report of its campaign: peak to peak by load and by depth."""
+"""A campaign of loads or depths as one result: peak to peak of its slow runs, kept as summary, result and report."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rig.commands.load_sweep import told as law_lines
-from rig.core.errors import DataError, Exit
+from rig.core.errors import DataError
 from rig.runfile.manifest import told
 
 if TYPE_CHECKING:
-    from rig.analysis.across_runs.assembly_band import AssemblyRun, Cell
+    from rig.analysis.across_runs.assembly_band import AssemblyRun
     from rig.analysis.findings.result import Result
 
 FIGURE = "kinematic_error_peak_to_peak"
 KEPT = ("gear", "backend", "declared", "encoders", "software", "started_utc", "schema")  # of the first run's manifest
 
 
-def load_sweep_of(folder: Path) -> int:
-    """Table and law, result.json and report.html, of the load sweep in `folder`; the exit code."""
+@dataclass(frozen=True)
+class Sweep:
+    """What the runs of a sweep say together."""
+
+    result: Result
+    lines: Sequence[str]  # the table of it, for people
+    simulated: bool
+
+
+def load_sweep_of(folder: Path) -> Sweep | None:
+    """The load sweep in `folder`, kept there; None when no run of it was analysed. Raises DataError."""
     from rig.analysis.across_runs.load_law import LoadRun
     from rig.analysis.across_runs.sweep_result import load_sweep
+    from rig.report.text.load_law import told as law_lines
 
     runs = runs_of(folder)
+    if not runs:
+        return None
     ways = [LoadRun(r.load, r.peak_to_peak.value, down) for r, down in runs]
-    return finish(folder, load_sweep([r for r, _ in runs], ways) if runs else None, law_lines(ways))
+    return _kept(folder, load_sweep([r for r, _ in runs], ways), law_lines(ways))
 
 
-def assembly_sweep_of(folder: Path) -> int:
-    """Table by depth with the reproducibility band, result.json and report.html; the exit code."""
+def assembly_sweep_of(folder: Path) -> Sweep | None:
+    """The sweep of depths in `folder`, with its reproducibility band, kept there; None when no run of it was analysed.
+    Raises DataError."""
     from rig.analysis.across_runs.assembly_band import cells, repeat
     from rig.analysis.across_runs.sweep_result import assembly_sweep
+    from rig.report.text.depths import depth_lines
 
     runs = [run for run, _ in runs_of(folder)]
-    lines = depth_lines(cells(runs, repeat(runs))) if runs else []
-    return finish(folder, assembly_sweep(runs) if runs else None, lines)
+    return _kept(folder, assembly_sweep(runs), depth_lines(cells(runs, repeat(runs)))) if runs else None
 
 
 def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
@@ -69,24 +82,18 @@ def _down(manifest: Mapping[str, Any]) -> bool:
     return way == "down" if way else str((manifest.get("conditions") or {}).get("note") or "").endswith("down")
 
 
-def finish(folder: Path, result: Result | None, lines: Sequence[str]) -> int:
-    """`lines` at the end of the summary, result and report beside it, both on stdout. Raises DataError."""
-    from rig.commands.analyse import exit_of, print_result
+def _kept(folder: Path, result: Result, lines: Sequence[str]) -> Sweep:
+    """`lines` at the end of the summary, result and report beside it. Raises DataError."""
     from rig.report.page import write
     from rig.report.record import write_result
 
-    if result is None:
-        print("no run of the sweep was analysed: there is nothing to compare")
-        return int(Exit.INCOMPLETE)
     about = manifest_of(folder, result)
     with told(DataError, f"the runs are complete, their summary cannot be written into {folder}"):
         with (folder / "summary.txt").open("a", encoding="utf-8") as summary:
             summary.write("\n" + "\n".join(lines) + "\n")
         write_result(folder, result)
         write(folder, about, {}, [], result)
-    print("\n".join(lines))
-    print_result(result, folder, folder, about.get("backend") == "sim")
-    return int(exit_of(result))
+    return Sweep(result, lines, about.get("backend") == "sim")
 
 
 def manifest_of(folder: Path, result: Result) -> dict[str, Any]:
@@ -110,32 +117,3 @@ def manifest_of(folder: Path, result: Result) -> dict[str, Any]:
         "status": "completed",
         "conditions": conditions,
     }
-
-
-def depth_lines(found: Sequence[Cell]) -> list[str]:
-    """Peak to peak by load, a column for every depth, for people."""
-    depths = sorted({c.depth_mm for c in found})
-    by = {(c.depth_mm, c.load): c for c in found}
-    reference = min(depths, key=abs)
-    heads = ["reference" if depth == reference else f"{depth:+g} mm" for depth in depths]
-    lines = ["peak to peak of the kinematic error by load and depth of assembly, arcsec, 95 % intervals"]
-    lines.append("     N·m" + "".join(f"{head:>18s}" for head in heads) + "   band of one fitting, reference")
-    for load in sorted({c.load for c in found}, key=abs):
-        row = [by.get((depth, load)) for depth in depths]
-        shown = "".join(f"{_shown(cell):>18s}" for cell in row)
-        base = by.get((reference, load))
-        band = "–" if base is None or base.band is None else f"{base.band.low:.2f} to {base.band.high:.2f}"
-        lines.append(f"{load:8g}{shown}   {band}")
-    if any(c.beyond for c in found):
-        lines.append("* differs from the reference depth by more than fitting the wave generator anew does")
-    return lines
-
-
-def _shown(cell: Cell | None) -> str:
-    from rig.report.numbers import quantity
-
-    if cell is None:
-        return "–"
-    mark = "*" if cell.beyond else ""
-    half = 0.5 * (cell.peak_to_peak.high - cell.peak_to_peak.low)
-    return quantity(cell.peak_to_peak.value, half) + mark

@@ -6,9 +6,9 @@ import numpy as np
 
 from rig.analysis.identify.identified import order_phases
 from rig.analysis.identify.predictions import Prediction
-from rig.commands.identify import WORDS, comparison, parameter_line, series_lines
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import MeasuredSeries, Parameter
+from rig.report.text.gear import WORDS, comparison, parameter_line, series_lines
 
 
 def series(spread: float = 2e-7) -> MeasuredSeries:
