@@ -7,6 +7,7 @@
 | identification | all runs of one gear to a gear file |
 | sweep | a campaign of loads or depths as one result |
 | afterwards | which of these follows the last run of a campaign |
+| trace | what the model lacks by the runs of a campaign |
 | step_test | inertia and friction from recorded torque steps |
 | traceback_file | where an analysis broke off |
 
