@@ -18,6 +18,7 @@ from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.sensors.latch_skew_words import LABEL as SKEW
 from rig.analysis.sensors.latch_skew_words import add_latch_skew
 from rig.analysis.turning.run import add_turning
+from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 
 OF_DATA = (ArithmeticError, LookupError, MemoryError, RecursionError, ValueError)
@@ -119,10 +120,6 @@ PROCEDURES: Mapping[str, Part] = {
 }
 
 
-AT_SPEED = ("constant_torque", "constant_speed", "sentinel")
-"""Procedures whose θ̃ is split into the pure kinematic error and what flexibility makes of it."""
-
-
 def analyse(run: Source, reference: Source | None = None) -> Result:
     """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
@@ -170,13 +167,13 @@ def _analyse(run: Tame, reference: Source | None) -> Result:
     found.cannot += motion.notes
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
-    if run.procedure == "stiffness_lock":
+    if regime_of(run.procedure) is Regime.LOCKED:
         _lock(found, run, motion, reference)
     elif run.manifest.get("label") == SKEW:
         add_latch_skew(found, run, motion)
     else:
         PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
-    if run.procedure in AT_SPEED and not found.rejected:
+    if regime_of(run.procedure) is Regime.AT_SPEED and not found.rejected:
         _split(found, run, motion, reference)
     found.cannot += run.notes
     return conclude(found, run.procedure, run.manifest)

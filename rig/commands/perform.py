@@ -18,12 +18,7 @@ from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
 from rig.evaluation.run import analyse_folder, exit_of
 from rig.evaluation.step_test import response_of
-from rig.procedures.jog import Jog
-from rig.procedures.lock_check import LockCheck
-from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.step_test import StepTest
-from rig.procedures.unwind import Unwind
-from rig.procedures.weigh import Weigh
 from rig.report.record import as_json
 from rig.runfile.manifest import read
 from rig.session import Done, Session
@@ -110,9 +105,7 @@ def simulated_line(folder: Path) -> str:
 def finding(procedure: Procedure, done: Done) -> str:
     """What a procedure with an answer of its own found; "" when the analysis gives it."""
     match procedure:
-        case SignAndScale() | Weigh() | LockCheck() | Unwind() | Jog():
-            return str(done.ending.finding.sentence)
         case StepTest():
             return response_of(done.folder).sentence
         case _:
-            return ""
+            return str(done.ending.finding.sentence) if procedure.answers else ""

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rig.core.errors import DataError, Exit
+from rig.core.kinds import Regime, regime_of
 from rig.evaluation.reference import reference_beside, reference_of_one_zero
 from rig.evaluation.traceback_file import NAME as TRACEBACK
 from rig.evaluation.traceback_file import keep
@@ -45,7 +46,7 @@ def analyse_folder(
     run = judged_by(Run.open(folder), limits)
     refuse_changed(folder, run.manifest)
     if reference is None:
-        reference = BESIDE.get(run.procedure, without)(run)
+        reference = BESIDE.get(regime_of(run.procedure), without)(run)
     result = with_former(target, analyse(run, reference))
     if result.broke_off:
         result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
@@ -90,16 +91,14 @@ def judged_by(run: Run, limits: Mapping[str, Any]) -> Run:
 
 
 def without(run: Run) -> None:
-    """What most procedures are compared with."""
+    """What most runs are compared with."""
 
 
-BESIDE: Mapping[str, Callable[[Run], Run | None]] = {
-    "constant_torque": reference_beside,
-    "constant_speed": reference_beside,
-    "sentinel": reference_beside,
-    "stiffness_lock": reference_of_one_zero,
+BESIDE: Mapping[Regime, Callable[[Run], Run | None]] = {
+    Regime.AT_SPEED: reference_beside,
+    Regime.LOCKED: reference_of_one_zero,
 }
-"""Where a procedure finds the slow run it is analysed with, where none is named."""
+"""Where a run finds the slow run it is analysed with, where none is named."""
 
 
 def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:

@@ -8,6 +8,8 @@ import re
 from collections.abc import Mapping
 from typing import Final
 
+from rig.core.kinds import Regime, kinds_of
+
 # `{n}` stands for a number; the unit is the one shown, "1" is none
 TURNING: Final = {
     "kinematic_error_peak_to_peak": "arcsec",
@@ -97,13 +99,12 @@ STANDSTILL: Final = {
 FIGURES: Final = {**TURNING, **FRICTION, **COAST_DOWN, **STIFFNESS, **STANDSTILL}
 
 GIVEN_BY: Final = (
-    (TURNING, ("kinematic_error", "full_turn", "speed_convergence", "constant_torque", "constant_speed", "sentinel",
-        "load_sweep", "assembly_sweep")),
+    (TURNING, kinds_of(Regime.SLOW, Regime.AT_SPEED)),
     (FRICTION, ("friction",)),
     (COAST_DOWN, ("coast_down",)),
-    (STIFFNESS, ("stiffness_lock",)),
-    (STANDSTILL, ("standstill",)),
-)  # fmt: skip
+    (STIFFNESS, kinds_of(Regime.LOCKED)),
+    (STANDSTILL, kinds_of(Regime.AT_REST)),
+)
 """Procedures that are run for the sake of these figures: without them such a run has failed its purpose."""
 
 SIGNED: Final = ("drift", "zero_", "trend_slope", "direction_offset", "alignment_shift", "latch_skew_load",

@@ -18,14 +18,9 @@ from rig.analysis.smoothness.measure import smoothness as smoothness_of
 from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
 from rig.analysis.turning.torsion_words import add_torsion
+from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 
-STEADY_TORQUE = frozenset(
-    (
-        *("kinematic_error", "speed_convergence", "full_turn", "load_sweep", "assembly_sweep"),
-        *("constant_torque", "constant_speed", "sentinel", "friction"),
-    )
-)  # experiments that keep the load as it is: nobody looks for a stiffness in them
 NO_LOAD = "No load angle was recorded: kinematic error, torsion and orders of θ̃ cannot be had."
 
 
@@ -69,7 +64,7 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     if smoothness is not None:
         found.estimates += smooth.estimates(smoothness)
     tau_l = motion.pick(run.column("tau_l"))
-    if not add_torsion(found, motion, tau_l) and run.procedure not in STEADY_TORQUE:
+    if not add_torsion(found, motion, tau_l) and regime_of(run.procedure) is Regime.OTHER:  # the others keep their load
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
         found.cannot.append(f"Stiffness: {why}; a lock test shows it (hdrig run stiffness-lock).")
 

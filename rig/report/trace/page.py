@@ -138,7 +138,7 @@ def _next(trace: Trace) -> dict[str, Any] | None:
         return None
     conditions = [": ".join((run_words.named(k)[0], _value(k, v))) for k, v in run.conditions.items()]
     return {
-        "procedure": run_words.PROCEDURES.get(run.procedure, run_words.humanise(run.procedure)),
+        "procedure": run_words.kind(run.procedure),
         "conditions": conditions,
         "because": words.plainly(run.because),
     }
