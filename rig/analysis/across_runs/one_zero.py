@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.findings.intervals import Z95, t95
+from rig.analysis.findings.intervals import t95
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.angle import transmission_error
 from rig.analysis.motion.source import Source, motion_of
 from rig.analysis.orders.align import Alignment, Complex, align
 from rig.analysis.orders.sums import harmonics
+from rig.core.quantiles import Z95
 from rig.core.units import RPM, TURN
 from rig.model.fourier import FourierSeries
+from rig.model.transmission_error import transmission_error
 
 ORDERS = 6  # of one turn: higher ones are below the noise of a turn
 PARTS = 12  # of a way: their scatter says how sure the orders are

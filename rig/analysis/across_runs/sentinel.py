@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from rig.analysis.findings.intervals import Z95
 from rig.analysis.findings.result import Array, Estimate
+from rig.core.quantiles import Z95
 
 WATCHED = ("mean_speed", "mean_motor_torque", "kinematic_error_peak_to_peak", "fourier_amplitude_2")
 """The figures that are compared, by their machine names."""

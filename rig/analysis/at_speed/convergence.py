@@ -10,7 +10,6 @@ import numpy as np
 from rig.analysis.at_speed.convergence_law import Law, SpeedStep, fit_law, speed_at
 from rig.analysis.at_speed.decomposition import phasors
 from rig.analysis.findings.collected import Findings
-from rig.analysis.findings.intervals import Z95
 from rig.analysis.findings.result import Array, Estimate
 from rig.analysis.kinematic_error.measure import groups_by_speed, measure
 from rig.analysis.kinematic_error.profile import Profile
@@ -23,6 +22,7 @@ from rig.analysis.smoothness.measure import smoothness
 from rig.analysis.smoothness.words import sentence
 from rig.analysis.turning.run import add_turning
 from rig.core.numbers import number
+from rig.core.quantiles import Z95
 from rig.core.units import RPM, TURN
 from rig.model.linear import held_frequency, natural_frequency
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.core.quantiles import Z95
 from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]
@@ -39,7 +40,7 @@ class Law:
     @property
     def resolved(self) -> bool:
         """Whether growth with speed stands out of the scatter: its 95 % interval excludes none at all."""
-        return bool(np.isfinite(self.omega_0) and 2.0 * 1.96 * self.u_relative < 1.0)
+        return bool(np.isfinite(self.omega_0) and 2.0 * Z95 * self.u_relative < 1.0)
 
     def deviation(self, omega_m: float) -> float:
         """rms(θ̃(Ω) − θ̃_p)/rms(θ̃_p) at `omega_m` rad/s; inf from the first resonance of an order on."""

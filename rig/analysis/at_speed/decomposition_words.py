@@ -15,6 +15,7 @@ from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.motion.tame import Tame
 from rig.analysis.motion.window import measured_window, part
 from rig.analysis.orders.revolutions import GRID
+from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
 NO_REFERENCE = (
@@ -46,7 +47,7 @@ def add_decomposition(found: Findings, run: Source, motion: Motion, reference: S
         "Angle between the zeros of the two runs",
         split.alignment.fitted / DEG,
         "°",
-        1.96 * split.alignment.u_fitted / DEG,
+        Z95 * split.alignment.u_fitted / DEG,
         f"Shift of the motor angle at which {basis} agree best, all orders weighted by their uncertainty.",
     )
     _figures(found, split, basis)

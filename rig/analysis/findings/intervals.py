@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.findings.result import Array, Verdict
+from rig.core.quantiles import Z95
 
-Z95 = 1.959964  # normal, two-sided 95 %
 _T95 = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)  # Student, 1 to 10 degrees of freedom
 RAYLEIGH95 = 2.448  # √(−2·ln 0.05): an amplitude of pure noise stays below this many σ in 95 % of cases
 

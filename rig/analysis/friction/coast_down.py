@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.findings.collected import Findings, pm
-from rig.analysis.findings.intervals import Z95, t95
+from rig.analysis.findings.intervals import t95
 from rig.analysis.findings.result import Array, Check
 from rig.analysis.friction.coast import FEWEST, SKIP, SLOWEST, Coast, Piece, fit_coasts
 from rig.analysis.motion.declared import declared_gear
 from rig.analysis.motion.source import Motion, Source
+from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.linear import damping_ratio, natural_frequency
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import DataError
+from rig.core.quantiles import Z95
 
 Array = npt.NDArray[np.float64]
 SKIP = 0.005  # s after each switch: the drive's torque loop and one tick of delay
@@ -26,7 +27,7 @@ class StepResponse(NamedTuple):
     @property
     def sentence(self) -> str:
         """For the operator. The steps repeat better than the method is true: the load swings on the gear's spring."""
-        half = 1.96 * self.friction_scatter / self.steps**0.5
+        half = Z95 * self.friction_scatter / self.steps**0.5
         return (
             f"inertia at the motor {self.inertia:.3g} kg·m² (within 5 %: the load hangs on the gear's spring), "
             f"friction while coasting {self.friction:.3f} ± {half:.3f} N·m, viscous part included, "

@@ -9,6 +9,7 @@ import numpy as np
 from rig.analysis.findings.intervals import inflation, neighbour_correlation, t95
 from rig.analysis.findings.result import Array
 from rig.analysis.orders.revolutions import GRID, StrokeResult, filled
+from rig.core.quantiles import Z95
 
 SMALL = 0.1  # share of an amplitude up to which what inertia adds is corrected for
 FEW = 8  # degrees of freedom below which the scatter of a_n and b_n is pooled
@@ -78,7 +79,7 @@ class Profile:
     @property
     def system_half(self) -> float:
         """Half width (95 %) that the systematic parts leave on a peak to peak, as if all their peaks met, arcsec."""
-        return float(2.0 * 1.96 * np.sqrt(np.sum(self.u_system**2)))
+        return float(2.0 * Z95 * np.sqrt(np.sum(self.u_system**2)))
 
     def peak_to_peak(self) -> tuple[float, tuple[float, float]]:
         """Peak to peak of the fitted series with its 95 % interval, arcsec.

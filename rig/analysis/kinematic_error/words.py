@@ -10,6 +10,7 @@ from rig.analysis.findings.result import Array, Estimate, Part
 from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.kinematic_error.profile import SMALL, Profile, chosen_terms, truncation
 from rig.analysis.orders.revolutions import GRID
+from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
 SHOWN_ORDERS = (1, 2, 4, 6, 8, 10)  # figures of their own when resolved; all orders stand in the table
@@ -60,7 +61,7 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
     found.exact("residual_rms", "Residual of the series, rms", p.residual_rms, "arcsec", how)
     if np.isfinite(ke.speed_rpm):
         speeds = np.abs(np.concatenate([s.speed_rpm for s in ke.strokes]))
-        half = 1.96 * float(speeds.std()) / np.sqrt(speeds.size)
+        half = Z95 * float(speeds.std()) / np.sqrt(speeds.size)
         found.figure("mean_speed", "Mean motor speed", ke.speed_rpm, "rpm", half, "Mean over the revolutions used.")
 
 

@@ -1,4 +1,4 @@
-"""Angles and their units, the wrap of a counter, and Equation 1."""
+"""Angles as counters give them: their wrap undone, and the ratio two of them show."""
 
 from __future__ import annotations
 
@@ -7,14 +7,6 @@ import numpy as np
 from rig.analysis.findings.result import Array
 from rig.core.rows import room, stretches
 from rig.core.units import TURN
-
-
-def transmission_error(theta_m: Array, theta_l: Array, ratio: float) -> Array:
-    """θ̃ = θ_m/N − θ_l      [ghorbel2001, Eq. 1]
-
-    `theta_m`, `theta_l`: rad, any one shape; gives rad at the output, positive when the load lags the motor.
-    """
-    return np.asarray(theta_m / ratio - theta_l)
 
 
 def unwrap(values: Array, period: float) -> Array:

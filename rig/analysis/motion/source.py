@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.angle import is_wrapped, transmission_error, unwrap
+from rig.analysis.motion.angle import is_wrapped, unwrap
 from rig.core.channels import UNTRUSTED, Flag
 from rig.core.rows import picked, room, stretches
 from rig.core.units import ARCSEC, RPM, TURN
+from rig.model.transmission_error import transmission_error
 
 Rows = npt.NDArray[np.int64]
 FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.core.quantiles import Z95
 from rig.core.units import DEG, TURN
 
 Complex = npt.NDArray[np.complex128]
@@ -40,7 +41,7 @@ class Alignment:
     @property
     def sentence(self) -> str:
         """Which way was taken, with the numbers."""
-        fitted = f"{self.fitted / DEG:.2f}° ± {1.96 * self.u_fitted / DEG:.2f}°"
+        fitted = f"{self.fitted / DEG:.2f}° ± {Z95 * self.u_fitted / DEG:.2f}°"
         if self.odd:
             return (
                 f"Both runs seem to count the motor angle from one zero, and yet a shift of {fitted} fits better: "

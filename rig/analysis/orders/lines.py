@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rig.analysis.findings.intervals import RAYLEIGH95
 from rig.analysis.findings.result import Array
 from rig.analysis.orders.sums import BLOCK, fit, harmonics, without
 from rig.core.units import TURN
@@ -32,7 +33,7 @@ class Line:
     @property
     def resolved(self) -> bool:
         """Whether it stands above what noise alone reaches in 1 case of 20 at one given order."""
-        return self.amplitude > 2.448 * self.u
+        return self.amplitude > RAYLEIGH95 * self.u
 
 
 def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:

@@ -16,9 +16,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.findings.intervals import Z95, t95
+from rig.analysis.findings.intervals import t95
 from rig.analysis.findings.result import Array
+from rig.core.quantiles import Z95
 from rig.core.units import TURN
+from rig.model.transmission_error import transmission_error
 
 SETTLE = 0.5  # s at speed before a row counts: the gear's own swing, 25 Hz at 4 % damping, is over by then
 STEADY = 1e-6  # of the speed: the reference runs straight
@@ -120,7 +122,7 @@ def pairs(found: list[Leg], ratio: float) -> list[Pair]:
 
 
 def _mean(leg: Leg, ratio: float, window: tuple[float, float]) -> float:
-    return _over(leg, leg.theta_m / ratio - leg.theta_l, window)
+    return _over(leg, transmission_error(leg.theta_m, leg.theta_l, ratio), window)
 
 
 def _over(leg: Leg, values: Array, window: tuple[float, float]) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.core.quantiles import Z95
 from rig.core.units import TURN
 
 Complex = npt.NDArray[np.complex128]
@@ -96,4 +97,4 @@ def _greatest_less_least(lines: Complex, noise: Array, bins: int) -> tuple[float
     plain = size(lines[at])
     draws = rng.standard_normal((DRAWS, at.size)) + 1j * rng.standard_normal((DRAWS, at.size))
     sizes = np.array([size(lines[at] + np.sqrt(0.5 * MARGIN * noise[at]) * draw) for draw in draws])
-    return max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0), 1.96 * float(sizes.std())
+    return max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0), Z95 * float(sizes.std())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rig.analysis.findings.collected import Findings
-from rig.analysis.findings.intervals import Z95, amplitude_interval
+from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Array, Estimate, Part
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke, find_strokes
@@ -13,6 +13,7 @@ from rig.analysis.orders.lines import Line, fit_lines
 from rig.analysis.orders.revolutions import TERMS
 from rig.analysis.sensors.in_step import in_step
 from rig.analysis.turning.accuracy import Accuracy, accuracy
+from rig.core.quantiles import Z95
 
 PAIRS = (1, 2, 4)  # orders of the wave generator whose neighbour in the other part's frame is looked for
 WHERE = {  # what a line may come from; k is of the output, n of the wave generator

@@ -8,6 +8,7 @@ from rig.analysis.findings.collected import Findings
 from rig.analysis.motion.source import Motion
 from rig.analysis.motion.speed import motor_speed
 from rig.analysis.motion.strokes import Stroke
+from rig.core.quantiles import Z95
 from rig.core.units import RPM
 
 JITTER = 0.01  # of the speed window: more makes a ripple of its own
@@ -22,7 +23,7 @@ def add_speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) ->
     edges = s.edges
     turns = np.diff(motion.theta_m[edges]) / np.diff(motion.t[edges]) / RPM
     if not any(e.name == "mean_speed" for e in found.estimates):
-        half = 1.96 * float(turns.std()) / np.sqrt(turns.size)
+        half = Z95 * float(turns.std()) / np.sqrt(turns.size)
         found.figure(
             "mean_speed", "Mean motor speed", float(turns.mean()), "rpm", half, "Turn by turn over the longest stroke."
         )

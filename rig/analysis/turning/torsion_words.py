@@ -9,6 +9,7 @@ from rig.analysis.findings.result import Array, Estimate
 from rig.analysis.motion.source import Motion
 from rig.analysis.orders.lines import Line
 from rig.analysis.turning.torsion import LOAD_HARMONICS, Torsion, torsion
+from rig.core.quantiles import Z95
 from rig.core.rows import stretches
 from rig.core.units import ARCMIN, ARCSEC
 
@@ -47,7 +48,7 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
                 f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
             )
             unit, scale = ("arcsec", 1 / ARCSEC) if line.amplitude / ARCMIN < 1.0 else ("arcmin", 1 / ARCMIN)
-            half = 1.96 * line.u * scale
+            half = Z95 * line.u * scale
             found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * scale, unit, half, how)
     _doubts(found, r)
     every = max(r.torque.size // DRAWN, 1)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from rig.analysis.findings.intervals import RAYLEIGH95
 from rig.analysis.friction.coasting import Coasting
 from rig.analysis.identify.identified import Identified, order_amplitudes, order_phases
 from rig.analysis.identify.predictions import Prediction
 from rig.analysis.identify.undetermined import NOTHING
+from rig.core.quantiles import Z95
 from rig.core.units import ARCMIN, ARCSEC, DEG
 from rig.model.gearfile import CHARACTERISTICS, UNITS, GearFile, MeasuredSeries, Parameter
 from rig.report.numbers import estimate, quantity
@@ -72,9 +74,9 @@ def series_lines(series: MeasuredSeries) -> list[str]:
         return ["  θ̃_p      not determined: none of these runs shows the kinematic error"]
     lines = [f"  θ̃_p      {series.series.peak_to_peak() / ARCSEC:.1f} arcsec peak to peak, orders:"]
     for (n, size, u), (psi, u_psi) in zip(order_amplitudes(series), order_phases(series), strict=True):
-        amplitude = quantity(size / ARCSEC, 1.96 * u / ARCSEC, "arcsec")
-        told = size > 2.45 * u  # below, the phase may be any
-        phase = f"at {quantity(psi / DEG, 1.96 * u_psi / DEG, '°')}" if told else "(not told from zero)"
+        amplitude = quantity(size / ARCSEC, Z95 * u / ARCSEC, "arcsec")
+        told = size > RAYLEIGH95 * u  # below, the phase may be any
+        phase = f"at {quantity(psi / DEG, Z95 * u_psi / DEG, '°')}" if told else "(not told from zero)"
         lines.append(f"    C_{n:<3d} {amplitude:28s} {phase}")
     return lines
 

@@ -1,4 +1,4 @@
-"""Angles: unwrapping, Equation 1 and its sign, the ratio two encoders agree on."""
+"""Angles: unwrapping, the ratio two encoders agree on."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from rig.analysis.motion.angle import is_wrapped, measured_ratio, transmission_error, unwrap
-from rig.core.units import ARCSEC, TURN
+from rig.analysis.motion.angle import is_wrapped, measured_ratio, unwrap
+from rig.core.units import TURN
 
 
 @given(
@@ -26,12 +26,6 @@ def test_an_angle_that_jumps_by_whole_turns_is_seen_to_be_wrapped_and_a_fast_one
     assert is_wrapped(np.mod(slow, TURN))
     assert not is_wrapped(slow)
     assert not is_wrapped(np.arange(1000) * 0.7 * TURN), "seven tenths of a turn every row is speed, not wrap"
-
-
-def test_the_error_is_positive_when_the_load_lags_and_is_measured_at_the_output() -> None:
-    """θ̃ = θ_m/N − θ_l: one motor turn of 50 and a load 10 arcsec short of 7.2 degrees is +10 arcsec."""
-    error = transmission_error(np.array([TURN]), np.array([np.deg2rad(7.2) - 10 * ARCSEC]), 50.0)
-    assert np.allclose(error / ARCSEC, 10.0, atol=1e-6)
 
 
 def test_the_measured_ratio_is_negative_when_one_encoder_is_flipped() -> None:
