@@ -12,7 +12,8 @@ from typing import TextIO, cast
 
 from rig import __version__
 from rig.commands import CATALOGUE
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit
+from rig.core.way_out import ending_in_a_sentence
 from rig.ctrl_c import after_imports
 from rig.streams import Tolerant
 
@@ -46,21 +47,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     out, err = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = cast(TextIO, Tolerant(out)), cast(TextIO, Tolerant(err))
     try:
-        with after_imports():
-            return _verb(list(sys.argv[1:] if argv is None else argv))
-    except HdrigError as error:
-        print(f"hdrig: {error}", file=sys.stderr)
-        return int(error.exit)
-    except KeyboardInterrupt:
-        print("hdrig: interrupted", file=sys.stderr)
-        return int(Exit.HALTED)
-    except Exception as error:  # noqa: BLE001 - the way out: the drive is safe by now, the person gets a sentence
-        print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
-        return int(Exit.INTERNAL)
+        return ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))
     finally:
         sys.stdout.flush()
         sys.stderr.flush()
         sys.stdout, sys.stderr = out, err
+
+
+def _interruptible(args: list[str]) -> int:
+    with after_imports():
+        return _verb(args)
 
 
 def _verb(args: list[str]) -> int:
@@ -80,16 +76,6 @@ def _verb(args: list[str]) -> int:
     parser.hints = getattr(module, "HINTS", parser.hints)
     module.arguments(parser)
     return int(module.run(parser.parse_args(args[1:])))
-
-
-def _where(error: Exception) -> str:
-    """Kind, text and place of an error nobody foresaw, on one line."""
-    at = error.__traceback__
-    while at is not None and at.tb_next is not None:
-        at = at.tb_next
-    place = f" in {at.tb_frame.f_code.co_filename}, line {at.tb_lineno}" if at is not None else ""
-    text = " ".join(str(error).split())
-    return f"{type(error).__name__}: {text[:200]}{place}"
 
 
 if __name__ == "__main__":

@@ -9,15 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from rig.analysis.findings import Findings, conclude
-from rig.analysis.latch_skew_words import LABEL as SKEW
-from rig.analysis.latch_skew_words import add_latch_skew
-from rig.analysis.overview import add_overview
-from rig.analysis.result import Result
-from rig.analysis.source import Motion, Source, motion_of
-from rig.analysis.speed import Speed, motor_speed
-from rig.analysis.tame import RATIOS, Tame
-from rig.analysis.turning import add_turning
+from rig.analysis.findings.collected import Findings, conclude
+from rig.analysis.findings.result import Result
+from rig.analysis.motion.overview import add_overview
+from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.motion.speed import Speed, motor_speed
+from rig.analysis.motion.tame import RATIOS, Tame
+from rig.analysis.sensors.latch_skew_words import LABEL as SKEW
+from rig.analysis.sensors.latch_skew_words import add_latch_skew
+from rig.analysis.turning.run import add_turning
+from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 
 OF_DATA = (ArithmeticError, LookupError, MemoryError, RecursionError, ValueError)
@@ -38,13 +39,13 @@ def _at_speed(found: Findings, run: Source, motion: Motion, speed: Speed | None)
 
 
 def _constant_torque(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.constant_torque import add_constant_torque
+    from rig.analysis.turning.constant_torque import add_constant_torque
 
     add_constant_torque(found, run, motion)
 
 
 def _full_turn(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.full_turn import add_full_turn
+    from rig.analysis.turning.full_turn import add_full_turn
 
     add_turning(found, run, motion, speed, slow=True)
     if not found.rejected:
@@ -52,19 +53,19 @@ def _full_turn(found: Findings, run: Source, motion: Motion, speed: Speed | None
 
 
 def _coast_down(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.coast_down import add_coast_down
+    from rig.analysis.friction.coast_down import add_coast_down
 
     add_coast_down(found, run, motion)
 
 
 def _speed_convergence(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.speed_convergence import add_speed_convergence
+    from rig.analysis.at_speed.convergence import add_speed_convergence
 
     add_speed_convergence(found, run, motion)
 
 
 def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.standstill import add_standstill
+    from rig.analysis.sensors.standstill import add_standstill
 
     add_standstill(found, run, motion)
 
@@ -76,7 +77,7 @@ def _lock(found: Findings, run: Source, motion: Motion, reference: Source | None
 
 
 def _split(found: Findings, run: Source, motion: Motion, reference: Source | None) -> None:
-    from rig.analysis.decomposition_words import add_decomposition
+    from rig.analysis.at_speed.decomposition_words import add_decomposition
 
     add_decomposition(found, run, motion, reference)
 
@@ -99,7 +100,7 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
 
 
 def _friction(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    from rig.analysis.friction import add_friction
+    from rig.analysis.friction.run import add_friction
 
     add_friction(found, run, motion)
 
@@ -119,10 +120,6 @@ PROCEDURES: Mapping[str, Part] = {
 }
 
 
-AT_SPEED = ("constant_torque", "constant_speed", "sentinel")
-"""Procedures whose θ̃ is split into the pure kinematic error and what flexibility makes of it."""
-
-
 def analyse(run: Source, reference: Source | None = None) -> Result:
     """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
@@ -131,7 +128,7 @@ def analyse(run: Source, reference: Source | None = None) -> Result:
 
     `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
     holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
-    `rig.analysis.findings.conclude`.
+    `rig.analysis.findings.collected.conclude`.
     """
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # numpy's remarks on empty and constant pieces say nothing to an operator
@@ -170,13 +167,13 @@ def _analyse(run: Tame, reference: Source | None) -> Result:
     found.cannot += motion.notes
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)
-    if run.procedure == "stiffness_lock":
+    if regime_of(run.procedure) is Regime.LOCKED:
         _lock(found, run, motion, reference)
     elif run.manifest.get("label") == SKEW:
         add_latch_skew(found, run, motion)
     else:
         PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
-    if run.procedure in AT_SPEED and not found.rejected:
+    if regime_of(run.procedure) is Regime.AT_SPEED and not found.rejected:
         _split(found, run, motion, reference)
     found.cannot += run.notes
     return conclude(found, run.procedure, run.manifest)

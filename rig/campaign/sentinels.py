@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rig.analysis.findings import true_minus
-from rig.analysis.result import Estimate
-from rig.analysis.sentinel import WATCHED, compare
+from rig.analysis.across_runs.sentinel import WATCHED, compare
+from rig.analysis.findings.collected import true_minus
+from rig.analysis.findings.result import Estimate
 from rig.campaign.journal import Journal
 from rig.catalogue.figures import Figure, common_label, figures
 from rig.core.errors import HdrigError

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.align import Alignment
-from rig.analysis.compensation import Expected, Followed, expected, followed, turned, zero_of
-from rig.analysis.result import Array
+from rig.analysis.across_runs.compensation import Expected, Followed, expected, followed, turned, zero_of
+from rig.analysis.findings.result import Array
+from rig.analysis.orders.align import Alignment
 from rig.bench import Bench
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.core.units import ARCSEC, RPM

@@ -7,7 +7,6 @@ import contextlib
 import secrets
 import shlex
 import sys
-import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, close_settled, conduct, nothing_left, open_session
 from rig.campaign.steps import Item
-from rig.commands.afterwards import afterwards
+from rig.commands import identify
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.perform import let_be
 from rig.commands.person import Person
@@ -30,11 +29,10 @@ from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
-from rig.commands.traceback_file import NAME as TRACEBACK
-from rig.commands.traceback_file import keep
 from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, Exit, NotReady, UsageError
 from rig.core.operator import Rigging
+from rig.evaluation.traceback_file import broke_off
 from rig.runfile.manifest import told
 from rig.session.done import Watch, nobody
 from rig.software import operator
@@ -43,7 +41,6 @@ DEFAULT = "twin"
 STUMBLES = (OSError, MemoryError, ArithmeticError, AssertionError, AttributeError, ImportError, LookupError, NameError,
             RecursionError, TypeError, ValueError)  # fmt: skip
 """What the report of a run can break off with, an analysis that does telling it by itself; the campaign goes on."""
-OUTSIDE = (OSError, MemoryError)  # of the machine; the others are defects of ours, for the run was read and analysed
 HINTS = {
     "--limit": "a limit judges runs once they are made, and only those of one kind: "
     "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec'"
@@ -146,7 +143,19 @@ def _told(journal: Journal, exit: Exit, show: Show) -> int:
     if exit:
         print(f"hdrig campaign --resume {shlex.quote(str(journal.folder))} goes on with it", file=sys.stderr)
         return int(exit)
-    return afterwards(journal.folder)
+    return followed(journal.folder)
+
+
+def followed(folder: Path) -> int:
+    """What follows the campaign in `folder`, on stdout; the exit code."""
+    from rig.evaluation.afterwards import afterwards
+
+    made = afterwards(folder, identify.say)
+    for line in made.lines:
+        print(line)
+    if made.result is not None and made.result.defect:
+        print(f"hdrig: {folder}: {made.result.sentence}", file=sys.stderr)
+    return int(made.exit)
 
 
 def refuse_nobody(campaign: Campaign, runs: Sequence[int]) -> None:
@@ -176,24 +185,11 @@ class Terminal(Desk):
     def figure(self, folder: Path) -> str:
         """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""
         try:
-            from rig.commands.analyse import analyse_folder
+            from rig.evaluation.run import analyse_folder
 
             return analyse_folder(folder, folder)[0].sentence
         except STUMBLES as error:
             raise DataError(broke_off(folder, error)) from error
-
-
-def broke_off(folder: Path, error: Exception) -> str:
-    """The sentence of a run in `folder` whose report broke off with `error`; the traceback lies beside the run."""
-    said = f"{type(error).__name__}: {error}"
-    if isinstance(error, OUTSIDE):
-        return f"its analysis broke off ({said})"
-    try:
-        keep(folder, "".join(traceback.format_exception(error)))
-        where = f"; where it did stands in {folder / TRACEBACK}"
-    except OSError as full:
-        where = f"; where it did cannot be kept: {full.strerror or full}"
-    return f"its analysis broke off on a defect of hdrig, please report it ({said}){where}"
 
 
 def _plan_of(journal: Journal) -> str:

@@ -26,12 +26,11 @@ from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.errors import Exit, UsageError
 from rig.core.operator import Rigging
-from rig.runfile.manifest import told, utc_now
+from rig.evaluation.trace import trace_folder
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.outcome.result import Trace
     from rig.closing.story import Story
 
 PLAN = "modest"
@@ -121,7 +120,7 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
     ):
         show.say(f"campaign folder {journal.folder}")
         closing = Closing(
-            session, campaign, journal, Terminal(bench, person, show), look,
+            session, campaign, journal, Terminal(bench, person, show), trace_folder,
             lambda: (before + session.instruments.clock.now()) / 60, story,
         )  # fmt: skip
         exit = conduct(closing)
@@ -129,21 +128,6 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
     show.leave(exit)
     _tell(journal.folder, closing.story, bench, exit)
     return int(exit)
-
-
-def look(folder: Path) -> Trace:
-    """Trace all runs in `folder`, written there as trace.json and report.html. Raises NotReady."""
-    from rig.analysis.tracing.outcome.record import write_trace
-    from rig.analysis.tracing.trace import trace
-    from rig.report.trace.campaign import provenance
-    from rig.report.trace.page import write
-    from rig.software import software
-
-    found = trace(folder)
-    with told(NotReady, f"what the trace found cannot be written to {folder}"):
-        write_trace(folder / "trace.json", found)
-        write(folder, found, provenance(folder, software(), utc_now()))
-    return found
 
 
 def _tell(folder: Path, story: Story, bench: Bench, exit: Exit) -> None:

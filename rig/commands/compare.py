@@ -11,7 +11,7 @@ from rig.catalogue.figures import Figure
 from rig.catalogue.row import Row
 from rig.catalogue.sameness import point, words
 from rig.commands.list_ import say
-from rig.commands.targets import writing
+from rig.runfile.writing import writing
 
 SHOWN = {
     Mark.CHANGED: "CHANGED, more than reproducibility ({limit})",

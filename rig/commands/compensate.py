@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rig.commands.folders import expand
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.person import Person
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit, NotReady, UsageError
-from rig.core.units import ARCSEC
+from rig.core.errors import Exit, UsageError
+from rig.evaluation.identification import TERMS, gear_of
 from rig.interrupts import Interrupts
-from rig.runfile.manifest import told, utc_now, write_atomic
+from rig.runfile.manifest import utc_now
 from rig.session import Session
 
 if TYPE_CHECKING:
-    from rig.analysis.align import Alignment
-    from rig.closing.compensate import Compared
     from rig.model.gearfile import GearFile
 
 SLOW = 9.6  # rpm, of the slow measurement      [ghorbel2001]
 REVOLUTIONS = 8  # each way: intervals from 14 turns
 FEWEST = 3  # revolutions each way: of fewer there is no interval
-TERMS = 15  # orders of the paper's series
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +39,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Gear, then the runs, then compensation.json and compensation.html beside them."""
-    from rig.closing.compensate import compensate, refuse_first
+    from rig.closing.compensate import compensate, refuse_first, sentence
+    from rig.closing.compensation_record import write_compensation
     from rig.report.closing.compensation import write
 
     _refuse_odd(args.speed, args.revolutions)
@@ -63,11 +60,7 @@ def run(args: argparse.Namespace) -> int:
         ) as session,
     ):
         found, where = compensate(session, gear, args.speed, args.revolutions, say)
-    with told(NotReady, f"{folder} cannot be written"):
-        text = json.dumps(document(found, where, gear, bench.simulated), ensure_ascii=False, indent=1)
-        write_atomic(folder / "compensation.json", text.encode() + b"\n")
-    from rig.closing.compensate import sentence
-
+    write_compensation(folder, found, where, gear, bench.simulated)
     for one in found:
         print(f"{'SIMULATED ' if bench.simulated else ''}{sentence(one)}")
     print(f"report {write(folder)}")
@@ -91,46 +84,7 @@ def _gear(args: argparse.Namespace) -> GearFile:
     """Raises UsageError: no gear file, or one without a kinematic error; DataError when nothing can be identified."""
     from rig.model import gearfile
 
-    if args.gear:
-        found = gearfile.read(Path(args.gear))
-    else:
-        from rig.analysis.identify.fit import fit
-        from rig.analysis.identify.identified import identified
-        from rig.commands.identify import made_with, open_runs
-
-        runs, recordings = open_runs([args.campaign])
-        about = runs[0].manifest.get("gear") or {}
-        found = identified(fit(recordings, TERMS, say), runs[0].manifest).gear_file(
-            str(about.get("serial") or ""),
-            any(r.simulated for r in runs),
-            made_with(runs),
-        )
+    found = gearfile.read(Path(args.gear)) if args.gear else gear_of(expand([args.campaign]), TERMS, say)
     if not found.kinematic_error.series.a:
         raise UsageError("the gear file holds no kinematic error; identify the gear from slow runs first")
     return found
-
-
-def document(found: list[Compared], where: Alignment, gear: GearFile, simulated: bool) -> dict[str, Any]:
-    """compensation.json, schema hdrig.compensation/1; errors in arcsec, curves over the motor turn."""
-    return {
-        "schema": "hdrig.compensation/1",
-        "simulated": simulated,
-        "gear": {"serial": gear.serial, "made": gear.made},
-        "zero": {"shift_rad": where.shift, "fitted_rad": where.fitted, "u_fitted_rad": where.u_fitted,
-                 "sentence": where.sentence},
-        "speeds": [
-            {
-                "speed_rpm": one.speed_rpm,
-                "runs": list(one.runs),
-                "measured": {
-                    name: {"rms": asdict(f.rms), "peak_to_peak": asdict(f.peak_to_peak), "turns": f.turns,
-                           "forth_arcsec": (f.error[0] / ARCSEC).round(3).tolist(),
-                           "back_arcsec": (f.error[1] / ARCSEC).round(3).tolist()}
-                    for name, f in (("without", one.without), ("with", one.with_it))
-                },
-                "predicted": {"without": asdict(one.expected_without), "with": asdict(one.expected_with)},
-                "improvement": {"measured": one.improvement, "predicted": one.expected_improvement},
-            }
-            for one in found
-        ],
-    }  # fmt: skip

@@ -6,8 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.commands.targets import refuse_unwritable, writing
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from drivers.scan import Found

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rig.core.errors import Exit, HdrigError, UsageError
+from rig.runfile.listing import runs_in
 
 
 def runs_argument(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +40,7 @@ def expand(paths: list[Path]) -> list[Path]:
     found: list[Path] = []
     files: list[Path] = []
     for path in paths:
-        inside = [path] if (path / "manifest.json").exists() else sorted(p.parent for p in path.rglob("manifest.json"))
+        inside = runs_in(path)
         if not inside and path.is_file() and len(paths) > 1:
             files.append(path)
         elif not inside:

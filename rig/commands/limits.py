@@ -52,7 +52,7 @@ def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
     """Raises UsageError when a run that is yet to be made is not made for a figure it is to be judged by."""
     if not limits:
         return
-    from rig.analysis.figure_names import figures_of, is_run_for
+    from rig.analysis.findings.figure_names import figures_of, is_run_for
 
     given = figures_of(procedure)
     for name in limits:
@@ -65,7 +65,7 @@ def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
 
 def _figure(assignment: str, word: str) -> str:
     """The estimate `word` stands for; C_4 is the amplitude of order 4."""
-    from rig.analysis.figure_names import FIGURES, unit_of
+    from rig.analysis.findings.figure_names import FIGURES, unit_of
     from rig.catalogue.figures import WORDS, names_of
 
     name = re.sub(r"^[Cc]_(\d+)$", r"fourier_amplitude_\1", names_of(word)[0])
@@ -78,8 +78,8 @@ def _figure(assignment: str, word: str) -> str:
 
 
 def _refuse_senseless(assignment: str, word: str, name: str, bounds: Mapping[str, Any]) -> None:
-    from rig.analysis.conversion import factor, others
-    from rig.analysis.figure_names import may_be_negative, unit_of
+    from rig.analysis.findings.conversion import factor, others
+    from rig.analysis.findings.figure_names import may_be_negative, unit_of
 
     wanted = unit_of(name) or "1"
     unit = bounds.get("unit", wanted)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rig.bench import Bench, ClockName
-from rig.commands.analyse import analyse_folder, exit_of, print_result
+from rig.commands.analyse import print_result
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show
@@ -16,20 +16,14 @@ from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
 from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
-from rig.procedures.jog import Jog
-from rig.procedures.lock_check import LockCheck
-from rig.procedures.sign_and_scale import SignAndScale
+from rig.evaluation.run import analyse_folder, exit_of
+from rig.evaluation.step_test import response_of
 from rig.procedures.step_test import StepTest
-from rig.procedures.unwind import Unwind
-from rig.procedures.weigh import Weigh
 from rig.report.record import as_json
 from rig.runfile.manifest import read
 from rig.session import Done, Session
 from rig.session.observer import Observer
 from rig.supervisor import State
-
-if TYPE_CHECKING:
-    from rig.analysis.step_response import StepResponse
 
 
 def let_be(session: Session, show: Show) -> None:
@@ -111,18 +105,7 @@ def simulated_line(folder: Path) -> str:
 def finding(procedure: Procedure, done: Done) -> str:
     """What a procedure with an answer of its own found; "" when the analysis gives it."""
     match procedure:
-        case SignAndScale() | Weigh() | LockCheck() | Unwind() | Jog():
-            return str(done.ending.finding.sentence)
         case StepTest():
             return response_of(done.folder).sentence
         case _:
-            return ""
-
-
-def response_of(folder: Path) -> StepResponse:
-    """Inertia and friction from a recorded step test."""
-    from rig.analysis.step_response import step_response
-    from rig.runfile.run import Run
-
-    run = Run.open(folder)
-    return step_response(run.need("t"), run.need("theta_m"), run.need("tau_applied"))
+            return str(done.ending.finding.sentence) if procedure.answers else ""

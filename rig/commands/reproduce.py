@@ -23,9 +23,10 @@ from rig.commands.campaign import Terminal, refuse_nobody
 from rig.commands.options import bench_arguments
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.show import Show, showing
-from rig.commands.targets import refuse_unwritable, writing
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, HdrigError, UsageError
 from rig.runfile.manifest import told
+from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

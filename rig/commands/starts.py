@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import UsageError
+from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.gearfile import GearFile
 from rig.model.simulate.run_up import RunUp, run_up
-from rig.model.simulate.spread import Z95, drawn_gears
+from rig.model.simulate.spread import drawn_gears
 from rig.report.numbers import quantity
 
 SECONDS = 5.0  # what constant-torque lets a run settle: twelve time constants of inertia over drag of the paper's gear

@@ -9,8 +9,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from rig.core.errors import UsageError
 from rig.runfile.process import sole_writer
+from rig.runfile.writing import writing
 
 BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
 
@@ -35,16 +35,6 @@ def refuse_unwritable_file(path: Path, option: str) -> None:
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     refuse_unwritable(path.parent, option)
-
-
-@contextlib.contextmanager
-def writing(target: Path, option: str = "--out") -> Iterator[None]:
-    """Turns an OSError into a UsageError: what cannot be written, why, and the option that names another place."""
-    try:
-        yield
-    except OSError as error:
-        why = error.strerror or str(error)
-        raise UsageError(f"cannot write {target}: {why}; name another place with {option}") from None
 
 
 @contextlib.contextmanager

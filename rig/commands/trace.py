@@ -6,10 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.commands.loading import load
-from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file, writing
+from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file
 from rig.core.errors import Exit
+from rig.core.loading import load
 from rig.ctrl_c import uninterrupted
+from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from rig.analysis.tracing.outcome.result import NextRun, Trace

@@ -9,7 +9,7 @@ from pathlib import Path
 from rig.catalogue.figures import WORDS
 from rig.catalogue.trend import Series, Spot, Trend, trend
 from rig.commands.list_ import say
-from rig.commands.targets import writing
+from rig.runfile.writing import writing
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

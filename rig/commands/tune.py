@@ -1,38 +1,18 @@
-"""hdrig tune: gains that turn the motor smoothly at the slow speed, found on the rig at hand.
-
-Method, step based: (1) torque steps give inertia and friction at the motor; (2) the poles of the loop are placed,
-the speed pole at β and the others well below; (3) short slow triangles are tried with β rising until the motor turns
-smoothly with margin. The lowest β that does is kept: more would only make the torque noisier.
-"""
+"""hdrig tune: gains that turn the motor smoothly at the slow speed, found on the rig at hand."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rig.bench import Bench, override
 from rig.commands.options import bench_arguments, open_bench
-from rig.commands.perform import response_of
-from rig.commands.targets import refuse_unwritable, writing
-from rig.config import read_bench
-from rig.core.errors import Exit, NotReady, UsageError
+from rig.commands.targets import refuse_unwritable
+from rig.core.errors import Exit, UsageError
 from rig.interrupts import Interrupts
-from rig.procedures.kinematic_error import KinematicError
-from rig.procedures.step_test import StepTest
-from rig.session import Ended, Session
-
-if TYPE_CHECKING:
-    from rig.analysis.smoothness import Smoothness
-    from rig.analysis.step_response import StepResponse
-    from rig.core.gains import Gains
-
-BANDWIDTHS = (60.0, 90.0, 130.0, 180.0, 250.0, 350.0)  # rad/s of the speed loop, tried from the gentlest
-MARGIN = 0.5  # of the limits of a good run: a trial is short, the real run is long
-TRIAL = KinematicError(amplitude_deg=540.0, frequency=4 / 150, cycles=1.0)  # 9.6 rpm like the slow run, 37.5 s
-BREAKAWAY = 1.6  # times the measured friction: what the proportional part must give within the following limit
+from rig.runfile.writing import writing
+from rig.session import Session
+from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,18 +34,13 @@ def run(args: argparse.Namespace) -> int:
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
-        step = _step(session)  # open loop, so that gains too weak to move anything cannot stand in the way
-        print(f"step test: {step.sentence}")
-        candidates = _candidates(bench, step)
-        session.rewire(candidates[0])
-        print(f"sign and scale: {session.prove().sentence}", file=sys.stderr)
-        best = _search(session, candidates)
+        best = find_gains(session, bench, print, say)
         if best is not None and args.write is not None:
             with writing(args.write, "--write"):
                 args.write.write_text(best[0].text, encoding="utf-8")
             changed = f", with the changes of --set ({', '.join(args.set)})" if args.set else ""
             print(f"bench file with the gains found written to {args.write}{changed}: use it with --bench {args.write}")
-        print(f"before: {describe(bench, _before(session, bench))}")
+        print(f"before: {describe(bench, as_it_was(session, bench))}")
     if best is None:
         print(f"FAIL: no bandwidth up to {BANDWIDTHS[-1]:g} rad/s turned the motor smoothly")
         return int(Exit.OUT_OF_LIMITS)
@@ -73,86 +48,6 @@ def run(args: argparse.Namespace) -> int:
     return int(Exit.PASS)
 
 
-def _before(session: Session, bench: Bench) -> Smoothness | str:
-    """The gains there were. They come last: if they trip the guard, nothing is left that a trip would prevent."""
-    try:
-        return _trial(session, bench)
-    except Ended as end:
-        if end.exit is not Exit.TRIPPED:
-            raise
-        return str(end)
-
-
-def _step(session: Session) -> StepResponse:
-    done = session.run(StepTest(torque=0.25 * session.bench.gains.torque_limit))
-    if done.ending.exit is not Exit.PASS:
-        raise Ended(f"tuning was ended: {done.ending.reason}", done.ending.exit)
-    return response_of(done.folder)
-
-
-def _candidates(bench: Bench, step: StepResponse) -> list[Bench]:
-    """The bench with the gains of each bandwidth that breaks loose before it trips on the following error."""
-    from rig.control.placement import place_poles, speed_filter
-
-    limit, viscous = bench.gains.torque_limit, bench.file.control.feedforward
-    allowed = bench.limits.following + bench.limits.following_time * TRIAL.reference.speed
-    found = []
-    for bandwidth in BANDWIDTHS:
-        gains = place_poles(step.inertia, bandwidth, limit, step.friction, viscous)
-        if gains.Kp * allowed >= BREAKAWAY * step.friction:
-            found.append(with_gains(bench, gains, speed_filter(bandwidth)))
-    if not found:
-        raise NotReady(
-            f"friction of {step.friction:.2f} N·m cannot be overcome within the following limit of "
-            f"{bench.file.limits.following_deg:g}° at any bandwidth up to {BANDWIDTHS[-1]:g} rad/s"
-        )
-    return found
-
-
-def _search(session: Session, candidates: list[Bench]) -> tuple[Bench, Smoothness] | None:
-    """The first bandwidth that passes with margin; prints every trial. Raises Ended when one is stopped or trips."""
-    for candidate in candidates:
-        smooth = _trial(session, candidate)
-        print(f"trial: {describe(candidate, smooth)}")
-        if not isinstance(smooth, str) and smooth.within(MARGIN):
-            return candidate, smooth
-    return None
-
-
-def _trial(session: Session, bench: Bench) -> Smoothness | str:
-    """A short slow triangle with these gains; a sentence where it tells nothing of smoothness. Raises Ended when it
-    was stopped or tripped: nothing enables a tripped drive again by itself.
-    """
-    from rig.analysis.trial import smoothness_of
-    from rig.runfile.run import Run
-
-    session.rewire(bench)
-    done = session.run(TRIAL)
-    if done.ending.exit is not Exit.PASS:
-        raise Ended(f"the trial was ended: {done.ending.reason}", done.ending.exit)
-    return smoothness_of(Run.open(done.folder)) or "the motor made no whole turn"
-
-
-def with_gains(bench: Bench, gains: Gains, filter_time: float) -> Bench:
-    """The bench with other gains, said to be measured."""
-    values = {
-        "control.Kp": gains.Kp,
-        "control.Ki": gains.Ki,
-        "control.Kd": gains.Kd,
-        "control.integrator_limit": gains.integrator_limit,
-        "loop.speed_filter": filter_time,
-    }
-    text = override(
-        bench.text, [f"{key}={float(f'{value:.4g}')!r}" for key, value in values.items()], bench.source, "measured"
-    )
-    return replace(bench, text=text, file=read_bench(text, bench.source))
-
-
-def describe(bench: Bench, smooth: Smoothness | str) -> str:
-    """Gains and how evenly the motor turned with them."""
-    c = bench.file.control
-    gains = f"Kp {c.Kp:.4g} N·m/rad, Ki {c.Ki:.4g} N·m/(rad·s), Kd {c.Kd:.4g} N·m·s/rad"
-    if isinstance(smooth, str):
-        return f"{gains}: {smooth}"
-    hunting = f", hunting at {smooth.hunting_hz:.1f} Hz" if smooth.hunts else ""
-    return f"{gains}: stuck {100 * smooth.stuck:.1f} %, speed scatter {100 * smooth.sigma:.1f} %{hunting}"
+def say(text: str) -> None:
+    """Progress, on stderr."""
+    print(text, file=sys.stderr)

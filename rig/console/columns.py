@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from rig.core.units import ARCSEC, DEG, RPM
+from rig.model.transmission_error import transmission_error
 
 MAGIC, VERSION = 0x48445247, 1
 HEADER = struct.Struct("<IHHII")  # magic, version, columns, rows, skipped
@@ -39,7 +40,7 @@ def of_run(rows: Rows, ratio: float, zero: float) -> Rows:
     out["speed"] = rows["omega_m"] / RPM
     out["tau_m"], out["tau_l"] = rows["tau_m"], rows["tau_l"]
     out["following"] = (rows["theta_ref"] - theta_m) / DEG
-    out["kinematic_error"] = (theta_m / ratio - rows["theta_l"] - zero) / ARCSEC
+    out["kinematic_error"] = (transmission_error(theta_m, rows["theta_l"], ratio) - zero) / ARCSEC
     return out
 
 

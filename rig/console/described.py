@@ -15,11 +15,6 @@ from rig.campaign.sweeps import sweep_class
 from rig.parameters_told import Told, told
 from rig.procedures import CATALOGUE, procedure_class
 
-GROUPS = {
-    "sign-and-scale": "checks", "weigh": "checks", "lock-check": "checks", "unwind": "checks", "step-test": "checks",
-    "standstill": "checks", "held-standstill": "checks", "sentinel": "checks", "jog": "checks",
-}  # fmt: skip
-
 
 @cache
 def procedures() -> list[dict[str, Any]]:
@@ -29,7 +24,7 @@ def procedures() -> list[dict[str, Any]]:
 
 def _procedure(name: str) -> dict[str, Any]:
     kind = procedure_class(name)
-    return {**_offered(name, kind, GROUPS.get(name, "measurements")), "needs_lock": kind.output_locked}
+    return {**_offered(name, kind, "checks" if kind.checks else "measurements"), "needs_lock": kind.output_locked}
 
 
 def _offered(name: str, kind: type[Any], group: str) -> dict[str, Any]:

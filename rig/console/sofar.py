@@ -10,6 +10,7 @@ import numpy as np
 from rig.core.units import ARCSEC, DEG
 from rig.live.calm import Calm
 from rig.live.view.turns import Turns
+from rig.model.transmission_error import transmission_error
 
 Rows = np.ndarray[Any, Any]
 
@@ -35,7 +36,7 @@ class SoFar:
         told = self._calm.of(rows["t"], rows["flags"])
         if not len(rows):
             return told
-        error = rows["theta_m"] / self.ratio - rows["theta_l"]
+        error = transmission_error(rows["theta_m"], rows["theta_l"], self.ratio)
         if self.zero is None:
             self.zero = float(error[0])
         self.newest = float(rows["t"][-1])

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from rig.core.gains import Gains
+from rig.core.kinds import Regime
 from rig.core.sample import Sample, Setpoint
 
 Steps = Generator[Setpoint, Sample, Any]
@@ -42,12 +43,15 @@ class Setting:
 class Procedure(ABC):
     """One experiment: parameters in the fields (all with units and defaults), told step by step in `steps`."""
 
-    name: ClassVar[str]  # as in the manifest, with underscores
+    name: ClassVar[str]  # as in the manifest, with underscores: one of `rig.core.kinds`
     needs: ClassVar[tuple[str, ...]]  # channels without which it is refused: a test against NaN is silently false
     output_locked: ClassVar[bool] = False  # what the output must be like
     closes_loop: ClassVar[bool] = True  # needs the sign-and-scale proof first
     has_reference: ClassVar[bool] = False  # an angle throughout, which a drive that closes the loop itself can be given
     label: ClassVar[str] = ""  # what people call it where `name` is "other"
+    regime: ClassVar[Regime] = Regime.OTHER  # said where `name` is "other"; else `rig.core.kinds` has it
+    answers: ClassVar[bool] = False  # it says itself what it found, in a sentence: no analysis follows
+    checks: ClassVar[bool] = False  # looks at the rig, not at the gear
 
     @abstractmethod
     def envelope(self, setting: Setting) -> Envelope:

@@ -17,6 +17,7 @@ class HeldStandstill(Procedure):
 
     name: ClassVar[str] = "standstill"
     label: ClassVar[str] = "held-standstill"
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 
     duration: float = 30.0  # s, at rest

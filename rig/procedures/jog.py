@@ -35,6 +35,8 @@ class Jog(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "jog"
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
     has_reference: ClassVar[bool] = True
 

@@ -9,6 +9,7 @@ from typing import ClassVar, NamedTuple
 
 from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
+from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.core.units import DEG
@@ -32,6 +33,9 @@ class LockCheck(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "lock-check"
+    regime: ClassVar[Regime] = Regime.LOCKED
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     output_locked: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
 

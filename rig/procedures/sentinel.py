@@ -18,6 +18,7 @@ class Sentinel(Procedure):
     """
 
     name: ClassVar[str] = "sentinel"
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
 
     speed_rpm: float = field(default=310.0, metadata={"signed": True})  # of the motor

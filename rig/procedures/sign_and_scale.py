@@ -50,6 +50,8 @@ class SignAndScale(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "sign-and-scale"
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     closes_loop: ClassVar[bool] = False  # not before it is proven
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l")
 

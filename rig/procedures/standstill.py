@@ -20,6 +20,7 @@ class Standstill(Procedure):
     """
 
     name: ClassVar[str] = "standstill"
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
     closes_loop: ClassVar[bool] = False
 

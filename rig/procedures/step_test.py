@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import RPM
@@ -27,6 +28,9 @@ class StepTest(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "step-test"
+    regime: ClassVar[Regime] = Regime.LOSSES
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     closes_loop: ClassVar[bool] = False
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 

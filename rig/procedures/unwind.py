@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.procedures.stiffness_lock import StiffnessLock
 
@@ -17,6 +18,9 @@ class Unwind(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "unwind"
+    regime: ClassVar[Regime] = Regime.LOCKED
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "tau_l")
     output_locked: ClassVar[bool] = True
 

@@ -11,6 +11,7 @@ from typing import ClassVar, NamedTuple
 from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
+from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
 from rig.core.units import RPM, TURN
@@ -47,6 +48,9 @@ class Weigh(Procedure):
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "weigh"
+    regime: ClassVar[Regime] = Regime.AT_REST
+    answers: ClassVar[bool] = True
+    checks: ClassVar[bool] = True
     needs: ClassVar[tuple[str, ...]] = ("theta_m", "theta_l", "tau_l")
 
     tau_ext: float = field(

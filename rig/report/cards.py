@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby, takewhile
 from typing import NamedTuple
 
-from rig.analysis.result import Estimate
+from rig.analysis.findings.result import Estimate
 from rig.report.numbers import companion, estimate
 from rig.report.words import HEADLINES, definition
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rig.analysis.result import Former, Result
+from rig.analysis.findings.result import Former, Result
 from rig.report.record import NAME
 from rig.runfile.manifest import contents, parse
 

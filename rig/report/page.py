@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup, escape
 
-from rig.analysis.result import Array, Result
+from rig.analysis.findings.result import Array, Result
 from rig.core.numbers import number as number_of
 from rig.report import rows, words
 from rig.report.cards import cards

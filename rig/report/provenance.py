@@ -9,7 +9,7 @@ from typing import Any
 from rig.core.numbers import number
 from rig.report.numbers import duration, quantity
 from rig.report.rows import Row, flat, measured, show, table, utc
-from rig.report.words import PROCEDURES, humanise, origin, status
+from rig.report.words import humanise, kind, origin, status
 
 
 def software(manifest: Mapping[str, Any]) -> str:
@@ -30,10 +30,7 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
     known = [
         Row("Run", folder, True),
         Row("Unique id", show(manifest.get("uid")), True),
-        Row(
-            "Procedure",
-            PROCEDURES.get(str(manifest.get("procedure")), humanise(str(manifest.get("procedure", "unknown")))),
-        ),
+        Row("Procedure", kind(str(manifest.get("procedure", "unknown")))),
         Row("Ending", status(manifest) or "unknown"),
         Row("Started", utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown"),
         *([Row("Ended", utc(manifest["ended_utc"]))] if manifest.get("ended_utc") else []),

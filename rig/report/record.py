@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from rig.analysis.result import Result
+from rig.analysis.findings.result import Result
 from rig.runfile.manifest import write_atomic
 
 NAME = "result.json"

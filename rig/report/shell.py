@@ -11,7 +11,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.report.figures import Drawing, Frame, svg
 from rig.report.palette import DARK, LIGHT, variables
 

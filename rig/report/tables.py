@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
+from rig.core.quantiles import Z95
 from rig.report.numbers import ABSENT, estimate, plain, quantity
 from rig.report.words import SUFFIXES, humanise
 
 Cell = float | str
-K95 = 1.96  # from a standard uncertainty to the half width of a 95 % interval, where a row has no "k95" of its own
 
 
 class Column(NamedTuple):
@@ -45,7 +45,7 @@ def number(row: Mapping[str, Cell], key: str) -> float:
 
 def _with_u(row: Mapping[str, Cell], key: str, u: str) -> str:
     k95 = number(row, "k95")
-    return quantity(number(row, key), (k95 if math.isfinite(k95) else K95) * number(row, u))
+    return quantity(number(row, key), (k95 if math.isfinite(k95) else Z95) * number(row, u))
 
 
 def _amplitude(row: Mapping[str, Cell]) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from rig.analysis.result import Verdict
+from rig.analysis.findings.result import Verdict
+from rig.core.kinds import KINDS
 
 
 class Origin(NamedTuple):
@@ -51,7 +52,12 @@ def heading(procedure: str, manifest: Mapping[str, Any]) -> str:
     label = manifest.get("label")
     if procedure == "other" and isinstance(label, str) and label.strip():
         return humanise(label.strip().replace("-", " "))
-    return PROCEDURES.get(procedure, humanise(procedure))
+    return kind(procedure)
+
+
+def kind(procedure: str) -> str:
+    """What people call a run of this procedure; of one unheard of its own name."""
+    return KINDS[procedure].title if procedure in KINDS else humanise(procedure)
 
 
 RULINGS = {
@@ -59,22 +65,6 @@ RULINGS = {
     Verdict.FAIL: Ruling("✗", "Fail", "bad"),
     Verdict.INCONCLUSIVE: Ruling("?", "Inconclusive", "warn"),
     Verdict.MEASURED: Ruling("–", "No limit set", "plain"),  # "measured" would contradict SIMULATED above it
-}
-
-PROCEDURES = {
-    "kinematic_error": "Kinematic error",
-    "speed_convergence": "Kinematic error at decreasing speeds",
-    "full_turn": "Kinematic error over a full output turn",
-    "constant_torque": "Run at constant torque",
-    "constant_speed": "Run at constant speed",
-    "load_sweep": "Kinematic error under load",
-    "assembly_sweep": "Kinematic error and assembly depth",
-    "stiffness_lock": "Torsional stiffness, output locked",
-    "friction": "Friction",
-    "coast_down": "Coast-down",
-    "standstill": "Standstill",
-    "sentinel": "Sentinel run",
-    "other": "Measured motion",
 }
 
 STATUS = {

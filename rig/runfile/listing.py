@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 from rig.runfile.manifest import NAME
+
+
+def runs_in(path: Path) -> list[Path]:
+    """`path` where it is a run folder, else every one below it, however deep, in the order of their names."""
+    return [path] if (path / NAME).exists() else sorted(found.parent for found in path.rglob(NAME))
 
 
 def run_folders(root: str, depth: int = 3) -> Iterator[str]:

@@ -10,8 +10,8 @@ from typing import Any, final
 from rig.core.errors import Exit
 from rig.runfile.manifest import parse
 
-ANALYSE = ("rig.cli", "analyse")  # of one run
-AFTERWARDS = ("rig.commands.afterwards",)  # of a campaign that is complete
+ANALYSE = ("rig.evaluation", "run")
+AFTERWARDS = ("rig.evaluation", "campaign")  # of one that is complete
 TOLD = (Exit.PASS, Exit.OUT_OF_LIMITS, Exit.INCOMPLETE)  # there is a report
 
 

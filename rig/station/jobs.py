@@ -22,8 +22,6 @@ from rig.station.analysis import ANALYSE, Analysis
 from rig.station.campaigns import conduct_plan
 from rig.station.station import Job, Station
 
-TOLD = ("sign-and-scale", "weigh", "lock-check", "step-test", "unwind", "jog")  # their finding is all there is to say
-
 
 def connect(station: Station, message: Mapping[str, Any]) -> None:
     """Open the bench; nothing is energised. On the twin the clock is the wall's unless told otherwise."""
@@ -149,7 +147,7 @@ def _run(station: Station, session: Session, procedure: Procedure, note: str) ->
         done = session.run(procedure)
     finally:
         session.note = ""
-    if done.ending.status == "completed" and procedure.title() not in TOLD:
+    if done.ending.status == "completed" and not procedure.answers:
         if station.analysis is not None:
             station.analysis.end()
         station.analysis = Analysis(done.folder, ANALYSE)

@@ -9,18 +9,11 @@ import numpy as np
 import pytest
 
 from rig.analysis import Verdict, analyse
+from rig.core.kinds import KINDS
 from rig.core.units import TURN
 from tests.analysis.synthetic import ARCSEC, PROFILE, MadeRun, count
 
-PROCEDURES = (
-    "kinematic_error",
-    "constant_torque",
-    "constant_speed",
-    "stiffness_lock",
-    "standstill",
-    "friction",
-    "other",
-)
+PROCEDURES = tuple(KINDS)
 
 
 def at_speed(rpm: float = 120.0, seconds: float = 10.0, **columns: Any) -> MadeRun:

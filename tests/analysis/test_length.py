@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.angle import is_wrapped, unwrap
-from rig.analysis.source import motion_of
+from rig.analysis.motion.angle import is_wrapped, unwrap
+from rig.analysis.motion.source import motion_of
 from rig.core import rows
 from rig.core.channels import UNTRUSTED, Flag
 from rig.core.units import TURN

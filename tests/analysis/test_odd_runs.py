@@ -90,6 +90,6 @@ def test_a_run_meant_to_turn_that_made_no_whole_turn_is_inconclusive(procedure: 
 
 
 def test_a_hyphen_before_a_number_is_a_minus_and_no_other_is() -> None:
-    from rig.analysis.findings import true_minus
+    from rig.analysis.findings.collected import true_minus
 
     assert true_minus("-5 to -3.2, 1e-5, 2026-11-20, open-1 (-1)") == "−5 to −3.2, 1e-5, 2026-11-20, open-1 (−1)"

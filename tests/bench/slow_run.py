@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.bench import read, twin_parameters
 from rig.core.gains import Gains
 from sim import kernel

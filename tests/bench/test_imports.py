@@ -20,7 +20,10 @@ def loaded(statement: str) -> set[str]:
 
 @pytest.mark.slow
 def test_an_analysis_and_its_report_load_no_scipy_and_no_compiler() -> None:
-    parts = "coast_down constant_torque decomposition_words friction full_turn speed_convergence standstill stiffness"
+    parts = (
+        "friction.coast_down turning.constant_torque at_speed.decomposition_words friction.run turning.full_turn "
+        "at_speed.convergence sensors.standstill stiffness"
+    )
     each = [f"rig.analysis.{part}" for part in parts.split()]
     statement = ", ".join(["import rig.commands.analyse, rig.analysis.analyse, rig.report.page", *each])
     assert not loaded(statement) & {"scipy", "numba"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.compensation import turned
+from rig.analysis.across_runs.compensation import turned
 from rig.bench import read, twin_parameters
 from rig.closing.compensate import Compared, compensate
 from rig.core.errors import NotReady

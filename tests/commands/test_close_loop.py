@@ -12,6 +12,7 @@ import pytest
 from rig.closing.story import End, Story, write_story
 from rig.commands import close_loop
 from rig.core.errors import Exit
+from rig.evaluation.trace import trace_folder
 from rig.report.trace import page as trace_page
 from tests.report.trace import made_up
 
@@ -34,5 +35,5 @@ def test_every_round_leaves_the_trace_and_its_page(tmp_path: Path, monkeypatch: 
     made = made_up.nothing()
     monkeypatch.setattr("rig.analysis.tracing.trace.trace", lambda folder: made)
     monkeypatch.setattr(trace_page, "render", lambda trace, origin: "page")
-    assert close_loop.look(tmp_path) is made
+    assert trace_folder(tmp_path) is made
     assert {path.name for path in tmp_path.iterdir()} == {"trace.json", "report.html"}

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from rig.cli import main
-from rig.commands.identify import breakaway_beside
 from rig.commands.simulate import beyond
 from rig.model.gearfile import Covered, GearFile, Parameter
+from rig.report.text.gear import breakaway_beside
 from tests.closing.test_compensate import gear
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.targets import refuse_unwritable, writing
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
+from rig.runfile.writing import writing
 from tests.commands.made_run import made_run
 
 

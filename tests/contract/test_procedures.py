@@ -7,22 +7,26 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.analyse import PROCEDURES as ANALYSES
+from rig.analysis.findings.figure_names import GIVEN_BY, figures_of
+from rig.analysis.sensors.latch_skew_words import LABEL as SKEW
 from rig.bench import read
+from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.core.channels import CHANNELS
+from rig.core.kinds import KINDS, OTHER, Regime, kinds_of, regime_of
 from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
+from rig.evaluation.afterwards import AFTER
 from rig.guard import Guard
 from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures import CATALOGUE, procedure_class
+from rig.report import words
 from rig.supervisor import Act, Supervisor
 from rig.timing import LoopTiming
 from tests.fakes import ListSink
 
-MANIFEST_NAMES = {
-    "kinematic_error", "speed_convergence", "full_turn", "constant_torque", "constant_speed", "load_sweep",
-    "assembly_sweep", "stiffness_lock", "friction", "coast_down", "standstill", "sentinel", "other",
-}  # fmt: skip
+COMPENSATED = "compensated"  # read by `rig.analysis.across_runs.compensation`, beside a run without
 SHORTER: dict[str, dict[str, Any]] = {
     "kinematic-error": {"amplitude_deg": 360.0, "frequency": 0.04, "cycles": 1.0},
     "constant-torque": {"revolutions": 10, "settle": 1.0},
@@ -66,9 +70,41 @@ def run(name: str, stop_at: int | None = None) -> tuple[Ending, ListSink, Proced
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_its_names_and_needs_are_those_of_the_run_format(name: str) -> None:
     procedure = made(name)
-    assert procedure.name in MANIFEST_NAMES
+    assert procedure.name in KINDS
+    assert procedure.title() == name
     assert set(procedure.needs) <= {c.name for c in CHANNELS}
     assert procedure.__class__.__doc__
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_what_the_motor_does_is_said_once(name: str) -> None:
+    """By the kind of its runs, or by itself where they are of none."""
+    assert procedure_class(name).regime is Regime.OTHER or procedure_class(name).name == OTHER
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_its_run_is_read_by_an_analysis_or_answers_itself(name: str) -> None:
+    kind = procedure_class(name)
+    read = kind.name in (*ANALYSES, *kinds_of(Regime.LOCKED)) or kind.label in (SKEW, COMPENSATED)
+    assert read is not kind.answers
+
+
+@pytest.mark.parametrize("kind", [k for k in KINDS if k != OTHER])
+def test_a_kind_of_run_has_its_analysis_its_figures_and_its_word(kind: str) -> None:
+    assert kind in (*ANALYSES, *kinds_of(Regime.LOCKED))
+    assert figures_of(kind)
+    assert KINDS[kind].title == words.kind(kind)
+    assert regime_of(kind) is not Regime.OTHER
+
+
+def test_only_kinds_of_run_are_analysed_and_have_figures() -> None:
+    assert set(ANALYSES) <= set(KINDS)
+    assert {kind for _, kinds in GIVEN_BY for kind in kinds} <= set(KINDS)
+
+
+def test_every_sweep_is_followed_by_what_it_is_for() -> None:
+    assert set(AFTER) == set(SWEEPS)
+    assert {name.replace("-", "_") for name in SWEEPS if name.endswith("-sweep")} <= set(KINDS)
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.flexibility import declared
+from rig.analysis.motion.declared import declared
 from rig.core.numbers import number, stated
 from rig.live.view.about import about
 from tests.commands.made_run import made_run

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.source import motion_of
-from rig.analysis.window import measured_window
+from rig.analysis.motion.source import motion_of
+from rig.analysis.motion.window import measured_window
 from rig.core.errors import NotReady, UsageError
 from rig.procedures.constant_torque import ConstantTorque
 from rig.procedures.open_loop import Found

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Check, Estimate, Result, Verdict
+from rig.analysis.findings.result import Check, Estimate, Result, Verdict
 from rig.model.fourier import FourierSeries
 
 C_DEG = [

@@ -1,6 +1,6 @@
 """Estimates, tables, events and manifests as lines of text."""
 
-from rig.analysis.result import Estimate
+from rig.analysis.findings.result import Estimate
 from rig.report import rows
 from rig.report.cards import cards
 from rig.report.provenance import provenance

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.result import Former, Result, Verdict
+from rig.analysis.findings.result import Former, Result, Verdict
 from rig.report.history import told, with_former
 from rig.report.record import write_result
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.result import Verdict
+from rig.analysis.findings.result import Verdict
 from rig.report.page import render, write
 from rig.report.record import write_result
 from tests.report.made_up import EVENTS, TIMING, manifest, result

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rig.analysis.result import Check, Estimate, Result, Verdict
+from rig.analysis.findings.result import Check, Estimate, Result, Verdict
 from rig.report import page, shell
 from rig.report.figures import CATALOGUE
 from rig.report.palette import DARK, LIGHT

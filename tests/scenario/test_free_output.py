@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.result import Estimate, Result
-from rig.analysis.sentinel import compare
+from rig.analysis.across_runs.sentinel import compare
+from rig.analysis.findings.result import Estimate, Result
 from rig.cli import main
 from rig.procedures.coast_down import CoastDown
 from rig.procedures.constant_torque import ConstantTorque

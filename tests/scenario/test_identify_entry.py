@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.analyse import BESIDE
 from rig.model import gearfile
 
 PLAN = """schema = "hdrig.plan/1"
@@ -107,9 +106,3 @@ def test_a_lock_test_of_a_campaign_taken_up_again_is_freed_where_a_proof_shows_o
     assert main(["analyse", str(tmp_path / "lock")]) == 0
     said = json.loads((tmp_path / "lock" / "result.json").read_text())["sentence"]
     assert f"less the kinematic error of {runs['kinematic_error'].name}" in said
-
-
-def test_every_procedure_that_is_split_finds_its_slow_run_by_itself() -> None:
-    from rig.analysis.analyse import AT_SPEED
-
-    assert set(BESIDE) == {*AT_SPEED, "stiffness_lock"}

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.gram import Complex, Known, Rows, known, solve
 from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.windows import Projected
-from rig.analysis.result import Array
 
 J_L, B_L, LAG, Q = range(4)  # columns of the load's fit; LAG: T − δ
 J_M, B_M, LATE = range(3)  # of the motor's; LATE: S, a column only where a loop moves the torque

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from rig.analysis.flexibility import declared
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.dynamics import (
     J_L,
     J_M,
@@ -28,7 +28,7 @@ from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.spring import SpringRuns
 from rig.analysis.identify.stretches import stretches
 from rig.analysis.identify.windows import Projected, project
-from rig.analysis.result import Array
+from rig.analysis.motion.declared import declared
 from rig.model.fourier import FourierSeries
 from rig.model.gear import sigma_of
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.means import Mean, variances
 from rig.analysis.identify.solve import Solved, random_effects
-from rig.analysis.result import Array
 
 STRIBECK = np.geomspace(0.1, 30.0, 40)  # rad/s tried for ω_s
 CLEAR = 12.0  # of χ²: a Stribeck term must explain this much to be believed, two parameters at odds of 400

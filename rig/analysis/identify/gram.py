@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.solve import Solved
-from rig.analysis.intervals import Z95, t95
-from rig.analysis.result import Array
+from rig.core.quantiles import Z95
 
 Complex = npt.NDArray[np.complex128]
 BAND = 2  # orders on either side whose noise is taken as the same: one run has few windows, its noise is smooth

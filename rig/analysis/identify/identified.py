@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.flexibility import declared
+from rig.analysis.findings.intervals import t95
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.friction import SLOW
 from rig.analysis.identify.mode import add_mode, damping_gradient
 from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.undetermined import NOTHING, said_open, stand_in, undetermined
-from rig.analysis.intervals import t95
+from rig.analysis.motion.declared import declared
 from rig.core.errors import DataError
 from rig.core.units import RPM
 from rig.model.fourier import FourierSeries

@@ -8,13 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.angle import transmission_error
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.gram import Known, known
 from rig.analysis.identify.recording import Recording
-from rig.analysis.intervals import Z95, t95
-from rig.analysis.result import Array
-from rig.analysis.sums import harmonics
+from rig.analysis.orders.sums import harmonics
+from rig.core.quantiles import Z95
 from rig.core.units import TURN
+from rig.model.transmission_error import transmission_error
 
 BLOCK = 0.2  # s averaged to one row: noise of the sensor in the regressor is then far below the torque's range
 FEWEST = 20  # rows

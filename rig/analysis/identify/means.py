@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.recording import Plateau
-from rig.analysis.result import Array
 from rig.core.units import TURN
 from rig.model.fourier import FourierSeries
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.dynamics import J_L, J_M, spring_columns
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.solve import Solved, covariance_between
-from rig.analysis.result import Array
 from rig.model.gearfile import Parameter
 
 PARTS = ("J_m", "J_l", "K", "B_sp")

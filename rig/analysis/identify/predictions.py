@@ -9,9 +9,9 @@ import numpy as np
 
 from rig.analysis.identify.recording import Plateau, Recording, plateaus
 from rig.analysis.identify.slow import SLOW
-from rig.analysis.profile import combine
-from rig.analysis.revolutions import analyse_stroke
-from rig.analysis.strokes import Stroke
+from rig.analysis.kinematic_error.profile import combine
+from rig.analysis.motion.strokes import Stroke
+from rig.analysis.orders.revolutions import analyse_stroke
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, Waveform, at_speed

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.flexibility import declared
-from rig.analysis.result import Array
-from rig.analysis.source import Motion, Source, motion_of
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.declared import declared
+from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.core.numbers import number
 from rig.core.units import TURN
 

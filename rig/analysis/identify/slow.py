@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.gram import Known, known
 from rig.analysis.identify.recording import Recording
-from rig.analysis.kinematic_error import groups_by_speed
-from rig.analysis.profile import combine
-from rig.analysis.result import Array
-from rig.analysis.revolutions import analyse_stroke
-from rig.analysis.strokes import find_strokes
+from rig.analysis.kinematic_error.measure import groups_by_speed
+from rig.analysis.kinematic_error.profile import combine
+from rig.analysis.motion.strokes import find_strokes
+from rig.analysis.orders.revolutions import analyse_stroke
 from rig.core.units import ARCSEC, RPM
 
 SLOW = 25.0  # rpm: above, inertia bends the gear by more than the correction for it is worth

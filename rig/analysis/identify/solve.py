@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 
 ENOUGH = 8  # degrees of freedom from which the scatter of the rows is believed against their own variances
 SURE = 1.645  # standard deviations by which χ² must exceed its mean, 1 case in 20 by chance

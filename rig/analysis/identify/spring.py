@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.dynamics import LAG, Mesh, Q, Sensor, spring_columns, spring_fit
 from rig.analysis.identify.gram import Known
 from rig.analysis.identify.locked import about_the_same_angle, locked_rows
@@ -14,7 +15,6 @@ from rig.analysis.identify.recording import Recording
 from rig.analysis.identify.slow import SlowSeries, slow_rows
 from rig.analysis.identify.solve import Solved, covariance_between
 from rig.analysis.identify.windows import Projected
-from rig.analysis.result import Array
 
 READING = [LAG, Q]  # of the load's fit: how the torque sensor reads
 PASSES = 4  # of the fit: θ̃_p enters its own damping term, δ the sensor's lag

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.recording import Plateau
-from rig.analysis.result import Array
 from rig.core.units import TURN
 
 SAME = 1e-3  # N·m between torques asked for that are the same: half a step of a drive that takes per mille of 2 N·m

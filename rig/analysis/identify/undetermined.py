@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.flexibility import declared
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.means import Mean
+from rig.analysis.motion.declared import declared
 from rig.core.units import RPM
 from rig.model.gearfile import MeasuredSeries, Parameter
 

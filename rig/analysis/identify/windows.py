@@ -12,10 +12,11 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.findings.result import Array
 from rig.analysis.identify.recording import Plateau
-from rig.analysis.result import Array
-from rig.analysis.sums import harmonics
+from rig.analysis.orders.sums import harmonics
 from rig.core.units import TURN
+from rig.model.transmission_error import transmission_error
 
 Complex = npt.NDArray[np.complex128]
 TURNS = 7  # a window at least: sin⁴ passes six orders' width between its first zeros, so neighbours stay apart
@@ -136,7 +137,7 @@ def _one(
     w = _window(theta.size)[0]
     turned = np.exp(-1j * orders * float(w @ theta / w.sum()))  # the angle in the middle, its ripple averaged out
     theta, theta_l, tau_l, tau_m, levered = (_less_line(s) for s in (theta, theta_l, tau_l, tau_m, levered))
-    error = theta / ratio - theta_l
+    error = transmission_error(theta, theta_l, ratio)
     phasors = (
         value @ error, value @ waves, rate @ error, rate @ waves,
         rate @ theta_l, acceleration @ theta_l, rate @ theta, acceleration @ theta,

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rig.analysis.kinematic_error import KinematicError
-from rig.analysis.profile import Profile
+from rig.analysis.kinematic_error.measure import KinematicError
+from rig.analysis.kinematic_error.profile import Profile
 from rig.analysis.reproduction.model import Model
 from rig.analysis.reproduction.reading import Reading
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from rig.analysis.findings.result import Array
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Number
 from rig.analysis.reproduction.shaft import Complex, wave
 from rig.analysis.reproduction.split import THETA_DEG, Split, share
-from rig.analysis.result import Array
 
 MOST = 90.0  # % of the mean square: nine tenths, an rms of a third left
 

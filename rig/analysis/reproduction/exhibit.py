@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rig.analysis.findings.result import Array
 from rig.analysis.reproduction.claim import Claim, Number
-from rig.analysis.result import Array
 
 Cell = str | float | Number
 

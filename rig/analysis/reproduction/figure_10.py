@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.intervals import t95
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, Ruling, covers, missing, positive
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.figure_9 import LEVEL, NEAR
 from rig.analysis.reproduction.loads import Point, by_load, drawn, points
-from rig.analysis.result import Array
 
 TITLE = "Peak to peak against load, by depth of assembly"
 PAPER = (

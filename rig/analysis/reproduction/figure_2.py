@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.kinematic_error import KinematicError
+from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, missing, positive
 from rig.analysis.reproduction.exhibit import Exhibit

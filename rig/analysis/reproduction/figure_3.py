@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from rig.analysis.intervals import Z95
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, covers, missing
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.figure_2 import SPEED_RPM
 from rig.analysis.reproduction.reading import Reading
+from rig.core.quantiles import Z95
 
 TITLE = "Spectrum of θ̃ at 300 rpm"
 PAPER = "The strongest line lies at twice the speed of the motor: 600 cycles per minute at 300 rpm."

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.intervals import t95
-from rig.analysis.kinematic_error import KinematicError
-from rig.analysis.profile import truncation
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
+from rig.analysis.kinematic_error.measure import KinematicError
+from rig.analysis.kinematic_error.profile import truncation
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, at_most, missing
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.split import words
-from rig.analysis.result import Array
 
 TERMS = 15  # of the paper's series      [ghorbel2001, Eq. 8]
 UP_TO = 30  # terms drawn: twice as many show whether the curve has levelled off

@@ -16,12 +16,11 @@ from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.model import Model, identify_gear
 from rig.analysis.reproduction.reading import Reading, read
 from rig.core.errors import DataError, HdrigError
+from rig.core.kinds import Regime, regime_of
 from rig.runfile import manifest as manifests
 
 PROCESSES = 2  # the machine beside a rig has two cores to spare
-BESIDE = ("friction", "coast_down")  # procedures that tell the gear's parameters and are in no figure
-SLOW = ("kinematic_error", "full_turn")
-SHOWN = ("constant_torque", "constant_speed", "sentinel")
+SLOW = ("kinematic_error", "full_turn")  # unloaded, at one speed, smooth
 
 
 @dataclass(frozen=True)
@@ -137,12 +136,13 @@ def slow_reference(found: Sequence[Entry]) -> Path | None:
 
 def to_identify(found: Sequence[Entry]) -> tuple[list[Path], list[Path]]:
     """(runs that the figures at speed do not show, those they do), of the assembly that was run at speed."""
-    fast = next((e for e in found if e.procedure in SHOWN), None)
+    fast = next((e for e in found if regime_of(e.procedure) is Regime.AT_SPEED), None)
     assembly = None if fast is None else fast.conditions.get("assembly", 1)
     here = [e for e in found if assembly is None or e.conditions.get("assembly", 1) == assembly]
     slow = slow_reference(here)
-    apart = [e.folder for e in here if e.locked or e.folder == slow or (e.bare and e.procedure in BESIDE)]
-    return apart, [e.folder for e in here if e.bare and e.procedure in SHOWN]
+    at_speed = [e.folder for e in here if e.bare and regime_of(e.procedure) is Regime.AT_SPEED]
+    beside = {e.folder for e in here if e.bare and regime_of(e.procedure) is Regime.LOSSES}
+    return [e.folder for e in here if e.locked or e.folder == slow or e.folder in beside], at_speed
 
 
 def _or_why(one: Future[Reading]) -> Reading | str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, at_most, missing
 from rig.analysis.reproduction.model import Model
@@ -14,7 +15,6 @@ from rig.analysis.reproduction.reading import Reading
 from rig.analysis.reproduction.shaft import Complex
 from rig.analysis.reproduction.split import Split, simulate
 from rig.analysis.reproduction.ways import Way
-from rig.analysis.result import Array
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.kinematic_error import KinematicError
+from rig.analysis.findings.result import Array
+from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Number
 from rig.analysis.reproduction.reading import Reading
 from rig.analysis.reproduction.split import peak_to_peak
-from rig.analysis.result import Array
 
 SAME_SPEED = 1.3  # runs whose speeds differ by more show the speed beside the load
 SAME_LOAD = 0.02  # N·m

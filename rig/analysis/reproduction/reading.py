@@ -11,22 +11,23 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.analyse import analyse
-from rig.analysis.kinematic_error import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.findings.result import Array, Result
+from rig.analysis.kinematic_error.measure import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.motion.strokes import Stroke, find_strokes
+from rig.analysis.motion.tame import Tame
+from rig.analysis.motion.window import measured_window, part
 from rig.analysis.reproduction.shaft import Shaft, shaft_of
 from rig.analysis.reproduction.waveform_spectrum import Spectrum, spectrum_of
 from rig.analysis.reproduction.ways import Way, ways_of
-from rig.analysis.result import Array, Result
-from rig.analysis.smoothness import sentence, smoothness
-from rig.analysis.source import Motion, Source, motion_of
-from rig.analysis.strokes import Stroke, find_strokes
-from rig.analysis.tame import Tame
-from rig.analysis.window import measured_window, part
+from rig.analysis.smoothness.measure import smoothness
+from rig.analysis.smoothness.words import sentence
+from rig.core.kinds import Regime, regime_of
 from rig.core.numbers import number
 from rig.runfile.run import Run
 
 FAST = 60.0  # rpm: from here a run shows what speed does, below it the pure error and how slow is slow enough
 FEWEST = 2  # revolutions of one speed
-UNREAD = ("friction", "coast_down", "step_test", "sign_and_scale", "weigh", "lock_check")  # for identification alone
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ def reading_of(run: Source, reference: Source | None = None) -> Reading:
     with np.errstate(all="ignore"):
         if bare.conditions.get("output_locked"):
             return replace(bare, lock=analyse(run, reference))
-        if run.procedure in UNREAD:
+        if regime_of(run.procedure) is Regime.LOSSES:  # for identification alone
             return bare
         tame = Tame(run)
         motion = motion_of(tame)

@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Array
-from rig.analysis.revolutions import TERMS
-from rig.analysis.source import Motion
-from rig.analysis.strokes import find_strokes
-from rig.analysis.sums import harmonics
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
+from rig.analysis.motion.strokes import find_strokes
+from rig.analysis.orders.revolutions import TERMS
+from rig.analysis.orders.sums import harmonics
 
 Complex = npt.NDArray[np.complex128]
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.decomposition import Decomposition, decompose
-from rig.analysis.kinematic_error import KinematicError
-from rig.analysis.profile import DRAWS, Profile
+from rig.analysis.at_speed.decomposition import Decomposition, decompose
+from rig.analysis.findings.result import Array
+from rig.analysis.kinematic_error.measure import KinematicError
+from rig.analysis.kinematic_error.profile import DRAWS, Profile
+from rig.analysis.orders.revolutions import GRID
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Number
 from rig.analysis.reproduction.model import Model
 from rig.analysis.reproduction.reading import Reading
 from rig.analysis.reproduction.shaft import Complex, Shaft, wave
-from rig.analysis.result import Array
-from rig.analysis.revolutions import GRID
 from rig.core.units import ARCSEC, RPM
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, at_speed

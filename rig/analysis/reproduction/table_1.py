@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rig.analysis.flexibility import declared
+from rig.analysis.motion.declared import declared
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, Ruling, covers, missing, positive
 from rig.analysis.reproduction.exhibit import Cell, Exhibit

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.kinematic_error import KinematicError
+from rig.analysis.findings.result import Array
+from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, at_least, missing
 from rig.analysis.reproduction.exhibit import Cell, Exhibit
 from rig.analysis.reproduction.split import words
-from rig.analysis.result import Array
 
 TITLE = "Fourier coefficients of θ̃_p"
 PAPER = "a_n and b_n of fifteen orders. The numbers are lost from the text at hand; that order 2 leads is not."

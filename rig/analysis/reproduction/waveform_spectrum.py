@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.result import Array
-from rig.analysis.source import Motion
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
 
 UP_TO = 12.0  # times the motor's speed: beyond, nothing stands out of the paper's axis
 SHORTEST = 8.0  # turns: fewer do not part neighbouring orders under a Hann window

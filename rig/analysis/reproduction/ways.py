@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.result import Array
-from rig.analysis.revolutions import ROWS_PER_TERM, TERMS, analyse_stroke
-from rig.analysis.source import Motion
-from rig.analysis.strokes import Stroke
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
+from rig.analysis.motion.strokes import Stroke
+from rig.analysis.orders.revolutions import ROWS_PER_TERM, TERMS, analyse_stroke
 
 
 @dataclass(frozen=True)

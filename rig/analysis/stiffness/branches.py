@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.result import Array
-from rig.analysis.strokes import turning_points
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.strokes import turning_points
 
 TURNED = 0.1  # of the whole wind-up: going back by less is stick-slip or noise, not a turn
 ENDS = 0.01  # of the whole wind-up: within it of a turn, the rows belong to the turn

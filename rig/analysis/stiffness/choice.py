@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.curve import Curve, fit, without
 from rig.analysis.stiffness.laws import Law
 from rig.analysis.stiffness.points import Points

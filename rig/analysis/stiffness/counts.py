@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from rig.analysis.flexibility import declared
-from rig.analysis.source import Motion, Source
+from rig.analysis.motion.declared import declared
+from rig.analysis.motion.source import Motion, Source
 from rig.core.units import TURN
 
 PLACE = 1.0 - math.sqrt(0.05)  # counts: 95 % of a triangle of ± one count, the difference of two places within a count

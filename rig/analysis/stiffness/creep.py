@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.branches import Hold
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.loop import Value

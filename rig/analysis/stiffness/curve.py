@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.laws import Law, Line, Scale
 from rig.analysis.stiffness.points import Points, rates_differ
 from rig.analysis.stiffness.shape import Shape

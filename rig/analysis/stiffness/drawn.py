@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.findings import Findings
+from rig.analysis.findings.collected import Findings
 from rig.analysis.stiffness.measure import Stiffness
 from rig.core.units import ARCMIN
 

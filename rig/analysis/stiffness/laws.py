@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.branches import Ramp
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.points import Points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.findings import Findings
+from rig.analysis.findings.collected import Findings
 from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.loop import rate_law
 from rig.analysis.stiffness.measure import SENSOR_GAIN, Stiffness

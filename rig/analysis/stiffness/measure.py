@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.angle import transmission_error
-from rig.analysis.intervals import t95
-from rig.analysis.result import Array
-from rig.analysis.source import Motion
+from rig.analysis.findings.intervals import t95
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
 from rig.analysis.stiffness.branches import Hold, Ramp, cut
 from rig.analysis.stiffness.counts import of_width
 from rig.analysis.stiffness.creep import Creep, creep
@@ -22,6 +21,7 @@ from rig.analysis.stiffness.share import Share, reference_fits, share_of
 from rig.analysis.stiffness.spring import Spring, spring_of
 from rig.analysis.stiffness.tilt import Tilt, with_reference, without_reference
 from rig.model.fourier import FourierSeries
+from rig.model.transmission_error import transmission_error
 
 SENSOR_GAIN = 0.002  # 95 %, of the torque: a sensor of class 0.2
 FEWEST = 40  # points, a quarter of one whole ramp

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rig.analysis.flexibility import declared
+from rig.analysis.motion.declared import declared
 
 SERIES = {"K_sensor": "torque sensor", "K_coupling": "couplings", "K_fixture": "fixture"}
 

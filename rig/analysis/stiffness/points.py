@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.branches import Ramp
 
 CELLS = 150  # over the whole wind-up: a tenth of the zone of the softest line

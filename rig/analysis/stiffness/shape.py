@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.points import Points, rates_differ
 
 WAYS = np.array([0.02, 0.04, 0.08, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2])  # of the reach: from stop to stop, per element

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.intervals import t95
+from rig.analysis.findings.intervals import t95
 from rig.analysis.stiffness.choice import zones
 from rig.analysis.stiffness.curve import Curve, fit
 from rig.analysis.stiffness.laws import Cubic, Scale

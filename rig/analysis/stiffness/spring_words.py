@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rig.analysis.findings import Findings
-from rig.analysis.result import Array, Part
+from rig.analysis.findings.collected import Findings
+from rig.analysis.findings.result import Array, Part
 from rig.analysis.stiffness.choice import LeftOut
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.laws import Play

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.points import Points
 from rig.analysis.stiffness.share import Share
+from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
 
 ORDERS = ((2, 90.0 * ARCSEC), (4, 22.5 * ARCSEC))  # amplitudes [rad] of an older gear, 3 arcmin peak to peak
-FLAT = 1.96 / np.sqrt(3.0)  # from the bound of an even distribution to the half width of 95 %
+FLAT = Z95 / np.sqrt(3.0)  # from the bound of an even distribution to the half width of 95 %
 
 
 @dataclass(frozen=True)

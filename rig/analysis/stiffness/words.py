@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.findings import Findings
-from rig.analysis.flexibility import declared
-from rig.analysis.reference import kinematic_error_reference
-from rig.analysis.result import Array, Check
-from rig.analysis.source import Motion, Source
+from rig.analysis.findings.collected import Findings
+from rig.analysis.findings.result import Array, Check
+from rig.analysis.kinematic_error.reference import kinematic_error_reference
+from rig.analysis.motion.declared import declared
+from rig.analysis.motion.source import Motion, Source
+from rig.analysis.motion.tame import Tame
 from rig.analysis.stiffness.counts import one_count
 from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.drawn import add_curves
@@ -25,7 +26,6 @@ from rig.analysis.stiffness.spring_words import (
     parts_of,
     value_of,
 )
-from rig.analysis.tame import Tame
 from rig.core.units import DEG, TURN
 
 MOVES = 0.05  # of the wind-up: a load that moves more is not locked

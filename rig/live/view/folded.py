@@ -16,6 +16,7 @@ from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas, Pen
 from rig.live.view.drawing import Drawing, draw_frame
 from rig.live.view.turns import BINS, Turn, Turns
+from rig.model.transmission_error import transmission_error
 
 Array = np.ndarray[Any, Any]
 
@@ -71,7 +72,8 @@ class Folded(Drawing):
 
     def add(self, block: Block, canvas: Canvas) -> None:
         """Takes the rows of a run in progress; a whole turn is drawn into its side, a part of one upon it."""
-        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) / ARCSEC
+        theta = block["theta_m"]
+        error = transmission_error(theta, block["theta_l"], self._ratio) / ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         if not here.any():
             return

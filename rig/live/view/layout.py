@@ -6,6 +6,9 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from rig.core.kinds import OTHER, Regime, regime_of
+from rig.procedures import CATALOGUE, procedure_class
+
 PAST = 30.0  # s: four turns of a wave generator at the usual 9.6 rpm
 
 
@@ -73,10 +76,6 @@ MOTOR = Pane(Kind.TIME, "/curves/motor", "Motor torque [N·m]", legend=True)
 SHAFT = Pane(Kind.TIME, "/curves/shaft", "Shaft torque τ_l [N·m]")
 TICK = Pane(Kind.TIME, "/curves/tick", "Lateness and age of a row [ms]", legend=True)
 
-LOCKED = ("stiffness_lock", "lock-check", "unwind")
-LOSSES = ("friction", "coast_down", "step-test")
-AT_REST = ("standstill", "weigh")
-
 
 def layout_for(
     procedure: str,
@@ -101,11 +100,9 @@ def layout_for(
 
 
 def _whole(procedure: str, title: str) -> Group:
-    names = (procedure, title)
-    for kinds, arranged in ((LOCKED, _locked()), (LOSSES, _losses()), (AT_REST, _at_rest())):
-        if any(name in kinds for name in names):
-            return arranged
-    return _turning()
+    regime = procedure_class(title).regime if procedure == OTHER and title in CATALOGUE else regime_of(procedure)
+    arranged = {Regime.LOCKED: _locked, Regime.LOSSES: _losses, Regime.AT_REST: _at_rest}
+    return arranged.get(regime, _turning)()
 
 
 def _without(group: Group, absent: Collection[str]) -> Group:

@@ -14,6 +14,7 @@ from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas
 from rig.live.view.drawing import Drawing
 from rig.live.view.turns import BINS, Turn, Turns
+from rig.model.transmission_error import transmission_error
 
 Array = np.ndarray[Any, Any]
 
@@ -43,7 +44,8 @@ class Orders(Drawing):
 
     def add(self, block: Block, canvas: Canvas) -> None:
         """Takes the rows of a run; the bars are drawn anew when a whole turn has come."""
-        theta, error = block["theta_m"], (block["theta_m"] / self._ratio - block["theta_l"]) / ARCSEC
+        theta = block["theta_m"]
+        error = transmission_error(theta, block["theta_l"], self._ratio) / ARCSEC
         here = self._calm.of(block.t, block["flags"]) & np.isfinite(theta) & np.isfinite(error)
         done = self._turns.add(theta[here], error[here])
         for turn in done:

@@ -16,6 +16,7 @@ from rig.live.view.block import Block
 from rig.live.view.canvas import Canvas, Pen
 from rig.live.view.curves import speed
 from rig.live.view.drawing import Drawing, draw_frame
+from rig.model.transmission_error import transmission_error
 
 Array = np.ndarray[Any, Any]
 
@@ -174,7 +175,7 @@ def averaged(t: Array, x: Array, y: Array, mean: float) -> tuple[Array, Array]:
 
 def twist(block: Block, ratio: float) -> Array:
     """Wind-up [rad] at the output, shape (n,)."""
-    return np.asarray(block["theta_m"] / ratio - block["theta_l"])
+    return transmission_error(block["theta_m"], block["theta_l"], ratio)
 
 
 def torque(block: Block) -> Array:

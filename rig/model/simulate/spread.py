@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from rig.core.quantiles import Z95
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.gearfile import GearFile, MeasuredSeries, Parameter
 from rig.model.simulate.waveform import Array, NoSteadyState
 
 DRAWS = 60  # gears: the half width of a 95 % interval is then known to a tenth
-Z95 = 1.96  # of the normal distribution the intervals stand for
 
 
 def drawn_gears(file: GearFile, count: int = DRAWS, seed: int = 1) -> list[Gear]:

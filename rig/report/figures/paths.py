@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.path import Path
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 
 SURE = 6  # decimals: what is less is rounding's, and must not decide to which tenth a point goes
 

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from rig.core.quantiles import Z95
 from rig.report.figures.arrays import axis, line, scalar
 from rig.report.figures.canvas import Curves, Drawing, Frame, foot, key, log_axis, sheet, title
 from rig.report.figures.direction import FIT_DASH
@@ -21,8 +22,8 @@ def draw(curves: Curves, frame: Frame) -> Figure | None:
     if speed is None or deviation is None or u is None or not (speed > 0).all() or not (u > 0).any():
         return None
     tolerance = scalar(curves, "convergence.tolerance")
-    high = np.sqrt(np.fmax(deviation, 0.0) ** 2 + (1.96 * np.abs(u)) ** 2)
-    low = np.sqrt(np.fmax(np.fmax(deviation, 0.0) ** 2 - (1.96 * u) ** 2, 0.0))
+    high = np.sqrt(np.fmax(deviation, 0.0) ** 2 + (Z95 * np.abs(u)) ** 2)
+    low = np.sqrt(np.fmax(np.fmax(deviation, 0.0) ** 2 - (Z95 * u) ** 2, 0.0))
     floor = float(np.nanmin(high[high > 0])) / 6.0
     figure, (panel,) = sheet(frame, [frame.pick(250, 210)], keys=int(frame.narrow))
     log_axis(panel, floor, max(float(np.nanmax(high)), tolerance or 0.0) * 2.0)

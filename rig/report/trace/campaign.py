@@ -13,7 +13,7 @@ from rig.core.numbers import number
 from rig.report.numbers import counted, duration
 from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
-from rig.report.words import PROCEDURES, humanise
+from rig.report.words import kind
 from rig.runfile.manifest import contents, parse
 
 
@@ -93,7 +93,7 @@ def _row(name: str, part: str, manifest: Mapping[str, Any]) -> RunRow:
     return RunRow(
         name,
         part,
-        PROCEDURES.get(procedure, humanise(procedure)) + length,
+        kind(procedure) + length,
         ", ".join(f"{row.name} {row.value}" for row in said),
         utc(manifest["started_utc"]) if manifest.get("started_utc") else "unknown",
         show(manifest.get("backend")),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
 from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Status, Trace
@@ -138,7 +138,7 @@ def _next(trace: Trace) -> dict[str, Any] | None:
         return None
     conditions = [": ".join((run_words.named(k)[0], _value(k, v))) for k, v in run.conditions.items()]
     return {
-        "procedure": run_words.PROCEDURES.get(run.procedure, run_words.humanise(run.procedure)),
+        "procedure": run_words.kind(run.procedure),
         "conditions": conditions,
         "because": words.plainly(run.because),
     }

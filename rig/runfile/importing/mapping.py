@@ -25,16 +25,13 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.errors import UsageError
+from rig.core.kinds import KINDS
 from rig.core.regular import regular
 from rig.runfile.importing.channel import ChannelMap, read_channel
 from rig.runfile.importing.strict import Section, nearest
 
 SCHEMA = "hdrig.import/1"
 SHIPPED = Path(__file__).parent / "mappings"
-PROCEDURES = (
-    "kinematic_error", "speed_convergence", "full_turn", "constant_torque", "constant_speed", "load_sweep",
-    "assembly_sweep", "stiffness_lock", "friction", "coast_down", "standstill", "sentinel", "other",
-)  # fmt: skip
 CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit")  # plausibility an [accept] may waive
 
 
@@ -106,7 +103,7 @@ def read_mapping(text: str, source: str) -> Mapping:
         source=source,
         text=text,
         description=top.text("description", ""),
-        procedure=top.text("procedure", choices=PROCEDURES),
+        procedure=top.text("procedure", choices=tuple(KINDS)),
         gear=_gear(top.table("gear")),
         declared=_numbers(top.table("declared", {}), ("J_m", "J_l", "K"), whole=("fourier_terms",)),
         conditions=_conditions(top.table("conditions", {})),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.source import motion_of
+from rig.analysis.motion.source import motion_of
 from rig.analysis.stiffness.counts import of_width, one_count
 from rig.core.units import ARCMIN, TURN
 from tests.analysis.stiffness.plant import K, LockedGear, N

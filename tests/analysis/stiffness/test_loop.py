@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.result import Verdict
+from rig.analysis.findings.result import Verdict
 from rig.core.units import ARCMIN
 from tests.analysis.stiffness.plant import K, LockedGear
 from tests.analysis.stiffness.test_spring import SLIP, bent, figures

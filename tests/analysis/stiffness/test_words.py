@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
-from rig.analysis.result import Verdict
+from rig.analysis.findings.result import Verdict
 from rig.analysis.stiffness.path import Path
 from tests.analysis.stiffness.plant import K, LockedGear
 from tests.analysis.stiffness.test_spring import figures

@@ -7,8 +7,8 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from rig.analysis.result import Array
-from rig.analysis.sums import BLOCK, fit, harmonics
+from rig.analysis.findings.result import Array
+from rig.analysis.orders.sums import BLOCK, fit, harmonics
 from tests.bench.figure import AtMost, Figure, ratio
 from tests.bench.row import Row
 from tests.bench.turns import Rounds, cpu, peak_mib, take_turns
@@ -26,7 +26,7 @@ class Slow:
     side: Array
     omega: Array
     error: Array
-    room: Array  # (34, BLOCK) for the columns of every block, as `rig.analysis.revolutions` keeps it
+    room: Array  # (34, BLOCK) for the columns of every block, as `rig.analysis.orders.revolutions` keeps it
 
     @classmethod
     def of(cls, n: int) -> Slow:

@@ -7,8 +7,8 @@ from typing import ClassVar, final
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from rig.analysis.orders import resample, spectrum
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
+from rig.analysis.orders.lines import resample, spectrum
 from rig.core.units import TURN
 from tests.bench.figure import AtMost, Figure, Shown, ratio
 from tests.bench.row import Row

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, final
 
 import numpy as np
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from tests.bench.built import Unavailable
 from tests.bench.figure import AtMost, Figure, not_measured, ratio
 from tests.bench.row import Row

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numba import njit
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.model.gear import Gear
 from rig.model.simulate import each_under_torque
 from sim import kernel

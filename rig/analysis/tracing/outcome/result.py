@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from rig.analysis.result import Array
+from rig.analysis.findings.result import Array
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from rig.analysis.source import Source
-from rig.analysis.tame import LARGEST
+from rig.analysis.motion.source import Source
+from rig.analysis.motion.tame import LARGEST
 from rig.core import numbers
 from rig.model.effect import Known
 from rig.model.fourier import FourierSeries

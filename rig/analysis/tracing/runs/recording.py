@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from rig.analysis.source import Motion, Source, motion_of
-from rig.analysis.tame import RATIOS, Tame
+from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.meanings import computed_torque

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rig.analysis.source import Source
+from rig.analysis.motion.source import Source
 from rig.analysis.tracing.runs.declared import believed, is_locked
 from rig.analysis.tracing.runs.smoothing import flat_rate
 from rig.model.effect import Array, Signals

@@ -1,0 +1,1 @@
+"""What only several runs say together: sweeps of load and depth, sentinels, encoder zeros, compensation."""

@@ -1,0 +1,1 @@
+"""What an analysis gives: figures with 95 % intervals, checks, curves; and the limits they are judged by."""

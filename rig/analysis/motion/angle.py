@@ -1,0 +1,47 @@
+"""Angles as counters give them: their wrap undone, and the ratio two of them show."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rig.analysis.findings.result import Array
+from rig.core.rows import room, stretches
+from rig.core.units import TURN
+
+
+def unwrap(values: Array, period: float) -> Array:
+    """Undo the wrap of a counter or an angle of `period` (unit of `values`), shape (n,).
+
+    A step of more than half a period between neighbours is taken for a wrap, so the true step must stay below that.
+    """
+    out, turns = room(values.size), 0.0
+    for some in stretches(values.size):
+        step = np.diff(values[some], prepend=values[max(some.start - 1, 0)])
+        whole = turns + np.cumsum(np.round(step / period))
+        out[some] = values[some] - whole * period
+        turns = float(whole[-1])
+    return out
+
+
+def is_wrapped(theta: Array) -> bool:
+    """Whether `theta` [rad] jumps by whole turns now and then, as an angle that nobody unwrapped does."""
+    jumps, count = _jumps(theta), theta.size - 1
+    if jumps.size == 0 or jumps.size > 0.05 * count:  # a motor that really does half a turn per row does so often
+        return False
+    usual = float(np.median(np.diff(theta)))
+    turns = (jumps - usual) / TURN
+    return bool(np.all(np.abs(turns - np.round(turns)) < 0.1))
+
+
+def _jumps(theta: Array) -> Array:
+    """The steps of more than half a turn."""
+    steps = (np.diff(theta[max(some.start - 1, 0) : some.stop]) for some in stretches(theta.size))
+    return np.concatenate([step[np.abs(step) > TURN / 2] for step in steps])
+
+
+def measured_ratio(theta_m: Array, theta_l: Array) -> float:
+    """Motor turns per load turn as the two encoders say it, by least squares; inf when the load did not move."""
+    x = theta_l - theta_l.mean()
+    y = theta_m - theta_m.mean()
+    cross = float(x @ y)
+    return float(y @ y) / cross if cross else float("inf")

@@ -1,0 +1,149 @@
+"""What the analysis needs of a run, and the rows of it that can be trusted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.angle import is_wrapped, unwrap
+from rig.core.channels import UNTRUSTED, Flag
+from rig.core.rows import picked, room, stretches
+from rig.core.units import ARCSEC, RPM, TURN
+from rig.model.transmission_error import transmission_error
+
+Rows = npt.NDArray[np.int64]
+FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
+SLOWEST = 60.0  # s between rows: nothing that turns is recorded more slowly
+
+
+class Source(Protocol):
+    """A run as `rig.runfile` gives it. A column is float64 with NaN where nothing was measured, None when absent."""
+
+    def column(self, name: str) -> Array | None: ...
+
+    def has(self, name: str) -> bool: ...
+
+    @property
+    def manifest(self) -> Mapping[str, Any]: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def ratio(self) -> float: ...
+
+    @property
+    def procedure(self) -> str: ...
+
+    @property
+    def conditions(self) -> Mapping[str, Any]: ...
+
+    @property
+    def declared(self) -> Mapping[str, Any]: ...
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The rows in which the motor angle (and, if measured, the load angle) is valid; all shapes (n,), SI.
+
+    `breaks` are the rows before which an encoder was re-referenced: angles do not join across them.
+    """
+
+    ratio: float
+    theta_m: Array
+    theta_l: Array | None
+    t: Array | None
+    rows: Rows | None  # which rows of the run these are; None: all
+    breaks: tuple[int, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def error_arcsec(self, lo: int, hi: int) -> Array:
+        """θ̃ of rows lo..hi, arcsec at the output      [ghorbel2001, Eq. 1]"""
+        assert self.theta_l is not None
+        return transmission_error(self.theta_m[lo:hi], self.theta_l[lo:hi], self.ratio) / ARCSEC
+
+    def pick(self, column: Array | None) -> Array | None:
+        """The same rows of another column of the run."""
+        return column if column is None or self.rows is None else picked(column, self.rows)
+
+    def speed_rpm(self, lo: int, hi: int) -> float:
+        """Mean motor speed between two rows, rpm, signed; NaN without time."""
+        if self.t is None or hi <= lo or self.t[hi] == self.t[lo]:
+            return float("nan")
+        return float((self.theta_m[hi] - self.theta_m[lo]) / (self.t[hi] - self.t[lo])) / RPM
+
+
+def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
+    """theta_m or theta_l [rad]; from the raw counts when only they were recorded."""
+    theta = run.column(f"theta_{side}")
+    if theta is None:
+        counts = run.column(f"counts_{side}")
+        per_turn = run.manifest.get("encoders", {}).get({"m": "motor", "l": "load"}[side] + "_counts_per_rev")
+        if counts is None or not per_turn:
+            return None
+        notes.append(f"theta_{side} was made from counts_{side} at {per_turn:g} counts per turn.")
+        theta = counts * (TURN / float(per_turn))
+    if theta.size > 2 and is_wrapped(theta):
+        notes.append(f"theta_{side} jumps by whole turns; it was unwrapped first.")
+        theta = unwrap(theta, TURN)
+    return theta
+
+
+def motion_of(run: Source) -> Motion | None:
+    """The trusted rows of `run`; None when it has no motor angle at all."""
+    notes: list[str] = []
+    theta_m, theta_l = _angle(run, "m", notes), _angle(run, "l", notes)
+    if theta_m is None:
+        return None
+    t, flags = run.column("t"), run.column("flags")
+    rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
+    if rows is not None:
+        notes.append(
+            f"{theta_m.size - rows.size} of {theta_m.size} rows left out: an angle was missing, stale or frozen, or "
+            "the guard had tripped."
+        )
+        theta_m, theta_l = picked(theta_m, rows), None if theta_l is None else picked(theta_l, rows)
+        t = None if t is None else picked(t, rows)
+    if t is not None and not _increases(t):
+        notes.append("The time column does not increase everywhere; it was not used.")
+        t = None
+    if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
+        notes.append(f"The time column says {(t[-1] - t[0]) / (t.size - 1):.3g} s between rows; it was not used.")
+        t = None
+    return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+
+
+def _trusted(columns: list[Array], flags: Array | None) -> tuple[Rows | None, tuple[int, ...]]:
+    """The rows whose `columns` are all there and that no flag speaks against, None: all; and the breaks among them."""
+    breaks: list[int] = []
+    count, size = 0, columns[0].size
+
+    def bits(some: slice) -> Rows:
+        return np.zeros(1, np.int64) if flags is None else np.nan_to_num(flags[some]).astype(np.int64)
+
+    def kept(some: slice) -> npt.NDArray[np.bool_]:
+        there = np.all([np.isfinite(column[some]) for column in columns], axis=0)
+        return np.asarray(there & ((bits(some) & int(UNTRUSTED)) == 0))
+
+    for some in stretches(size):
+        keep = kept(some)
+        epochs = np.flatnonzero(bits(some) & int(Flag.EPOCH))
+        breaks += (count + np.cumsum(keep)[epochs] - keep[epochs]).tolist()
+        count += int(np.count_nonzero(keep))
+    if count == size:
+        return None, tuple(breaks)
+    rows, filled = room(count).view(np.int64), 0
+    for some in stretches(size):
+        found = np.flatnonzero(kept(some)) + some.start
+        rows[filled : filled + found.size] = found
+        filled += found.size
+    return rows, tuple(breaks)
+
+
+def _increases(t: Array) -> bool:
+    return all(np.all(np.diff(t[max(some.start - 1, 0) : some.stop]) > 0) for some in stretches(t.size))

@@ -1,0 +1,90 @@
+"""A run whose manifest and columns may hold anything, made fit to calculate with: what is absurd counts as missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Source
+from rig.core.numbers import number
+from rig.core.rows import stretches
+
+LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
+FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
+RATIOS = (1e-3, 1e5)  # no gear is outside
+TABLES = ("gear", "encoders", "conditions", "declared", "limits", "files")
+
+
+class Tame:
+    """`run` with the face of a Source; `notes` says what was left out."""
+
+    def __init__(self, run: Source) -> None:
+        self._run = run
+        self.notes: list[str] = []
+        self._columns: dict[str, Array | None] = {}
+        self._manifest = self._tables(run.manifest)
+        self.name, self.ratio, self.procedure = run.name, float(run.ratio), run.procedure
+
+    @property
+    def manifest(self) -> Mapping[str, Any]:
+        return self._manifest
+
+    @property
+    def conditions(self) -> Mapping[str, Any]:
+        return dict(self._manifest.get("conditions") or {})
+
+    @property
+    def declared(self) -> Mapping[str, Any]:
+        return dict(self._manifest.get("declared") or {})
+
+    def has(self, name: str) -> bool:
+        return self.column(name) is not None
+
+    def column(self, name: str) -> Array | None:
+        """The column with NaN for what is infinite or absurd; None when nothing of it can be used."""
+        if name not in self._columns:
+            self._columns[name] = self._column(name)
+        return self._columns[name]
+
+    def _column(self, name: str) -> Array | None:
+        try:
+            found = self._run.column(name)
+            values = None if found is None else np.asarray(found, dtype=np.float64)
+        except (ValueError, TypeError, LookupError, NotImplementedError) as why:
+            self.notes.append(f"The column {name} could not be read ({why}); it was not used.")
+            return None
+        if values is None:
+            return None
+        most = FARTHEST if name.startswith("theta") else LARGEST
+        absurd = [some.start + np.flatnonzero(np.abs(values[some]) > most) for some in stretches(values.size)]
+        count = sum(rows.size for rows in absurd)  # infinite too; NaN compares false
+        if count:
+            self.notes.append(f"{count} values of {name} are infinite or absurdly large: taken as missing.")
+            values = values.copy()
+            values[np.concatenate(absurd)] = np.nan
+        usable = any(np.isfinite(values[some]).any() for some in stretches(values.size))
+        return values if usable or not values.size else None
+
+    def _tables(self, manifest: Any) -> dict[str, Any]:
+        out = dict(manifest) if isinstance(manifest, Mapping) else {}
+        for key in TABLES:
+            if not isinstance(out.get(key), Mapping):
+                if out.get(key) is not None:
+                    self.notes.append(f"The manifest's {key} is not a table; it was not used.")
+                out[key] = {}
+        out["encoders"] = {k: v for k, v in out["encoders"].items() if 0 < number(v) < LARGEST}
+        out["limits"] = {k: v if v is None or self._is_limit(k, v) else {} for k, v in out["limits"].items()}
+        return out
+
+    def _is_limit(self, name: Any, limit: Any) -> bool:
+        if isinstance(limit, Mapping):
+            bounds = [limit[k] for k in ("lower", "upper") if limit.get(k) is not None]
+            good = bool(bounds) and all(np.isfinite(number(b)) for b in bounds) and bounds == sorted(bounds)
+        else:
+            good = bool(np.isfinite(number(limit)))
+        if not good:
+            self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
+        return good

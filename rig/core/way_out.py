@@ -1,0 +1,33 @@
+"""How a process ends that a person or a program waits for: one sentence on stderr and an exit code."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+from rig.core.errors import Exit, HdrigError
+
+
+def ending_in_a_sentence(act: Callable[[], int]) -> int:
+    """The exit code of `act`, or that of the error it ends with. Raises nothing but the SystemExit of `act`."""
+    try:
+        return act()
+    except HdrigError as error:
+        print(f"hdrig: {error}", file=sys.stderr)
+        return int(error.exit)
+    except KeyboardInterrupt:
+        print("hdrig: interrupted", file=sys.stderr)
+        return int(Exit.HALTED)
+    except Exception as error:  # noqa: BLE001 - the way out: the drive is safe by now, the person gets a sentence
+        print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
+        return int(Exit.INTERNAL)
+
+
+def _where(error: Exception) -> str:
+    """Kind, text and place of an error nobody foresaw, on one line."""
+    at = error.__traceback__
+    while at is not None and at.tb_next is not None:
+        at = at.tb_next
+    place = f" in {at.tb_frame.f_code.co_filename}, line {at.tb_lineno}" if at is not None else ""
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text[:200]}{place}"

@@ -1,0 +1,180 @@
+"""All runs of one gear to the parameters of equations 6-8, what was measured beside them, and its gear file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.core.errors import DataError, Exit
+from rig.core.units import RPM
+
+if TYPE_CHECKING:
+    from rig.analysis.findings.result import Result
+    from rig.analysis.friction.coasting import Coasting
+    from rig.analysis.identify.identified import Identified
+    from rig.analysis.identify.predictions import Prediction
+    from rig.analysis.identify.recording import Recording
+    from rig.model.gearfile import Covered, GearFile, Parameter
+    from rig.runfile.run import Run
+
+TERMS = 15  # orders of the paper's series
+Say = Callable[[str], None]
+"""Told of progress; what it is told need not be kept."""
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What the runs of one gear say of it."""
+
+    found: Identified
+    file: GearFile  # as `found`, with what lock tests, friction runs and coast-downs say beside the model
+    predictions: Sequence[Prediction]  # θ̃ at speed as recorded and as the gear file gives it
+    coasts: Sequence[Coasting]
+    used: int  # runs the fit could read
+    of: int  # completed runs there were
+    simulated: bool
+
+    @property
+    def exit(self) -> Exit:
+        """INCOMPLETE where a parameter is left open."""
+        return Exit.INCOMPLETE if self.found.undetermined else Exit.PASS
+
+    def lines(self) -> list[str]:
+        """All of it for people."""
+        from rig.analysis.identify.undetermined import said_open
+        from rig.report.text import gear as text
+
+        found = self.found
+        lines = text.report(found, self.simulated, self.used, self.of)
+        if found.undetermined:
+            lines.append(f"  {said_open(found.undetermined, found.parameters)}")
+        return [
+            *lines,
+            *text.comparison(self.predictions),
+            *text.coasting(self.coasts),
+            *text.characteristic_lines(self.file.characteristics),
+            *text.breakaway_beside(self.file),
+            *(f"  cannot tell: {sentence}" for sentence in found.cannot),
+        ]
+
+
+def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
+    """The gear of the runs in `folders`, its θ̃_p with `terms` orders. Raises DataError: no run, two gears, or nothing
+    that can be determined."""
+    from rig.analysis.identify.predictions import predictions
+
+    runs, recordings = open_runs(folders)
+    found, file = _fitted(runs, recordings, terms, say)
+    characteristics = beside(runs, say)
+    if not characteristics:
+        refuse_nothing(found, recordings)
+    return Identification(
+        found=found,
+        file=replace(file, characteristics=characteristics, covered=covered(found)),
+        predictions=predictions(recordings, file.gear(), terms),
+        coasts=coasts(runs, found, say),
+        used=len(recordings),
+        of=len(runs),
+        simulated=file.simulated,
+    )
+
+
+def gear_of(folders: Sequence[Path], terms: int, say: Say) -> GearFile:
+    """The gear file alone, without what is measured beside the model. Raises DataError as `identify`."""
+    runs, recordings = open_runs(folders)
+    return _fitted(runs, recordings, terms, say)[1]
+
+
+def _fitted(runs: list[Run], recordings: list[Recording], terms: int, say: Say) -> tuple[Identified, GearFile]:
+    from rig.analysis.identify.fit import fit
+    from rig.analysis.identify.identified import identified
+
+    found = identified(fit(recordings, terms, say), runs[0].manifest)
+    gear = runs[0].manifest.get("gear") or {}
+    simulated = any(r.simulated for r in runs)
+    return found, found.gear_file(str(gear.get("serial") or ""), simulated, made_with(runs))
+
+
+def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
+    """Raises DataError where not one number is measured: a gear file of what was declared says nothing new."""
+    if any(p.origin == "measured" for p in found.parameters.values()) or found.series.origin == "measured":
+        return
+    kinds = ", ".join(sorted({r.source.procedure.replace("_", "-") for r in recordings}))
+    raise DataError(
+        f"nothing of the gear can be determined from what is here ({kinds}): it takes runs in which the motor turns "
+        "at constant speed, or a lock test beside a slow run"
+    )
+
+
+def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
+    """All runs of the campaign, and those that identification can read. Raises DataError when none, or two gears."""
+    from rig.analysis.identify.recording import recording
+    from rig.runfile.run import Run
+
+    runs = []
+    for folder in folders:
+        one = Run.open(folder)
+        if one.manifest.get("status") in ("completed", "imported", None) and one.procedure != "other":
+            runs.append(one)
+    if not runs:
+        raise DataError("no completed run of an experiment among these folders: nothing to identify from")
+    for what, values in (
+        ("gear ratios", {r.ratio for r in runs}),
+        ("gears", {(r.manifest.get("gear") or {}).get("serial") for r in runs}),
+        ("assemblies", {r.conditions.get("assembly", 1) for r in runs}),
+    ):
+        if len(values) > 1:
+            words = ", ".join(map(str, sorted(map(str, values))))
+            raise DataError(f"these runs are of {len(values)} {what} ({words}): identify one at a time")
+    found = [r for one in runs if (r := recording(one)) is not None]
+    if not found:
+        raise DataError("no run here has time and both angles: nothing to identify from")
+    return runs, found
+
+
+def coasts(runs: list[Run], found: Identified, say: Say) -> list[Coasting]:
+    """What coast-downs among `runs` say of the inertia at the motor, which no fit here has used."""
+    from rig.analysis import analyse
+    from rig.analysis.friction.coasting import coastings
+
+    told = [r for r in runs if r.procedure == "coast_down"]
+    return [one for r in told for one in coastings(r.name, seen(r, analyse(r), say), found.parameters)]
+
+
+def beside(runs: list[Run], say: Say) -> dict[str, Parameter]:
+    """What lock tests and friction runs say that the model has no parameter for, each analysed as by itself."""
+    from rig.analysis import analyse
+    from rig.analysis.friction.characteristics import characteristics
+    from rig.evaluation.reference import reference_of_one_zero
+
+    told = [r for r in runs if r.procedure in ("stiffness_lock", "friction")]
+    if told:
+        say("lock tests and breakaway")
+    return characteristics([(r.name, seen(r, analyse(r, reference_of_one_zero(r)), say)) for r in told])
+
+
+def seen(run: Run, result: Result, say: Say) -> Result:
+    """`result`, after a word where its analysis broke off."""
+    if result.broke_off:
+        say(f"{run.name}: {result.sentence} hdrig analyse {run.name} keeps where it did.")
+    return result
+
+
+def covered(found: Identified) -> Covered | None:
+    """Speeds and loads of the stretches of constant speed the numbers come from; None without any."""
+    from rig.model.gearfile import Covered
+
+    speeds = [abs(m.omega) / RPM for m in found.fits.means]
+    loads = [m.tau_ext for m in found.fits.means]
+    return Covered((min(speeds), max(speeds)), (min(loads), max(loads))) if speeds else None
+
+
+def made_with(runs: list[Run]) -> str:
+    """When and with what."""
+    from rig.software import software
+
+    said, started = software(), sorted(str(r.manifest.get("started_utc") or "") for r in runs)
+    days = f"{started[0][:10]} to {started[-1][:10]}"
+    return f"hdrig {said.get('version')} {said.get('commit') or ''}, runs of {days}"

@@ -1,0 +1,117 @@
+"""One recorded run to its figures: result.json and report.html beside it, the verdict before kept as a former one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rig.core.errors import DataError, Exit
+from rig.core.kinds import Regime, regime_of
+from rig.evaluation.reference import reference_beside, reference_of_one_zero
+from rig.evaluation.traceback_file import NAME as TRACEBACK
+from rig.evaluation.traceback_file import keep
+from rig.runfile.writing import writing
+
+if TYPE_CHECKING:
+    from rig.analysis.findings.result import Result
+    from rig.runfile.run import Run
+
+NEEDED = ("rig.analysis.analyse", "rig.report.page")
+"""What `analyse_folder` imports, for those who load it once and for all beforehand."""
+NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
+
+
+def analyse_folder(
+    folder: Path, target: Path, reference: Run | None = None, limits: Mapping[str, Any] = NO_LIMITS
+) -> tuple[Result, bool]:
+    """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself. A verdict
+    that stands there already is kept in the result as a former one.
+
+    `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
+    in the same folder is taken. `limits` join those of the run's manifest and go before them. Returns the result, and
+    whether the run is simulated. Raises UsageError: no run folder, or `target` cannot be written; DataError: samples
+    that are not those the run was closed with.
+    """
+    from rig.analysis.analyse import analyse
+    from rig.report.history import with_former
+    from rig.report.page import write
+    from rig.report.record import write_result
+    from rig.runfile.events import read_events
+    from rig.runfile.finalise import add_derived
+    from rig.runfile.run import Run
+
+    run = judged_by(Run.open(folder), limits)
+    refuse_changed(folder, run.manifest)
+    if reference is None:
+        reference = BESIDE.get(regime_of(run.procedure), without)(run)
+    result = with_former(target, analyse(run, reference))
+    if result.broke_off:
+        result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
+    with writing(target):
+        target.mkdir(parents=True, exist_ok=True)
+        keep(target, result.broke_off)
+        made = [
+            write_result(target, result),
+            write(target, run.manifest, dict(run.timing), read_events(folder), result, run=folder),
+        ]
+    if target == folder and "files" in run.manifest:  # a folder somebody else made keeps its manifest as it is
+        add_derived(folder, *(path.name for path in made), verdict=str(result.verdict))
+    return result, run.simulated
+
+
+def exit_of(result: Result) -> Exit:
+    """PASS and MEASURED 0, FAIL 1, INCONCLUSIVE 6; 70 where a defect of hdrig left it without figures."""
+    if result.defect:
+        return Exit.INTERNAL
+    return {"FAIL": Exit.OUT_OF_LIMITS, "INCONCLUSIVE": Exit.INCOMPLETE}.get(result.verdict, Exit.PASS)
+
+
+def limits_for(folder: Path, limits: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Of the limits put on many runs those on figures this one is made for: a lock test is not judged by a kinematic
+    error it does not measure, a run for one that lacks it is."""
+    if not limits:
+        return limits
+    from rig.analysis.findings.figure_names import is_run_for
+    from rig.runfile.manifest import read
+
+    procedure = str(read(folder).get("procedure", ""))
+    return {name: limit for name, limit in limits.items() if is_run_for(procedure, name)}
+
+
+def judged_by(run: Run, limits: Mapping[str, Any]) -> Run:
+    """The run with `limits` before those its manifest has; the manifest on disk stays as it is."""
+    if not limits:
+        return run
+    own = run.manifest.get("limits")
+    both = {**(own if isinstance(own, Mapping) else {}), **limits}
+    return type(run)(run.path, {**run.manifest, "limits": both}, run.samples)
+
+
+def without(run: Run) -> None:
+    """What most runs are compared with."""
+
+
+BESIDE: Mapping[Regime, Callable[[Run], Run | None]] = {
+    Regime.AT_SPEED: reference_beside,
+    Regime.LOCKED: reference_of_one_zero,
+}
+"""Where a run finds the slow run it is analysed with, where none is named."""
+
+
+def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """Figures from samples that are not those that were closed would be worth nothing. Raises DataError."""
+    from rig.runfile.finalise import describe
+    from rig.runfile.manifest import told
+
+    said, path = manifest.get("files", {}).get("samples.parquet", {}).get("sha256"), folder / "samples.parquet"
+    if not said or not path.exists():
+        return
+    with told(DataError, f"{path} cannot be read"):
+        same = describe(path)["sha256"] == said
+    if not same:
+        raise DataError(
+            "samples.parquet is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
+        )
