@@ -30,6 +30,8 @@ PADDED: Final = 4  # finer than a run's own resolution
 CLOCKED: Final = 4.0  # times the power by the angle with one phase for all: what follows the angle has less than once
 SEEN: Final = 4.0  # power over its surroundings, mean of runs at other speeds: chance gives half of that
 HARMONICS: Final = 3  # of its frequency: what rubs for half of the time has as many
+TWICE: Final = 2.0  # periods in a run that is to be made of it
+MADE_OF_IT: Final = 0.3  # of the power of runs at other speeds; of one that noise alone makes it takes a tenth
 FINER: Final = 40  # orders tried on each side, a quarter of what a run resolves apart
 
 Spectrum = tuple[float, float, Array, Array]
@@ -105,7 +107,8 @@ def _spectrum(eq: Equations, key: Key, e: Array) -> Spectrum:
 
 def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, Spectrum], hz: float) -> bool:
     """Whether the line follows the clock and no angle: it stands out at speeds far apart; or, where most runs turn at
-    one speed, it does not add up over the motor's angle with one phase for all, and the others show it faintly."""
+    one speed, it does not add up over the motor's angle with one phase for all, and the others show it faintly, or are
+    made of it where they are too short to show a line."""
     speeds = {key: eq.runs[key[0]].turning for key in e}
     heights = {key: _height(spectrum, hz) for key, spectrum in spectra.items()}
     plain = [speed for key, speed in speeds.items() if heights[key] > LINE]
@@ -113,7 +116,9 @@ def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, S
     others = [key for key, speed in speeds.items() if not usual / LINE_SPEEDS < speed < usual * LINE_SPEEDS]
     if sum(speed > LINE_FREE * min(plain) for speed in plain) >= FEWEST:
         return True
-    if not others or float(np.mean([heights[key] for key in others])) < SEEN:
+    shares = [share for key in others if (share := _part(eq, key, e[key], hz)) is not None]
+    made_of_it = len(shares) >= FEWEST and float(np.median(shares)) > MADE_OF_IT
+    if not made_of_it and (not others or float(np.mean([heights[key] for key in others])) < SEEN):
         return False
     alike = [key for key in e if key not in others]
     rows = sum(e[key].size for key in alike)
@@ -124,6 +129,16 @@ def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, S
     waved = (np.exp(-1j * np.multiply.outer(orders, x)) @ e[key] for key, x in zip(alike, angles, strict=True))
     by_angle = float(np.max(np.abs(sum(waved, np.zeros(orders.size, complex))) ** 2)) / rows
     return by_time > CLOCKED * by_angle
+
+
+def _part(eq: Equations, key: Key, e: Array, hz: float) -> float | None:
+    """Of the sum of squares of one run about its mean, what a wave of that frequency takes; None where the run holds
+    fewer than two, which a drift is as good as."""
+    t = clock(eq, key)
+    if float(np.ptp(t)) * hz < TWICE:
+        return None
+    columns = orthonormal(eq.without_offset(key, waves(TURN * t, hz)))
+    return float(np.sum((columns.T @ e) ** 2)) / max(float(np.sum((e - e.mean()) ** 2)), 1e-300)
 
 
 def _height(spectrum: Spectrum, hz: float) -> float:
