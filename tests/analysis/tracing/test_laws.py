@@ -12,7 +12,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
-from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, AngleDependentStiffness
+from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, TOGETHER, AngleDependentStiffness
 from rig.model.effects.channel_time_skew import EACH_RUN, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
@@ -417,3 +417,14 @@ def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
 def test_a_resonance_is_one_whose_frequency_is_known(half: float, is_one: bool) -> None:
     found = Parameter("frequency", 40.0, (40.0 - half, 40.0 + half), "Hz")
     assert TorsionalMode().is_scaled(found, REACH) == is_one
+
+
+def test_orders_of_a_modulated_spring_together_are_those_of_each_alone() -> None:
+    s, effect = motion(), AngleDependentStiffness()
+    together = effect.columns(s, (TOGETHER, 1.0, MOTOR))
+    for port in (Port.WIND_UP, Port.MOTOR_TORQUE):
+        alone = np.hstack([effect.columns(s, (k, 1.0, MOTOR))[port] for k in effect.LOBES])
+        np.testing.assert_array_equal(together[port], alone)
+    sizes = np.array([0.01, 0.0, 0.0, 0.03, 0.0, 0.002]) / KNOWN.K
+    names = [p.name for p in effect.parameters(Fit(sizes, (TOGETHER, 1.0, MOTOR), np.eye(9) * 1e-18, KNOWN, N))]
+    assert names[::2] == ["kappa_order_2_amplitude", "kappa_order_1_amplitude", "kappa_order_4_amplitude"]

@@ -227,3 +227,21 @@ def test_without_torque_sensor_a_torque_on_the_load_shows_in_angle_and_motor_tor
     assert as_one > share if of_the_load else as_one < share
     if of_the_load:
         assert sizes == [pytest.approx(np.hypot(0.2, 0.1), rel=0.01)]
+
+
+def test_a_step_that_wander_hides_in_short_means_is_found_in_long_ones(rng: np.random.Generator) -> None:
+    wander = np.convolve(rng.standard_normal(4060), np.exp(-(np.linspace(-3, 3, 61) ** 2)), mode="valid")
+    e = 5e-6 * wander / np.std(wander)
+    e[2500:] += 1e-5
+    known = (0.65e-5, 1.35e-5)
+    assert _jumps(e, np.ones(4000, bool), 4.0, known) == []
+    (found,) = _jumps(e, np.ones(4000, bool), 4.0, known, window=steps.FAR)
+    assert abs(found[0] - 2500) <= 20
+
+
+def test_only_what_never_comes_back_is_off_for_good(rng: np.random.Generator) -> None:
+    e = 1e-6 * rng.standard_normal(3000)
+    branch = e + 1e-5 * ((np.arange(3000) // 500) % 2)
+    lost = e + 1e-5 * (np.arange(3000) >= 1500)
+    assert steps._for_good(lost, 1e-5)[1490:1510].all()
+    assert not steps._for_good(branch, 1e-5)[400:2600].any()

@@ -31,3 +31,24 @@ def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: py
     left = selected.select(p, found, (), nothing)
     assert left.solution.design.eq == "as prepared"
     assert left.held == ("held out as prepared" if astray else "held")
+
+
+@pytest.mark.parametrize(("needed", "left"), [("presliding", ["presliding"]), ("both", ["stribeck", "presliding"])])
+def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
+    monkeypatch: pytest.MonkeyPatch, needed: str, left: list[str]
+) -> None:
+    """The one that does less is tried first; where that cannot go the other is."""
+    work = {"stribeck": 900.0, "presliding": 500.0}
+    words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
+
+    def with_(names: list[str], loud: bool) -> Any:
+        scores = [SimpleNamespace(name=name, work=work[name]) for name in names]
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=names)
+
+    def without(of: Any, name: str, runs: object, covered: object) -> Any:
+        rest = [n for n in of.names if n != name]
+        return with_(rest, needed == "both" or needed not in rest)
+
+    monkeypatch.setattr(selected, "_without", without)
+    nothing: Any = None
+    assert selected._without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == left

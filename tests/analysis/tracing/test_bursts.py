@@ -1,0 +1,65 @@
+"""Seconds that stand out against the rest of a run are found, with noise and drift beside them."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest import bursts
+from rig.analysis.tracing.rest.bursts import burst, loudest_burst
+
+RATE = 120.0  # rows per second
+KEY = (0, "M")
+
+
+@pytest.fixture
+def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Equations of runs whose clocks are given by `times`."""
+    times: dict[Any, np.ndarray] = {}
+    monkeypatch.setattr(bursts, "clock", lambda eq, key: times[key])
+    return SimpleNamespace(times=times)
+
+
+def noise(eq: Any, rng: np.random.Generator, seconds: float, key: tuple[int, str] = KEY) -> np.ndarray:
+    eq.times[key] = 300.0 + np.arange(int(seconds * RATE)) / RATE
+    return 2e-3 * rng.standard_normal(eq.times[key].size)
+
+
+def test_what_grabs_for_some_seconds_is_told_with_its_times(eq: Any, rng: np.random.Generator) -> None:
+    e = noise(eq, rng, 100.0)
+    e[int(38 * RATE) : int(60 * RATE)] += 0.02
+    found = burst(eq, KEY, e)
+    assert found is not None
+    assert (found.since, found.until) == (pytest.approx(38.0, abs=0.5), pytest.approx(60.0, abs=0.5))
+    assert found.over == pytest.approx(np.sqrt(1 + 0.22 * 100), rel=0.1)
+
+
+def test_noise_that_swells_a_little_and_drifts_is_no_burst(eq: Any, rng: np.random.Generator) -> None:
+    e = noise(eq, rng, 100.0)
+    t = eq.times[KEY] - 300.0
+    assert burst(eq, KEY, e * (1 + 0.3 * np.sin(t / 9)) + 1e-5 * t) is None
+
+
+def test_one_loud_half_second_of_a_long_run_is_too_little(eq: Any, rng: np.random.Generator) -> None:
+    e = noise(eq, rng, 100.0)
+    e[1200:1260] *= 3.5
+    assert burst(eq, KEY, e) is None
+
+
+def test_of_a_short_run_nothing_is_known(eq: Any, rng: np.random.Generator) -> None:
+    e = noise(eq, rng, 5.0)
+    e[120:240] *= 20.0
+    assert burst(eq, KEY, e) is None
+
+
+def test_reversals_are_left_out_and_the_loudest_is_told(eq: Any, rng: np.random.Generator) -> None:
+    keys = [(0, "M"), (1, "A"), (2, "R")]
+    e = {key: noise(eq, rng, 30.0, key) for key in keys}
+    for key, size in zip(keys, (0.01, 0.03, 0.9), strict=True):
+        e[key][600:1200] += size
+    found = loudest_burst(eq, e)
+    assert found is not None
+    assert found.key == (1, "A")
