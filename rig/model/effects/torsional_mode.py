@@ -69,6 +69,7 @@ class TorsionalMode(Effect):
     DAMPED: Final = 0.1  # of a soft coupling in the bank: its neighbours are three steps away, the refit finds the rest
     SOFTEST: Final = 1.0  # rad/(N·m): a coupling that twists by a turn at 6 N·m is none
     PEAK: Final = 0.15  # of a frequency, half its 95 % interval: of true ones it is a fiftieth
+    AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
     EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -93,8 +94,11 @@ class TorsionalMode(Effect):
         return (*shape[:3], float(np.clip(coefficients[0], 0.0, self.SOFTEST)))
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
-        """A mode that the fit pushed out of the band; a stiff coupling needs none inside."""
-        return shape[0] in (LOAD, MOTOR, DRIVEN) and shape[1] > 1.15 * reach.band
+        """A mode that the fit pushed out of the band, or down to where none is looked for; a stiff coupling needs none
+        inside."""
+        low, high = self.bounds(reach)[1]
+        above = shape[0] in (LOAD, MOTOR, DRIVEN) and shape[1] > self.AT_THE_END * high
+        return above or (shape[0] in (LOAD, MOTOR, DRIVEN, SOFT) and shape[1] * self.AT_THE_END < low)
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """A resonance is a peak: where its frequency is known no better than that, something else has been fitted."""

@@ -68,14 +68,14 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
-    """Without names whose size may as well be zero, unless something is left to explain without them. Of two that
-    stand in for each other either may be the one that can go: the one that does less is tried first."""
+    """Without names whose size may as well be zero, unless something is left to explain that is not with them. Of two
+    that stand in for each other either may be the one that can go: the one that does less is tried first."""
     insignificant = [
         score for score in selected.scores if (words := selected.words.get(score.name)) and words[0].holds_zero
     ]
     for least in sorted(insignificant, key=lambda score: score.work):
         fewer = _without(selected, least.name, runs, covered)
-        if not fewer.loud and len(fewer.scores) == len(selected.scores) - 1:
+        if (selected.loud or not fewer.loud) and len(fewer.scores) == len(selected.scores) - 1:
             return _without_insignificant(fewer, runs, covered)
     return selected
 
