@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.once import Once
+from rig.core.quantiles import Z95
 from rig.model.fourier import FourierSeries
 from rig.model.gloss import gloss
 
@@ -233,7 +234,7 @@ class Fit:
 
     def half_width(self, gradient: Array) -> float:
         """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,)."""
-        return float(1.96 * np.sqrt(max(0.0, float(gradient @ self.covariance @ gradient))))
+        return float(Z95 * np.sqrt(max(0.0, float(gradient @ self.covariance @ gradient))))
 
 
 @dataclass(frozen=True)

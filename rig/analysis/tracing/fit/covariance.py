@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import stdtrit  # of scipy.stats the import takes half a second
 
 from rig.analysis.tracing.fit.model import Solution, evened, inverse
+from rig.core.quantiles import Z95
 from rig.model.effect import Array
 
 PIECES = 4  # of a run and channel: each many correlation times long
@@ -17,7 +18,7 @@ LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be
 
 
 def covariance(s: Solution) -> Array:
-    """Jackknife (p, p), all channels of a run together, so wide that ±1.96 σ is Student's 95 % interval
+    """Jackknife (p, p), all channels of a run together, so wide that ±Z95 σ is Student's 95 % interval
     [mackinnon1985; bell2002]
 
     Runs differ by what no row shows: gains that drift, small effects that are in no model. Without run r, whose normal
@@ -39,7 +40,7 @@ def covariance(s: Solution) -> Array:
         squares += part**2
         count += 1
     freedom = np.maximum(expected**2 / np.maximum(squares, 1e-300), FREEDOM)
-    wide = stdtrit(freedom, 0.975) / 1.96
+    wide = stdtrit(freedom, 0.975) / Z95
     return np.asarray(out * (count - 1) / max(count, 1) * wide * wide[:, None])
 
 

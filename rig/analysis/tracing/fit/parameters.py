@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit, prior, solve
 from rig.analysis.tracing.fit.refine import nudged
+from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
 from rig.model.effect import Array, Fit, Parameter, parameter
 
@@ -52,7 +53,7 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
 def _at_its_bound(s: Solution, lag: Parameter) -> Parameter:
     """No delay, for no sensor is early: as late as it may be by an interval that knows of no bound."""
     unbound = replace(s, gram=s.design.gram + np.diag(prior(s.design.size)))
-    half = 1.96 * float(np.sqrt(max(0.0, covariance(unbound)[INDEX["lag"], INDEX["lag"]])))
+    half = Z95 * float(np.sqrt(max(0.0, covariance(unbound)[INDEX["lag"], INDEX["lag"]])))
     return replace(lag, value=0.0, ci95=(0.0, half))
 
 
@@ -91,7 +92,7 @@ def _unit(c: Array, name: str) -> Array:
 
 
 def _of(name: str, value: float, along: Array, c: Array, unit: str) -> Parameter:
-    return parameter(name, value, 1.96 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
+    return parameter(name, value, Z95 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
 
 
 def effects(

@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
+from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
 from rig.model.effects.missed_counts import LOAD, MOTOR
@@ -52,7 +53,7 @@ class Steps:
 
 
 def _usual(name: str, sizes: Array) -> Parameter:
-    half = 1.96 * float(np.std(sizes)) / np.sqrt(sizes.size)
+    half = Z95 * float(np.std(sizes)) / np.sqrt(sizes.size)
     return parameter(f"step_theta_{name}", float(np.median(sizes)), half, "rad")
 
 

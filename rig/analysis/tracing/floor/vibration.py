@@ -11,6 +11,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.local import clock, joined
 from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS
+from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
 from rig.model.effects.external_vibration import ExternalVibration
@@ -156,12 +157,12 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
         wave = _size(e[key], np.stack([np.cos(x), np.sin(x)], 1))
         noise = max(float(np.var(e[key])) - wave**2 / 2, 1e-300) * eq.noise.kappa[key[1]]
         information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
-    half_hz = float(np.hypot(1.96 / (2 * np.pi * np.sqrt(max(information, 1e-300))), CRYSTAL * frequency))
+    half_hz = float(np.hypot(Z95 / (2 * np.pi * np.sqrt(max(information, 1e-300))), CRYSTAL * frequency))
     if keys:
-        return Line(frequency, amplitude, half_hz, 1.96 * spread, float(np.median(sizes)))
+        return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)))
     as_one, sizes = _as_one(eq, e, columns)
     spread = float(np.std(sizes)) / np.sqrt(max(len(sizes), 1))
-    return Line(frequency, amplitude, half_hz, 1.96 * spread, float(np.median(sizes)) if sizes else 0.0, as_one)
+    return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)) if sizes else 0.0, as_one)
 
 
 def _as_one(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> tuple[float, list[float]]:

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.runs.recording import Recording
+from rig.core.quantiles import Z95
 from rig.model.effect import MEASURED, Array
 
 Complex = npt.NDArray[np.complex128]
@@ -192,7 +193,7 @@ def _lag(seen: Sequence[Seen], phasors: Complex, weight: Array, orders: Sequence
     freedom = max(1, 2 * len(orders) * (len(seen) - z.shape[1]) - 1)
     scatter = max(1.0, total[at] / freedom)
     shift = 0.5 * (total[at + 1] - total[at - 1]) / (bend * (grid[1] - grid[0]))
-    half = float(1.96 * np.sqrt(2 * scatter / bend))
+    half = float(Z95 * np.sqrt(2 * scatter / bend))
     return (float(grid[at] - shift), half) if half < LATEST else None
 
 
@@ -223,4 +224,4 @@ def _drift(seen: Sequence[Seen], phasors: Complex, law: Complex) -> tuple[float,
     c, *_ = np.linalg.lstsq(z, gain, rcond=None)
     left = gain - z @ c
     error = np.sqrt(float(left @ left) / max(1, days.size - 2) / float(z[:, 1] @ z[:, 1]))
-    return float(c[1]), float(1.96 * error)
+    return float(c[1]), float(Z95 * error)
