@@ -66,8 +66,8 @@ TURNED: Final = 2.0  # the same at reversals beside what was named; presliding t
 # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
 ALONE: Final = 2.0
 IN_ONE_RUN: Final = 2.5  # RMS over floor of a fitted run that is no noise any more, though unseen runs leave nothing
-BURST: Final = 3.0  # RMS of half a second over the usual one of its run: clean campaigns have 2.3 at most
-BURST_RUN: Final = 1.5  # RMS of that run over its usual half second: 1.2 at most
+BURST: Final = 3.0  # RMS of half a second over the usual one of its run: clean campaigns have 2.5 at most
+BURST_RUN: Final = 1.5  # RMS of that run over its usual half second: 1.23 at most
 LOCKS_DIFFER: Final = 3.0  # times as much as runs that turn freely: on clean campaigns 0.8 to 1.4
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
 LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known

@@ -1,8 +1,8 @@
 """Seconds of a run that stand out against the rest of the same run: something that grabs, a dent that is passed.
 
 It raises what repeats, or neighbouring turns, differ by, and with them the floor it is held against; the usual half
-second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.3 times the usual
-one, and no run more than 1.2 times.
+second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.5 times the usual
+one, and no run more than 1.23 times.
 """
 
 from __future__ import annotations
