@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, noise_of, quiet, smallest_step
+from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, noise_of, quiet, rough, smallest_step
 from rig.analysis.tracing.thresholds import BANDWIDTH
 
 COUNTS = 2000
@@ -43,3 +43,12 @@ def test_the_low_pass_is_lower_for_a_coarse_encoder_alone() -> None:
     assert quiet(read(1.0, 2 * np.pi / fine), {"motor_counts_per_rev": fine}) == BANDWIDTH
     assert quiet(read(1.0), {}) == BANDWIDTH
     assert quiet(None, DECLARED) == BANDWIDTH
+
+
+@pytest.mark.parametrize("count", [1e-9, 4.85e-6, 2e-6])
+def test_the_noise_of_a_reading_in_counts_is_known_to_a_twentieth(rng: np.random.Generator, count: float) -> None:
+    """A median of a handful of values was a quarter too high, and K without a torque sensor with it."""
+    theta = 0.02 * np.arange(45_000) * 1e-3 + 1.5e-6 * rng.standard_normal(45_000)
+    theta[20_000:] -= 5e-4  # a reversal, a jump
+    read = count * np.round(theta / count)
+    assert rough(read) == pytest.approx(np.hypot(1.5e-6, count / 12**0.5), rel=0.05)
