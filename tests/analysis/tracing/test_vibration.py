@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.floor import vibration
 from rig.analysis.tracing.outcome.result import Status
 from tests.analysis.tracing.spiked import Columns, spiked, under
 
@@ -30,3 +33,14 @@ def test_a_vibration_that_swells_is_named_with_its_lines(tmp_path: Path, shared:
     assert sorted(values[f"frequency_{i}"] for i in (2, 3)) == pytest.approx(
         [CARRIER - SWELL, CARRIER + SWELL], abs=0.02
     )
+
+
+def test_stretches_of_one_log_are_what_several_runs_would_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    t = 0.01 * np.arange(16_000)
+    theta = np.cumsum(0.01 * (2.0 + 10.0 * (np.floor(t / 40.0) % 2)))  # 2 and 12 rad/s in turn
+    monkeypatch.setattr(vibration, "clock", lambda eq, key: t)
+    eq: Any = SimpleNamespace(rows={(0, "L"): SimpleNamespace(theta_m=theta)}, runs=[SimpleNamespace(turning=7.0)])
+    assert [speed for _, _, speed in vibration._parts(eq, (0, "L"), np.zeros(t.size), 1)] == [7.0]
+    parts = vibration._parts(eq, (0, "L"), np.arange(t.size, dtype=float), 8)
+    assert np.array_equal(np.concatenate([x for _, x, _ in parts]), np.arange(t.size))
+    assert [speed for _, _, speed in parts] == pytest.approx([2.0, 2.0, 12.0, 12.0, 2.0, 2.0, 12.0, 12.0], rel=0.01)

@@ -21,6 +21,8 @@ ZOOM = 4  # finer than a run's own resolution
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
 AS_ONE = 0.7  # an interference in one sensor alone has 0
 CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
+FEWEST = 3  # runs, or stretches of one, that a line is told by
+STRETCHES = 8  # of a run, where there are fewer runs
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
 
@@ -89,16 +91,31 @@ def _with(eq: Equations, columns: Mapping[Key, Array]) -> Equations:
     return replace(eq, own=joined([eq.own, columns]))
 
 
+Part = tuple[Array, Array, float]
+"""Times s and residuals (n,) of a run, or of a stretch of it, and how fast its motor turned, rad/s."""
+
+
+def _parts(eq: Equations, key: Key, e: Array, count: int) -> list[Part]:
+    """A run, or as many stretches of it: of one long log they are what several runs would be."""
+    t, theta = clock(eq, key), eq.rows[key].theta_m
+    if count == 1:
+        return [(t, e, eq.runs[key[0]].turning)]
+    rows = np.array_split(np.arange(e.size), count)
+    turning = [float(np.abs(np.diff(theta[r])).sum() / max(np.ptp(t[r]), 1e-9)) for r in rows if r.size > 256]
+    return [(t[r], e[r], speed) for r, speed in zip([r for r in rows if r.size > 256], turning, strict=True)]
+
+
 def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
     """Hz of the strongest line at a fixed frequency in L (in A without a torque sensor), None when there is none."""
     channel = "L" if any(c == "L" for _, c in e) else "A"
     keys = [k for k in e if k[1] == channel and e[k].size > 256]
-    if len(keys) < 3:
+    parts = [part for key in keys for part in _parts(eq, key, e[key], 1 if len(keys) >= FEWEST else STRETCHES)]
+    if len(parts) < FEWEST:
         return None
     top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
     grid = np.arange(ExternalVibration.LOWEST, 0.98 * top, ExternalVibration.STEP)
-    heights = np.array([_heights(clock(eq, k), e[k], grid) for k in keys])
-    speed = np.array([eq.runs[k[0]].turning for k in keys])
+    heights = np.array([_heights(t, x, grid) for t, x, _ in parts])
+    speed = np.array([turning for _, _, turning in parts])
     hits = heights > LINE
     score = np.where(hits.mean(0) > LINE_RUNS, np.median(heights, axis=0), 0.0)
     for at in np.argsort(-score)[:50]:

@@ -23,7 +23,7 @@ from rig.model.effect import Array
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
-LEAST_WAY = 0.1  # of the rows, forth and back each: with fewer, single runs are all there is of one of them
+LEAST_WAY = 0.1  # of the rows at a speed, forth and back each: with fewer, single runs are all there is of one of them
 WITH_TIME = ("time", "temperature")
 
 
@@ -70,10 +70,14 @@ def homes(r: Rest, channel: str) -> list[Home]:
 
 
 def _goes_both_ways(r: Rest) -> bool:
-    """Whether the motor does: then a torque that is told by its speed without the way points one way at that speed,
-    and friction turns with the way. It is what one way has more than the other."""
-    way = r.at["direction"]
-    return bool(min(np.mean(way > 0.5), np.mean(way < -0.5)) > LEAST_WAY)
+    """Whether the motor does, at most of the speeds at which something is left: then a torque that is told by its speed
+    without the way points one way at that speed, and friction turns with the way. It is what one way has more than the
+    other."""
+    level, way, left = INDICES["speed"](r), r.at["direction"], r.e**2
+    there = [np.flatnonzero(level == n) for n in np.unique(level)]
+    both = [min(np.mean(way[rows] > 0.5), np.mean(way[rows] < -0.5)) > LEAST_WAY for rows in there]
+    seen = sum(float(left[rows].sum()) for rows, is_both in zip(there, both, strict=True) if is_both)
+    return bool(seen > left.sum() / 2)
 
 
 def _told_by_the_way(found: Sequence[Home], alone: Sequence[Home]) -> list[Home]:
