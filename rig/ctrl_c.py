@@ -11,9 +11,13 @@ import signal
 import threading
 from collections.abc import Iterator
 from types import FrameType
+from typing import Any
 
 MACHINERY = "<frozen importlib._bootstrap"  # how names of files begin whose frames are imports
-USUAL = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}  # what Python does with them itself
+USUAL: dict[signal.Signals, Any] = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+}  # Python by itself
 AGAIN = 0.02  # s until it is tried again: no person notices, and an import takes longer
 
 
