@@ -15,7 +15,7 @@ from rig.commands import CATALOGUE
 from rig.core.errors import Exit
 from rig.core.way_out import ending_in_a_sentence
 from rig.ctrl_c import after_imports
-from rig.streams import Tolerant
+from rig.streams import Tolerant, show_what_fits
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
@@ -41,17 +41,35 @@ def overview() -> str:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one verb; the exit code. Output that vanishes does not change it."""
+    """Run one verb; the exit code. Output that vanishes stops nothing; where what went to stdout could not be written,
+    a sentence says so at the end, and a code of 0 becomes 2."""
     # our matrices are small: a second BLAS thread only spins beside the loop and the recorder
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    out, err = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = cast(TextIO, Tolerant(out)), cast(TextIO, Tolerant(err))
+    before = sys.stdout, sys.stderr
+    for stream in before:
+        show_what_fits(stream)
+    out, err = (Tolerant(stream) for stream in before)
+    sys.stdout, sys.stderr = cast(TextIO, out), cast(TextIO, err)
     try:
-        return ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))
+        code = ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))
+        return _after_output(code, out)
+    except SystemExit as end:  # --help, --version and a wrong command line end so
+        if isinstance(end.code, int) and (code := _after_output(end.code, out)) != end.code:
+            raise SystemExit(code) from None
+        raise
     finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        sys.stdout, sys.stderr = out, err
+        out.flush()
+        err.flush()
+        sys.stdout, sys.stderr = before
+
+
+def _after_output(code: int, out: Tolerant) -> int:
+    """The exit code once everything is written; USAGE in place of PASS where it could not be."""
+    out.flush()
+    if not out.lost:
+        return code
+    print(f"hdrig: what was to be printed could not be written: {out.lost}", file=sys.stderr)
+    return code or int(Exit.USAGE)
 
 
 def _interruptible(args: list[str]) -> int:

@@ -1,4 +1,4 @@
-"""Ctrl-C outside of a session: KeyboardInterrupt, but not in the middle of an import.
+"""Ctrl-C and a service manager's stop outside of a session: KeyboardInterrupt, but not in the middle of an import.
 
 Raised there it is lost in a callback of the import system, or leaves half a module behind, which shows as an error of
 another kind. So it waits until the import is done. In a session `rig.interrupts` takes over.
@@ -11,45 +11,66 @@ import signal
 import threading
 from collections.abc import Iterator
 from types import FrameType
+from typing import Any
 
 MACHINERY = "<frozen importlib._bootstrap"  # how names of files begin whose frames are imports
+USUAL: dict[signal.Signals, Any] = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+}  # Python by itself
 AGAIN = 0.02  # s until it is tried again: no person notices, and an import takes longer
 
 
 @contextlib.contextmanager
 def after_imports() -> Iterator[None]:
-    """While active, an interrupt that falls into an import is raised after it. Where SIGINT is not Python's own to
-    handle, or in another thread than the main one, nothing changes.
+    """While active, SIGINT and SIGTERM raise KeyboardInterrupt, after the import that one falls into. A signal that is
+    not Python's own to handle, and in another thread than the main one all, are left as they are.
     """
     ours = threading.current_thread() is threading.main_thread()
-    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+    mine = [number for number, usual in USUAL.items() if ours and signal.getsignal(number) is usual]
+    if not mine:
         yield
         return
-    alarm = signal.signal(signal.SIGALRM, _again)
-    signal.signal(signal.SIGINT, _interrupt)
+    came: list[int] = []
+
+    def interrupt(signum: int, frame: FrameType | None) -> None:
+        if importing(frame):
+            came.append(signum)
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+            return
+        raise KeyboardInterrupt
+
+    def again(signum: int, frame: FrameType | None) -> None:
+        signal.raise_signal(came.pop())  # to whoever handles it by now: a session counts it
+
+    alarm = signal.signal(signal.SIGALRM, again)
+    for number in mine:
+        signal.signal(number, interrupt)
     try:
         yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number in mine:
+            signal.signal(number, USUAL[number])
         signal.signal(signal.SIGALRM, alarm)
 
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """While active, an interrupt waits, and is raised when it is over: for files that belong together. In another
+    """While active, SIGINT and SIGTERM wait, and are raised when it is over: for files that belong together. In another
     thread than the main one nothing changes."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     came: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda signum, frame: came.append(signum))
+    before = {number: signal.signal(number, lambda signum, frame: came.append(signum)) for number in USUAL}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
         if came:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(came[0])
 
 
 def importing(frame: FrameType | None) -> bool:
@@ -59,14 +80,3 @@ def importing(frame: FrameType | None) -> bool:
             return True
         frame = frame.f_back
     return False
-
-
-def _interrupt(signum: int, frame: FrameType | None) -> None:
-    if importing(frame):
-        signal.setitimer(signal.ITIMER_REAL, AGAIN)
-        return
-    raise KeyboardInterrupt
-
-
-def _again(signum: int, frame: FrameType | None) -> None:
-    signal.raise_signal(signal.SIGINT)  # to whoever handles it by now: a session counts it

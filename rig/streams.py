@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
 from typing import Any, TextIO
+
+NOBODY = (errno.EPIPE, errno.EIO)  # `| head`, a closed terminal: who read here chose not to, and nothing is missed
 
 
 class Tolerant:
@@ -12,6 +16,7 @@ class Tolerant:
     def __init__(self, stream: TextIO | None) -> None:
         self._stream = stream
         self._own = stream  # its encoding and the like are asked for after it fell silent, too
+        self.lost = ""  # why output that somebody wanted is not there, in the system's words
 
     def write(self, text: str) -> int:
         """As `TextIO.write`; never raises."""
@@ -26,7 +31,9 @@ class Tolerant:
             return None
         try:
             return getattr(self._stream, what)(*args)
-        except (OSError, ValueError):
+        except (OSError, ValueError) as why:
+            if isinstance(why, OSError) and why.errno not in NOBODY:
+                self.lost = why.strerror or str(why)
             self._silence(self._stream)
             self._stream = None
             return None
@@ -47,3 +54,11 @@ class Tolerant:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._own, name)
+
+
+def show_what_fits(stream: TextIO | None) -> None:
+    """From here on a character that the encoding of `stream` lacks is written as `?`, and fails no line."""
+    reconfigure = getattr(stream, "reconfigure", None)
+    if reconfigure is not None:
+        with contextlib.suppress(OSError, ValueError):  # closed, or text is half written
+            reconfigure(errors="replace")

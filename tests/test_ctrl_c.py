@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -126,3 +127,28 @@ def test_an_interrupt_in_the_middle_of_writing_leaves_the_old_file_and_nothing_b
     with pytest.raises(KeyboardInterrupt):
         write_atomic(tmp_path / "page", b"new")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"page": b"old"}
+
+
+@pytest.mark.parametrize("ignored", [False, True])
+def test_a_stop_of_a_service_manager_ends_in_the_same_sentence(ignored: bool) -> None:
+    """Also in a job in the background, which does not hear Ctrl-C."""
+    code = f"""
+import os, signal, sys
+import rig.cli, rig.commands.list_
+if {ignored}: signal.signal(signal.SIGINT, signal.SIG_IGN)
+def stopped(args):
+    os.kill(os.getpid(), signal.SIGTERM)
+    signal.sigtimedwait({{signal.SIGUSR1}}, 10.0)
+rig.commands.list_.run = stopped
+sys.exit(rig.cli.main(["list"]))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (130, "hdrig: interrupted\n")
+
+
+def test_a_stop_in_an_import_comes_when_the_module_is_whole(slow: str, tmp_path: Path) -> None:
+    (tmp_path / "pressed_here.py").write_text(SLOW.replace("SIGINT", "SIGTERM"))
+    with pytest.raises(KeyboardInterrupt):
+        load(slow)
+    assert sys.modules[slow].WHOLE == 499500
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL

@@ -50,8 +50,41 @@ def test_a_run_whose_output_goes_to_a_full_disk_still_completes(stream: str, tmp
         streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: full}
         args = [sys.executable, "-c", TEN, "run", "kinematic-error", "--out", str(tmp_path), *short]
         done = subprocess.run(args, timeout=120, **streams)  # type: ignore[call-overload]
-    assert done.returncode in (0, 6)
+    assert done.returncode in ((2, 6) if stream == "stdout" else (0, 6))
     assert len(list(tmp_path.glob("*/*kinematic-error*/report.html"))) == 1
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost(encoding: str) -> None:
+    args = [sys.executable, "-c", TEN, "run", "standstill", "--dry-run"]
+    shown = {
+        name: subprocess.run(args, capture_output=True, timeout=120, env={**os.environ, "PYTHONIOENCODING": name})
+        for name in ("utf-8", encoding)
+    }
+    whole = shown["utf-8"].stdout.decode()
+    assert not whole.isascii()
+    assert shown[encoding].stdout == whole.encode(encoding, errors="replace")
+    assert shown[encoding].returncode == shown["utf-8"].returncode == 0
+
+
+@pytest.mark.parametrize("args", [["--help"], ["list", "--help"], ["run", "standstill", "--dry-run"]])
+def test_output_for_which_there_is_no_room_is_told_and_the_code_is_2(args: list[str]) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", TEN, *args], timeout=120, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert (done.returncode, done.stderr.splitlines()[-1]) == (
+        2,
+        "hdrig: what was to be printed could not be written: No space left on device",
+    )
+
+
+def test_a_reader_who_left_is_told_nothing() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([sys.executable, "-c", TEN, "--help"], timeout=120, stdout=write, stderr=subprocess.PIPE)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 def test_an_unforeseen_error_is_one_sentence_and_exit_70(

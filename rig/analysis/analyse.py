@@ -20,6 +20,7 @@ from rig.analysis.sensors.latch_skew_words import add_latch_skew
 from rig.analysis.turning.run import add_turning
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
+from rig.runfile.promised import rows_gone, time_untold
 
 OF_DATA = (ArithmeticError, LookupError, MemoryError, RecursionError, ValueError)
 """What arithmetic on a damaged run can raise; a run must end in a sentence, whatever it holds."""
@@ -120,11 +121,14 @@ PROCEDURES: Mapping[str, Part] = {
 }
 
 
-def analyse(run: Source, reference: Source | None = None) -> Result:
+def analyse(run: Source, reference: Source | None = None, doubt: str = "") -> Result:
     """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
     `reference` is a slow run of the same gear: a run at speed is then split into the pure kinematic error and what
     flexibility makes of it; from the wind-up of a lock test the kinematic error is taken off.
+
+    `doubt` says why the samples may not be those that were recorded, as what the manifest promises of them and they
+    do not keep does: no limit is then met or missed.
 
     `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
     holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
@@ -134,7 +138,7 @@ def analyse(run: Source, reference: Source | None = None) -> Result:
         warnings.simplefilter("ignore")  # numpy's remarks on empty and constant pieces say nothing to an operator
         tame = Tame(run)
         try:
-            return _analyse(tame, reference)
+            return _analyse(tame, reference, doubt)
         except OF_DATA as why:
             said = f"The analysis broke off on what this run holds ({type(why).__name__}: {why})."
             return replace(_nothing(tame, said), broke_off=traceback.format_exc())
@@ -149,10 +153,20 @@ def _nothing(run: Tame, why: str) -> Result:
     return conclude(found, run.procedure, {**run.manifest, "limits": {}})
 
 
-def _analyse(run: Tame, reference: Source | None) -> Result:
+def _broken(run: Tame, doubt: str) -> str:
+    """Why the samples are not those that were recorded, "" when they are."""
+    some = next((c for name in ("t", "theta_m", "theta_l") if (c := run.column(name)) is not None), None)
+    gone = "" if some is None else rows_gone(run.manifest, some.size)
+    if gone:
+        gone = f"{gone}, so the figures are from a part of it"
+    found = [said for said in (doubt, gone, time_untold(run.manifest, run.column("t"))) if said]
+    return f"The samples are not what the manifest says: {'; '.join(found)}." if found else ""
+
+
+def _analyse(run: Tame, reference: Source | None, doubt: str) -> Result:
     if not RATIOS[0] <= run.ratio <= RATIOS[1]:
         return _nothing(run, f"The manifest says a gear ratio of {run.ratio:g}: no gear has it, nothing was computed.")
-    found = Findings()
+    found = Findings(broken=_broken(run, doubt))
     motion = motion_of(run)
     if motion is None or motion.theta_m.size < 16:
         why = "The run has no motor angle: nothing can be said about the gear."

@@ -30,13 +30,18 @@ def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
 def passing(root: Path | str, filter: Filter = ALL) -> Iterator[Row]:
     """The same runs one by one, as they lie on disk; none is kept or remembered. Raises UsageError at once."""
     _refuse_no_folder(root)
-    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in run_folders(str(root)))
+    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in _folders(str(root)))
     return (row for row in found if filter.passes(row))
 
 
 def rows(root: str) -> Iterator[Row]:
-    """Every run under `root` as the disk has it."""
-    return (row(folder) for folder in run_folders(root))
+    """Every run under `root`, or the run that it is, as the disk has it."""
+    return (row(folder) for folder in _folders(root))
+
+
+def _folders(root: str) -> Iterator[str]:
+    """`root` itself where it is a run folder, as for every verb that takes runs; else those below it."""
+    return iter([root]) if (Path(root) / manifest.NAME).exists() else run_folders(root)
 
 
 def row(folder: Path | str) -> Row:

@@ -101,7 +101,7 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     """`figure` (peak-to-peak, C_2, K1, hysteresis-loss, friction, or the name of an estimate) of every run under `root`
     that was completed; `gear` is a serial, * and ? stand for anything.
 
-    Raises UsageError without such a folder, or when none of its runs has the figure.
+    Raises UsageError without such a folder, without a run in it, or when none of its runs has the figure.
     """
     found = runs(root, Filter(gear=gear))
     kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
@@ -109,6 +109,8 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
         one = figure_of(row, names_of(figure))
         if one is not None:
             kept[point(row), one.name].append((row, one))
+    if not found:
+        raise UsageError(f"there are no runs in {root}" + (f" of a gear '{gear}'" if gear else ""))
     if not kept:
         refuse_unknown(figure, _seen(found))
     measured = {row.path for members in kept.values() for row, _ in members}

@@ -14,6 +14,7 @@ from pathlib import Path
 from rig.core.loading import load
 from rig.core.way_out import ending_in_a_sentence
 from rig.ctrl_c import after_imports
+from rig.streams import show_what_fits
 
 
 def run(folder: Path) -> int:
@@ -38,5 +39,6 @@ WHAT = {"run": run, "campaign": campaign}
 
 if __name__ == "__main__":
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # our matrices are small, and a loop may run beside us
+    show_what_fits(sys.stderr)
     with after_imports():
         sys.exit(ending_in_a_sentence(lambda: WHAT[sys.argv[1]](Path(sys.argv[2]))))

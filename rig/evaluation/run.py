@@ -45,9 +45,10 @@ def analyse_folder(
 
     run = judged_by(Run.open(folder), limits)
     refuse_changed(folder, run.manifest)
+    doubt = changed_journal(folder, run.manifest)
     if reference is None:
         reference = BESIDE.get(regime_of(run.procedure), without)(run)
-    result = with_former(target, analyse(run, reference))
+    result = with_former(target, analyse(run, reference, doubt))
     if result.broke_off:
         result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
     with writing(target):
@@ -115,3 +116,19 @@ def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
         raise DataError(
             "samples.parquet is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
         )
+
+
+def changed_journal(folder: Path, manifest: Mapping[str, Any]) -> str:
+    """Says which file of a journal that stands in for samples.parquet is not what it was; "" when each is. Raises
+    DataError when one cannot be read."""
+    from rig.runfile.finalise import describe
+    from rig.runfile.journal import journal_files
+    from rig.runfile.manifest import told
+
+    if (folder / "samples.parquet").exists():
+        return ""
+    files = manifest.get("files", {})
+    with told(DataError, f"the journal of {folder} cannot be read"):
+        said = {p: files.get(p.name, {}).get("sha256") for p in journal_files(folder)}
+        changed = [p.name for p, sha256 in said.items() if sha256 and describe(p)["sha256"] != sha256]
+    return f"samples.parquet is gone, and {changed[0]} is not what it was (see hdrig verify)" if changed else ""

@@ -20,7 +20,8 @@ from rig.core.procedure import Envelope, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.core.units import RPM, TURN
 
-AVERAGE = 5.0  # s of torque under the loop; friction that wanders 1 % with 0.3 s is then known to 0.4 %
+AVERAGE = 5.0  # s of torque under the loop
+FOUND = 0.004  # 1 σ of the torque found, relative: friction that wanders 1 % with 0.3 s, over AVERAGE
 SHORT = 0.5  # s of it where the torque is given
 MARGIN = 1.15  # constant torque gives the asked speed to within this factor: friction wanders, the drive rounds
 STALL = 3.0  # times the duration of a turn without a turn: the motor is coming to a stand

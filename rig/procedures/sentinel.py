@@ -13,8 +13,8 @@ from rig.procedures.open_loop import OpenLoop
 class Sentinel(Procedure):
     """A short run at constant torque whose mean speed, torque, peak to peak and order 2 are compared over a campaign.
 
-    By itself each finds its own torque, so that friction shows in the torque; with the `torque` of the first one given,
-    it shows in the speed.
+    By itself each finds its own torque: friction shows in the torque, and in nothing else that could be compared. With
+    one `torque` given to all it shows in the speed.
     """
 
     name: ClassVar[str] = "sentinel"

@@ -15,6 +15,7 @@ from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.journal import JournalReader, journal_files
 from rig.runfile.process import is_being_made
+from rig.runfile.promised import time_untold
 from rig.runfile.run import Run
 from rig.runfile.samples import Archive
 
@@ -42,7 +43,7 @@ def verify(folder: Path) -> list[Finding]:
         run = Run.open(folder)
     except HdrigError as error:
         return [*findings, Finding("error", "samples", str(error))]
-    for check in (_rows, _gaps, _flags, _backend, _journal):
+    for check in (_rows, _time, _gaps, _flags, _backend, _journal):
         findings += check(run)
     return findings
 
@@ -90,6 +91,12 @@ def _rows(run: Run) -> Iterator[Finding]:
         lost, made = ticks - run.rows, ticks
     if lost:
         yield Finding("error", "rows", f"{lost} of {made} rows the loop made are missing")
+
+
+def _time(run: Run) -> Iterator[Finding]:
+    """Rows as far apart, and a run as long, as the manifest says."""
+    if sentence := time_untold(run.manifest, run.column("t")):
+        yield Finding("error", "time", sentence)
 
 
 def _gaps(run: Run) -> Iterator[Finding]:

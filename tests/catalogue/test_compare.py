@@ -150,6 +150,14 @@ def test_a_trend_has_a_series_for_each_gear_procedure_and_point_and_leaves_out_w
         trend(tmp_path, "K1")
 
 
+def test_a_trend_over_no_runs_says_so_and_blames_no_figure(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=f"^there are no runs in {tmp_path}$"):
+        trend(tmp_path, "peak-to-peak")
+    run(tmp_path, DAYS[0])
+    with pytest.raises(UsageError, match=rf"^there are no runs in {tmp_path} of a gear 'SN9'$"):
+        trend(tmp_path, "peak-to-peak", gear="SN9")
+
+
 def test_both_are_json_for_programs_and_lines_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     first = many(tmp_path, [90.0, 90.2, 89.9, 90.1], DAYS[0])
     (other,) = many(tmp_path, [93.0], DAYS[1])

@@ -46,6 +46,13 @@ def test_filters_take_gear_procedure_verdict_status_and_days(tmp_path: Path) -> 
     assert found(sort="gear", reverse=True) == [a, c, b]
 
 
+def test_a_run_folder_lists_itself_as_for_every_other_verb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = run(tmp_path, "2026-11-18")
+    assert [row.path for row in runs(folder)] == [folder]
+    assert main(["list", str(folder)]) == 0
+    assert str(folder) in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("words", [{"verdict": "pas"}, {"status": "done"}, {"sort": "age"}, {"since": "yesterday"}])
 def test_a_word_there_is_not_is_refused_with_what_there_is(tmp_path: Path, words: dict[str, str]) -> None:
     with pytest.raises(UsageError, match=r"expected|did you mean"):

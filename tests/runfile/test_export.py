@@ -17,6 +17,7 @@ import pytest
 from rig.core.channels import CHANNEL
 from rig.core.errors import UsageError
 from rig.runfile.export import FORMATS, export
+from rig.runfile.extra import how_to_install
 from rig.runfile.finalise import finalise
 from rig.runfile.run import Run
 from tests.runfile.rows import expected, manifest_of, new_folder, write_journal
@@ -177,7 +178,7 @@ def test_a_missing_package_is_a_sentence_that_says_how_to_get_it(
 
     monkeypatch.delitem(sys.modules, FORMATS[kind].module, raising=False)
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(UsageError, match=rf"{kind} needs the package {package}.*pip install 'hdrig\[exchange\]'"):
+    with pytest.raises(UsageError, match=rf"{kind} needs the package {package}.*install -e '\.\[exchange\]'"):
         export(run, kind)
 
 
@@ -206,3 +207,12 @@ def test_a_run_without_a_row_is_exported_without_a_row(tmp_path: Path, kind: str
     folder = new_folder(tmp_path)
     finalise(folder, "stopped", "before the first tick")
     assert export(Run.open(folder), kind).exists()
+
+
+def test_what_is_missing_is_fetched_for_the_clone_and_never_by_a_name_of_ours(tmp_path: Path) -> None:
+    """`hdrig` is on no registry: a stranger's package may have the name one day."""
+    assert "hdrig[" not in how_to_install()
+    assert how_to_install(tmp_path).startswith("install hdrig again from where it came from")
+    (tmp_path / "pyproject.toml").touch()
+    assert how_to_install(tmp_path).startswith(f"in {tmp_path}: ")
+    assert how_to_install(tmp_path).endswith(" install -e '.[exchange]'")

@@ -313,3 +313,15 @@ def test_a_start_that_is_no_time_is_a_sentence(tmp_path: Path, kind: str) -> Non
     manifest.update(folder, started_utc="yesterday")
     with pytest.raises(UsageError, match='started_utc is "yesterday", expected ISO 8601'):
         export(Run.open(folder), kind)
+
+
+def test_time_in_another_unit_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path, loop={"rate": 1000.0})
+    assert not found(folder)
+
+    def in_ms(t: np.ndarray[Any, Any]) -> None:
+        t *= 1e3
+
+    with_column(folder, "t", in_ms)
+    said = "t is not in s: its rows are 1 s apart, the manifest says 1000 Hz (0.001 s): it looks like ms, expected s"
+    assert ("time", said) in found(folder)

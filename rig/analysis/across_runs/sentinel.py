@@ -26,17 +26,22 @@ class Watched:
     value: Array  # (m,)
     half: Array  # (m,) half widths of the 95 % intervals
     change: float  # last less first
-    change_half: float  # half width of its 95 % interval
-    changed: bool  # whether any two differ by more than both intervals together, widened for how many are compared
+    change_half: float  # half width of its interval, by which it is judged: 95 % for all that is compared together
+    changed: bool  # whether any two differ by more than that interval of theirs
+    most: tuple[int, int]  # the two that differ most beyond theirs, in their order
 
     @property
     def sentence(self) -> str:
         """For the campaign's report."""
         word = "changed" if self.changed else "did not change by more than the sentinels can tell"
-        return (
+        said = (
             f"{self.label} {word}: {self.value[0]:.4g} {self.unit} first, {self.value[-1]:.4g} {self.unit} last, "
-            f"change {self.change:+.3g} ± {self.change_half:.2g} {self.unit} over {self.value.size} sentinels."
+            f"change {self.change:+.3g} ± {self.change_half:.2g} {self.unit} over {self.value.size} sentinels"
         )
+        if self.changed and abs(self.change) <= self.change_half:
+            i, j = self.most
+            said += f"; sentinels {i + 1} and {j + 1} differ by {self.value[j] - self.value[i]:+.3g} {self.unit}"
+        return f"{said} (interval: 95 % for all that is compared together)."
 
 
 def compare(sentinels: Sequence[Sequence[Estimate]]) -> tuple[Watched, ...]:
@@ -55,7 +60,9 @@ def _watched(estimates: list[Estimate]) -> Watched:
     value = np.array([e.value for e in estimates])
     half = np.array([0.5 * (e.ci95[1] - e.ci95[0]) for e in estimates])
     apart = np.abs(value[:, None] - value[None, :])
-    together = np.hypot(half[:, None], half[None, :])
+    together = _widened(value.size) * np.hypot(half[:, None], half[None, :])
+    i, j = np.triu_indices(value.size, 1)
+    worst = int(np.argmax(apart[i, j] - together[i, j]))
     return Watched(
         first.name,
         first.label,
@@ -63,8 +70,9 @@ def _watched(estimates: list[Estimate]) -> Watched:
         value,
         half,
         float(value[-1] - value[0]),
-        float(np.hypot(half[0], half[-1])),
-        bool((apart > _widened(value.size) * together).any()),
+        float(together[0, -1]),
+        bool((apart > together).any()),
+        (int(i[worst]), int(j[worst])),
     )
 
 

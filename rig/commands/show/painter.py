@@ -15,6 +15,7 @@ import termios
 
 from rig.commands.show.enrich import Enriched
 from rig.commands.show.screens import screen_for
+from rig.streams import show_what_fits
 
 
 def main() -> None:
@@ -22,6 +23,7 @@ def main() -> None:
     how, *terminal = sys.argv[1:]
     for quiet in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(quiet, signal.SIG_IGN)  # it ends when its pipe does, so that the last words are seen
+    show_what_fits(sys.stdout)
     try:
         screen = Enriched(screen_for(how, sys.stdout))
         for line in sys.stdin.buffer:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rig.core.errors import UsageError
+from rig.runfile.extra import how_to_install
 from rig.runfile.run import Run
 
 
@@ -54,7 +55,7 @@ def _load(kind: str, form: Format) -> Callable[[Run, Path], None]:
         write: Callable[[Run, Path], None] = importlib.import_module(form.module).write
     except ModuleNotFoundError as error:
         raise UsageError(
-            f"{kind} needs the package {error.name}, which is not installed: pip install 'hdrig[exchange]'"
+            f"{kind} needs the package {error.name}, which is not installed; {how_to_install()}"
         ) from error
     return write
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rig.core.errors import UsageError
+from rig.runfile.extra import how_to_install
 from rig.runfile.importing.mapping import Mapping
 from rig.runfile.importing.signatures import check_kind
 from rig.runfile.importing.table import Reader, Table
@@ -37,7 +38,7 @@ def read_table(path: Path, kind: str, read: Reader, mapping: Mapping) -> Table:
             if package not in OPTIONAL:
                 raise
             complaint = UsageError(
-                f"reading {kind} needs the package {package}; install it with: pip install 'hdrig[exchange]'"
+                f"reading {kind} needs the package {package}, which is not installed; {how_to_install()}"
             )
         except DAMAGED as error:
             complaint = damaged(path, kind, error)

@@ -19,8 +19,8 @@ def test_a_change_beyond_both_intervals_is_told_with_its_numbers() -> None:
     (torque,) = compare([sentinel(0.40), sentinel(0.42), sentinel(0.44)])
     assert torque.changed
     assert torque.change == pytest.approx(0.04)
-    assert torque.change_half == pytest.approx(0.002 * 2**0.5)
-    assert torque.sentence.startswith("Mean motor torque changed: 0.4 N·m first, 0.44 N·m last, change +0.04 ± 0.0028")
+    assert torque.change_half == pytest.approx(0.002 * 2**0.5 * 2.858 / 1.96, rel=1e-3)  # 12 comparisons, 1 in 20
+    assert torque.sentence.startswith("Mean motor torque changed: 0.4 N·m first, 0.44 N·m last, change +0.04 ± 0.0041")
 
 
 def test_a_change_within_the_intervals_is_none() -> None:
@@ -29,8 +29,16 @@ def test_a_change_within_the_intervals_is_none() -> None:
     assert "did not change" in torque.sentence
 
 
+@pytest.mark.parametrize("change", np.linspace(0.001, 0.006, 26))
+def test_the_interval_that_is_printed_is_the_one_that_decides(change: float) -> None:
+    (torque,) = compare([sentinel(0.4), sentinel(0.4 + change)])
+    assert torque.changed == (abs(torque.change) > torque.change_half)
+
+
 def test_an_excursion_in_the_middle_is_a_change_although_it_came_back() -> None:
-    assert compare([sentinel(0.40), sentinel(0.45), sentinel(0.40)])[0].changed
+    (torque,) = compare([sentinel(0.40), sentinel(0.45), sentinel(0.40)])
+    assert torque.changed
+    assert "sentinels 1 and 2 differ by +0.05 N·m" in torque.sentence
 
 
 def test_with_many_sentinels_of_an_unchanged_rig_it_is_rarely_said_to_have_changed() -> None:

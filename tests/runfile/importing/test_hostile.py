@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.runfile.extra import how_to_install
 from rig.runfile.importing import READERS
 
 from .conftest import Foreign
@@ -215,4 +216,4 @@ def test_an_optional_package_that_is_absent(
 
     monkeypatch.setattr(builtins, "__import__", without)
     said = foreign.refused(path)
-    assert said.endswith(f"needs the package {package}; install it with: pip install 'hdrig[exchange]'")
+    assert said.endswith(f"needs the package {package}, which is not installed; {how_to_install()}")

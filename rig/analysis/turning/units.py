@@ -1,0 +1,42 @@
+"""Was the motor angle recorded in the unit it is declared in? The speed that was commanded tells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
+from rig.analysis.motion.strokes import Stroke
+from rig.analysis.smoothness.measure import nominal_rpm
+from rig.core.numbers import number
+from rig.core.units import DEG, TURN
+
+FACTORS = (
+    (1 / DEG, "180/π: is theta_m in deg"),
+    (DEG, "π/180: was theta_m turned from deg into rad twice"),
+    (1 / TURN, "1/(2π): is theta_m in turns"),
+    (TURN, "2π: was theta_m multiplied by 2π twice"),
+    (60.0, "60: is theta_m in sixtieths of what it should be, or t in min"),
+    (1 / 60, "1/60: is a rate per minute read as one per second"),
+)
+NEAR = 0.03  # share by which a speed may differ from that of a wrong unit: a loop follows better than that
+
+
+def wrong_unit(motion: Motion, strokes: list[Stroke], reference: Array | None, conditions: Mapping[str, Any]) -> str:
+    """Says which unit theta_m seems to be in, where its strokes are faster or slower than commanded by the factor of a
+    unit; "" where they are not. Commanded is what `reference` [rad], shape (n,), does, without it
+    `conditions["speed_rpm"]`."""
+    asked = abs(number(conditions.get("speed_rpm")))
+    if reference is not None and np.isfinite(reference).all():
+        asked = nominal_rpm(motion, strokes, reference)
+    rpm = nominal_rpm(motion, strokes, None)
+    for factor, what in FACTORS:
+        if asked > 0 and abs(rpm / asked / factor - 1) < NEAR:
+            return (
+                f"The unit of theta_m looks wrong: it turns at {rpm:.4g} rpm and {asked:.4g} rpm were commanded, a "
+                f"factor of {what}? Expected rad."
+            )
+    return ""

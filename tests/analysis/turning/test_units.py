@@ -1,0 +1,45 @@
+"""Angles in another unit than rad are named as such, and no gain is blamed for them; a gap is no high speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rig.analysis import Verdict, analyse
+from rig.core.units import DEG, TURN
+from tests.analysis.synthetic import MadeRun, slow_run
+
+
+def scaled(run: MadeRun, factor: float) -> MadeRun:
+    """Both angles times `factor`."""
+    return replace(run, columns={k: v * factor if k in ("theta_m", "theta_l") else v for k, v in run.columns.items()})
+
+
+@pytest.mark.parametrize(("factor", "word"), [(1 / DEG, "in deg?"), (1 / TURN, "in turns?"), (TURN, "2π twice?")])
+@pytest.mark.parametrize("referenced", [True, False])
+def test_a_unit_that_looks_wrong_is_said_instead_of_advice_on_gains(factor: float, word: str, referenced: bool) -> None:
+    made = slow_run(1, amplitude_turns=12.0)
+    rpm = 4 * 12.0 * 0.01 * 60
+    columns = dict(made.columns)
+    if not referenced:
+        columns.pop("theta_ref", None)
+    made = replace(made, columns=columns, manifest={**made.manifest, "conditions": {"speed_rpm": rpm}})
+    assert analyse(made).verdict is Verdict.MEASURED
+    result = analyse(scaled(made, factor))
+    assert result.verdict is Verdict.FAIL
+    assert result.sentence.startswith("The unit of theta_m looks wrong: it turns at ")
+    assert f"{rpm:.4g} rpm were commanded" in result.sentence
+    assert word in result.sentence
+    assert "Kp" not in result.sentence
+
+
+def test_a_gap_is_named_with_its_channel_and_rows() -> None:
+    made = slow_run(1)
+    theta_l = made.columns["theta_l"].copy()
+    theta_l[5000:60000] = np.nan
+    result = analyse(replace(made, columns={**made.columns, "theta_l": theta_l}))
+    assert result.verdict is Verdict.INCONCLUSIVE
+    assert f"theta_l has no value in 55000 of {theta_l.size} rows (row 5000 to 59999)" in result.sentence
+    assert "too fast" not in result.sentence
