@@ -15,7 +15,7 @@ TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torqu
 LIMITS = {
     "travel": "limits.travel_turns",
     "speed": "limits.speed_rpm",
-    "torque": "limits.torque",
+    "torque": "the smaller of limits.torque and motor.torque_limit",
     "shaft": "limits.shaft_torque, what the torque sensor may carry",
 }
 LONGEST = 31 * 86400.0  # s
@@ -55,11 +55,12 @@ def refuse_mode(bench: Bench, procedure: Procedure) -> None:
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
     """Raises NotReady when the procedure asks for more than the bench allows."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
-    reserved = "speed" if math.isinf(envelope.shaft_torque) else "shaft"
-    for what, asked, limit, unit, scale in margins(bench, procedure):
+    reserved = ("shaft",) if procedure.output_locked else ("speed", "shaft")
+    by_torque_first = sorted(margins(bench, procedure), key=lambda margin: margin[0] != "torque")  # what was given
+    for what, asked, limit, unit, scale in by_torque_first:
         if asked > limit:
             wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-            why = f" ({envelope.reserve})" if envelope.reserve and what == reserved else ""
+            why = f" ({envelope.reserve})" if envelope.reserve and what in reserved else ""
             raise NotReady(
                 f"{procedure.title()} asks for up to {wanted} of {TOLD[what]}{why}, the bench allows {allowed}: "
                 f"{LIMITS[what]}"
@@ -72,7 +73,7 @@ def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float,
     found = [
         ("travel", envelope.travel, limits.travel, "deg", 1 / DEG),
         ("speed", envelope.speed, limits.speed, "rpm", 1 / RPM),
-        ("torque", envelope.torque, limits.torque, "N·m", 1.0),
+        ("torque", envelope.torque, bench.gains.torque_limit, "N·m", 1.0),
     ]
     if limits.shaft_torque is not None and math.isfinite(envelope.shaft_torque):
         found.append(("shaft", envelope.shaft_torque, limits.shaft_torque, "N·m", 1.0))
