@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,11 @@ HAND = {
     "reassemble": ("reassemble", "depth_mm"),
 }
 
+NUMBERS = {
+    "tau_ext": "the torque on the output in N·m, for example 'hdrig twin hang 3'",
+    "depth_mm": "the depth in mm, for example 'hdrig twin reassemble 0.1'",
+}
+
 
 def ask(control: Path, words: Sequence[str]) -> list[str]:
     """The answer, a line each. Raises UsageError: not understood; NotReady: nobody there, or the twin refuses."""
@@ -49,8 +55,15 @@ def understood(words: Sequence[str]) -> dict[str, Any]:
         if not key or key in out:
             raise UsageError(f"hdrig twin {' '.join(words)}: '{word}' is not understood; expected KEY=VALUE")
         out[key] = toml_value(value)
+    refuse_numbers(f"hdrig twin {verb}", out)
     if own == "tau_ext" and own not in out:
-        raise UsageError(
-            f"hdrig twin {verb}: expected the torque on the output in N·m, for example 'hdrig twin hang 3'"
-        )
+        raise UsageError(f"hdrig twin {verb}: expected {NUMBERS[own]}")
     return out
+
+
+def refuse_numbers(who: str, asked: dict[str, Any]) -> None:
+    """Raises UsageError where what the hand is asked for is no finite number."""
+    for key, expected in NUMBERS.items():
+        value = asked.get(key, 0.0)
+        if type(value) not in (int, float) or not abs(value) < math.inf:
+            raise UsageError(f"{who}: {key} = {value} is no finite number; expected {expected}")
