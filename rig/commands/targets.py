@@ -13,7 +13,7 @@ from rig.runfile.process import sole_writer
 from rig.runfile.writing import writing
 
 BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
-BELOW = "r" * 120  # as long as the run folder and a file in it: a target whose path leaves no room for them keeps nothing
+BELOW = "r" * 120  # as long as a run folder and a file in it: the longest path has to leave room for them
 
 
 def refuse_unwritable(folder: Path, option: str = "--out") -> None:

@@ -60,6 +60,8 @@ class Session:
             for remark in device.remarks:
                 self.log.event("note", remark)
         self.supervisor.act(Act.CONNECT)
+        if self.simulated and not self.bench.simulated:
+            self.observer.simulated(self.bench.file.name)
         return self
 
     def __exit__(
@@ -68,8 +70,18 @@ class Session:
         self.instruments.close()
         self.supervisor.act(Act.DISCONNECT)
 
+    @property
+    def simulated(self) -> bool:
+        """The bench is the twin, or a device says that it is the twin's, over whatever wire."""
+        return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
+
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs. Raises NotReady with what is missing or too much."""
+        """The bench can do what the procedure needs. Raises NotReady: in fault, what is missing or too much."""
+        if self.supervisor.state is State.FAULT:
+            raise NotReady(
+                f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
+                f"`hdrig reset --bench {self.bench.source}`"
+            )
         refuse_endless(self.bench, procedure)
         missing = [c for c in procedure.needs if c not in self.instruments.channels]
         if missing:
@@ -183,12 +195,7 @@ class Session:
             self.log.close()
 
     def _refuse_now(self) -> None:
-        """Raises NotReady in fault, Ended once the operator has asked for an end."""
-        if self.supervisor.state is State.FAULT:
-            raise NotReady(
-                f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
-                f"`hdrig reset --bench {self.bench.source}`"
-            )
+        """Raises Ended once the operator has asked for an end."""
         if self.interrupts.count:
             raise Ended(f"stopped {self.interrupts.who}; nothing more was started", self.interrupts.exit)
 
