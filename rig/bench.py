@@ -131,10 +131,14 @@ class Bench:
             if section is not None and section.skew is not None and section.skew_half_width is not None
         }
 
-    def open(self, clock: ClockName) -> Instruments:
-        """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
+    def refuse_clock(self, clock: ClockName) -> None:
+        """Raises UsageError for a clock that this bench cannot have."""
         if not self.simulated and clock == "virtual":
             raise UsageError(f"{self.source}: the virtual clock exists only on the twin; use --clock wall")
+
+    def open(self, clock: ClockName) -> Instruments:
+        """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
+        self.refuse_clock(clock)
         timer, world = self._clock(clock)
         if world is None:
             return self.wired(timer)
