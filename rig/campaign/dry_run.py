@@ -12,15 +12,14 @@ from rig.campaign.preview import stored_energy
 from rig.campaign.steps import Item
 from rig.campaign.swing import resonance_speed
 from rig.campaign.unseen import unseen
-from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
 from rig.core.units import RPM, TURN
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.weigh import Weigh
+from rig.runfile.room import rows_bytes
 
-SHARE = 1.4  # journal as it is, archive at about 0.4 of it
 CHANGE = 60.0  # s a person takes for one, a guess for the total; the twin's hand takes none
 
 
@@ -52,11 +51,6 @@ def figures(campaign: Campaign, item: Item) -> Figures:
         shaft_torque=shaft,
         bytes=rows_bytes(envelope.duration * bench.file.loop.rate),
     )
-
-
-def rows_bytes(rows: float) -> float:
-    """On disk."""
-    return rows * 8 * len(CHANNELS) * SHARE
 
 
 def checks_of(change: Change) -> list[Procedure]:

@@ -6,16 +6,16 @@ import math
 
 from rig.bench import Bench
 from rig.campaign.swing import ORDER_2, swing
-from rig.core.channels import CHANNELS
 from rig.core.procedure import Procedure
 from rig.refusals import TOLD, margins
+from rig.runfile.room import rows_bytes
 
 
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     """What a dry run prints: travel, speed, torque, energy, duration, bytes, and the margins to every limit."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
     rows = int(envelope.duration * bench.file.loop.rate)
-    size = rows * 8 * len(CHANNELS) * 1.4 / 1e6  # journal as it is, archive at about 0.4 of it
+    size = rows_bytes(rows) / 1e6
     lines = [
         f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
         f"duration    at most {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",

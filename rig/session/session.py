@@ -21,6 +21,7 @@ from rig.procedures.sign_and_scale import Proof, SignAndScale
 from rig.procedures.weigh import Weigh, Weighing
 from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refuse_rigging
 from rig.runfile.folder import create
+from rig.runfile.room import refuse_no_room
 from rig.session.changing import prepare, show
 from rig.session.done import Done, Ended, Watch, nobody
 from rig.session.log import SessionLog
@@ -76,7 +77,9 @@ class Session:
         return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
 
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs. Raises NotReady: in fault, what is missing or too much."""
+        """The bench can do what the procedure needs. Raises NotReady: in fault, what is missing or too
+        much; UsageError: no room on the disk for what it records.
+        """
         if self.supervisor.state is State.FAULT:
             raise NotReady(
                 f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
@@ -87,6 +90,13 @@ class Session:
         if missing:
             raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.title()} needs")
         refuse_beyond_limits(self.bench, procedure)
+        refuse_no_room(self.root, self._rows(procedure), procedure.title())
+
+    def _rows(self, procedure: Procedure) -> float:
+        """Most that it records, with the proof that has to come first."""
+        proof = [SignAndScale()] if procedure.closes_loop and self.proof is None else []
+        setting = self.bench.setting(lambda text: None)
+        return sum(one.envelope(setting).duration for one in (*proof, procedure)) * self.bench.file.loop.rate
 
     def rewire(self, bench: Bench) -> None:
         """Go on with other gains and another speed filter; the devices stay as they are."""
