@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import socket
 import threading
 from collections.abc import Iterator
@@ -62,6 +63,24 @@ def test_an_output_left_locked_by_a_run_that_died_is_freed(
     assert not twin.world.plant.locked
     assert ask(tmp_path, "lock") == 0
     assert twin.world.plant.locked
+
+
+def test_values_are_told_with_their_units_and_an_error_code_as_a_run_says_it(
+    twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert ask(tmp_path, "status") == 0
+    assert "error_code     none" in capsys.readouterr().out
+    twin.drive.fault(0x8130)
+    assert ask(tmp_path, "status") == 0
+    said = capsys.readouterr().out
+    assert "error_code     8130h" in said
+    assert re.search(r"^  t +[0-9.e+-]+ s$", said, re.M)
+    assert re.search(r"^  late +[0-9.e+-]+ s$", said, re.M)
+    assert re.search(r"^  load +[0-9.]+ % of the bus$", said, re.M)
+    assert ask(tmp_path, "truth") == 0
+    said = capsys.readouterr().out
+    for key, unit in (("theta_m", "rad"), ("omega_l", "rad/s"), ("tau_m", "N·m"), ("phi", "rad")):
+        assert re.search(rf"^  {key} +[0-9.e+-]+ {unit}$", said, re.M), key
 
 
 def test_a_weight_is_hung_by_its_number_alone(twin: Assembly, tmp_path: Path) -> None:

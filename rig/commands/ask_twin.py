@@ -33,6 +33,13 @@ NUMBERS = {
     "depth_mm": "the depth in mm, for example 'hdrig twin reassemble 0.1'",
 }
 
+UNITS = {
+    **dict.fromkeys(("t", "late"), "s"),
+    **dict.fromkeys(("theta_m", "theta_l", "phi"), "rad"),
+    **dict.fromkeys(("omega_m", "omega_l"), "rad/s"),
+    **dict.fromkeys(("tau_m", "tau_l"), "N·m"),
+}
+
 
 def ask(control: Path, words: Sequence[str]) -> list[str]:
     """The answer, a line each. Raises UsageError: not understood; NotReady: nobody there, or the twin refuses."""
@@ -40,7 +47,16 @@ def ask(control: Path, words: Sequence[str]) -> list[str]:
     answer = TwinHand(str(control)).ask(asked)
     answer.pop("ok")
     done = f"SIMULATED: the twin at {control}: {' '.join(words)}"
-    return [done, *(f"  {key:14s} {value}" for key, value in answer.items())]
+    return [done, *(f"  {key:14s} {told(key, value)}" for key, value in answer.items())]
+
+
+def told(key: str, value: Any) -> str:
+    """One value of an answer for a person, with its unit; an error code as manuals write it, 8130h."""
+    if key == "error_code" and isinstance(value, int):
+        return f"{value:04X}h" if value else "none"
+    if key == "load" and isinstance(value, float):
+        return f"{100 * value:.1f} % of the bus"
+    return f"{value:.6g} {UNITS[key]}" if key in UNITS and isinstance(value, float) else str(value)
 
 
 def understood(words: Sequence[str]) -> dict[str, Any]:
