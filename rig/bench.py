@@ -18,6 +18,7 @@ from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
 from rig.core.clock import Clock, WallClock
 from rig.core.devices import Device, Drive, Encoder, TorqueSensor
+from rig.core.drivetrain import Drivetrain
 from rig.core.errors import UsageError
 from rig.core.gains import Gains
 from rig.core.nearest import nearest
@@ -26,6 +27,9 @@ from rig.core.sample import Mode
 from rig.core.units import DEG, RPM
 from rig.guard import Limits
 from rig.instruments import Instruments
+from rig.model.fourier import FourierSeries
+from rig.model.gear import Gear, sigma_of
+from rig.model.linear import damping_ratio, natural_frequency
 from rig.twin_hand import TwinHand
 
 BENCHES = Path(__file__).parent / "benches"  # benches that ship with hdrig
@@ -80,7 +84,28 @@ class Bench:
 
     def setting(self, note: Callable[[str], None]) -> Setting:
         """What a procedure is told about the rig; `note` receives its remarks."""
-        return Setting(1.0 / self.file.loop.rate, self.file.gear.N, self.gains, note, self.file.gear.K)
+        g = self.file.gear
+        return Setting(1.0 / self.file.loop.rate, g.N, self.gains, self.drivetrain, note, g.K)
+
+    @property
+    def drivetrain(self) -> Drivetrain:
+        """Declared inertias, damping and friction, seen at the motor, output free."""
+        g, gear = self.file.gear, self.declared_gear
+        return Drivetrain(
+            J_m=g.J_m,
+            J_l=g.J_l / g.N**2,
+            B=g.B_m + g.B_ml * (1.0 + gear.sigma / g.N) ** 2 + g.B_l / g.N**2,
+            tau_c=g.tau_c,
+            omega_n=natural_frequency(gear),
+            zeta=damping_ratio(gear),
+            ratio=g.N,
+        )
+
+    @property
+    def declared_gear(self) -> Gear:
+        """Without its kinematic error, which nobody declares."""
+        g = self.file.gear
+        return Gear(g.N, g.J_m, g.J_l, g.K, g.B_m, g.B_l, g.B_ml, g.B_sp, FourierSeries((), ()), sigma_of(g.output))
 
     def manifest(self) -> dict[str, Any]:
         """The bench's part of a run's manifest."""
@@ -106,10 +131,14 @@ class Bench:
             if section is not None and section.skew is not None and section.skew_half_width is not None
         }
 
-    def open(self, clock: ClockName) -> Instruments:
-        """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
+    def refuse_clock(self, clock: ClockName) -> None:
+        """Raises UsageError for a clock that this bench cannot have."""
         if not self.simulated and clock == "virtual":
             raise UsageError(f"{self.source}: the virtual clock exists only on the twin; use --clock wall")
+
+    def open(self, clock: ClockName) -> Instruments:
+        """Make the devices and their clock; nothing is connected yet. Raises UsageError."""
+        self.refuse_clock(clock)
         timer, world = self._clock(clock)
         if world is None:
             return self.wired(timer)
@@ -310,8 +339,6 @@ def twin_parameters(f: BenchFile) -> Any:
     """The numbers of the bench file as the twin wants them."""
     import numpy as np
 
-    from rig.model.fourier import FourierSeries
-    from rig.model.gear import Gear, sigma_of
     from sim.effects import Effects
     from sim.parameters import TwinParameters
 

@@ -84,6 +84,7 @@ class GearSection(Strict):
     B_l: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
     B_sp: Annotated[float, quantity("N·m·s/rad", **NotNegative)]
     fourier_terms: Annotated[int, quantity("1", ge=1, le=100)]
+    tau_c: Annotated[float, quantity("N·m", **NotNegative)] = 0.0  # Coulomb friction of the whole rig, at the motor
     T_rated: Annotated[float | None, quantity("N·m", **Positive)] = None  # maker's rated torque at the output
     T1: Annotated[float | None, quantity("N·m", **Positive)] = None  # where the maker's K1 ends
     T2: Annotated[float | None, quantity("N·m", **Positive)] = None  # and his K2

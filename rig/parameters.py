@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
+from rig.parameters_told import told
 
 Made = TypeVar("Made")
 LARGEST = 1e100  # nothing on a rig is near, and its square is still a number
@@ -30,12 +31,28 @@ def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
     for name in given:
         if name not in known:
             raise UsageError(f"{title} has no parameter '{name}'; {nearest(name, known)}")
+    for name, raw in given.items():
+        _refuse_unit(kind, known[name], raw)
     values = {name: _value(known[name], raw) for name, raw in given.items()}
     try:
         return kind(**values)
     except (OverflowError, ZeroDivisionError):
-        told = ", ".join(f"{name} = {raw}" for name, raw in given.items())
-        raise UsageError(f"{title}: the parameters {told} cannot be meant") from None
+        shown = ", ".join(f"{name} = {raw}" for name, raw in given.items())
+        raise UsageError(f"{title}: the parameters {shown} cannot be meant") from None
+
+
+def _refuse_unit(kind: type[Any], field: Field[Any], raw: Any) -> None:
+    """Raises UsageError for a number with something behind it, where a number is wanted."""
+    number, space, behind = raw.strip().partition(" ") if isinstance(raw, str) else ("", "", "")
+    if not space or not isinstance(field.default, float | int) or isinstance(field.default, bool):
+        return
+    try:
+        float(number)
+    except ValueError:
+        return
+    unit = next(one.unit for one in told(kind) if one.name == field.name)
+    wanted = f"a number in {unit}, without the unit" if unit else f"a number alone, without '{behind.strip()[:20]}'"
+    raise UsageError(f"{field.name} = {raw.strip()[:60]}: expected {wanted}, for example {field.default}")
 
 
 def _value(field: Field[Any], raw: Any) -> Any:
@@ -80,6 +97,6 @@ def _number(field: Field[Any], raw: Any, signed: bool) -> float:
 
 
 def _refused(field: Field[Any], raw: Any, expected: str) -> UsageError:
-    told = str(raw)
-    told = told if len(told) <= 60 else told[:57] + "..."
-    return UsageError(f"{field.name} = {told}: expected {expected}, for example {field.default}")
+    shown = str(raw)
+    shown = shown if len(shown) <= 60 else shown[:57] + "..."
+    return UsageError(f"{field.name} = {shown}: expected {expected}, for example {field.default}")

@@ -43,6 +43,10 @@ class Told:
         shown = f"{self.name}={_shown(self.default)}" + (f" {self.unit}" if self.unit else "")
         return f"{shown:32s}  {self.meaning}".rstrip()
 
+    def written(self, value: Any) -> str:
+        """A value of it, with its unit."""
+        return f"{_shown(value)} {self.unit}".rstrip()
+
 
 def told(kind: type[Any]) -> list[Told]:
     """Every field of `kind`, a dataclass, in its order."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from rig.bench import Bench
 from rig.core.errors import NotReady, UsageError
@@ -10,12 +11,14 @@ from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
 from rig.core.units import DEG, RPM
+from rig.parameters import make
+from rig.parameters_told import Told, told
 
 TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torque", "shaft": "shaft torque"}
 LIMITS = {
     "travel": "limits.travel_turns",
     "speed": "limits.speed_rpm",
-    "torque": "limits.torque",
+    "torque": "the smaller of limits.torque and motor.torque_limit",
     "shaft": "limits.shaft_torque, what the torque sensor may carry",
 }
 LONGEST = 31 * 86400.0  # s
@@ -34,13 +37,43 @@ def refuse_rigging(rigging: Rigging, procedure: Procedure) -> None:
 
 def refuse_endless(bench: Bench, procedure: Procedure) -> None:
     """Raises UsageError when what the procedure would do is no finite number, or longer than a month."""
+    if what := _endless(bench, procedure):
+        raise UsageError(
+            f"{procedure.title()} with {_culprit(bench, procedure)} is endless or immeasurably fast: {what}, expected "
+            f"above 0 and at most {LONGEST:.0f} s ({LONGEST / 86400:g} days)"
+        )
+
+
+def _endless(bench: Bench, procedure: Procedure) -> str:
+    """What of it is no finite number, or how long it would take, in words; "" where it comes to an end."""
     try:
         envelope = procedure.envelope(bench.setting(lambda text: None))
-        finite = all(abs(x) < LARGEST for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque))
-    except (OverflowError, ZeroDivisionError):
-        finite = False
-    if not finite or not 0 < envelope.duration < LONGEST:
-        raise UsageError(f"{procedure.title()} with these parameters is endless or immeasurably fast: check them")
+    except (OverflowError, ZeroDivisionError, UsageError):
+        return "how long it would take is no number"
+    if not all(abs(x) < LARGEST for x in (envelope.duration, envelope.travel, envelope.speed, envelope.torque)):
+        return "what it would do is no finite number of s"
+    return "" if 0 < envelope.duration < LONGEST else f"it would take {envelope.duration:g} s"
+
+
+def _culprit(bench: Bench, procedure: Procedure) -> str:
+    """The parameter without which it would come to an end, with its unit and its default; else all that were given."""
+    given = [one for one in told(type(procedure)) if getattr(procedure, one.name) != one.default]
+    alone = [one for one in given if _ends_with_default(bench, procedure, one)]
+    return ", ".join(
+        f"{one.name} = {one.written(getattr(procedure, one.name))} (by default {one.written(one.default)})"
+        for one in alone or given
+    )
+
+
+def _ends_with_default(bench: Bench, procedure: Procedure, one: Told) -> bool:
+    try:
+        return not _endless(bench, make(type(procedure), _parameters(procedure) | {one.name: one.default}, ""))
+    except UsageError:  # the others do not go with it
+        return False
+
+
+def _parameters(procedure: Procedure) -> dict[str, Any]:
+    return {one.name: getattr(procedure, one.name) for one in told(type(procedure))}
 
 
 def refuse_mode(bench: Bench, procedure: Procedure) -> None:
@@ -55,11 +88,12 @@ def refuse_mode(bench: Bench, procedure: Procedure) -> None:
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
     """Raises NotReady when the procedure asks for more than the bench allows."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
-    reserved = "speed" if math.isinf(envelope.shaft_torque) else "shaft"
-    for what, asked, limit, unit, scale in margins(bench, procedure):
+    reserved = ("shaft",) if procedure.output_locked else ("speed", "shaft")
+    by_torque_first = sorted(margins(bench, procedure), key=lambda margin: margin[0] != "torque")  # what was given
+    for what, asked, limit, unit, scale in by_torque_first:
         if asked > limit:
             wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-            why = f" ({envelope.reserve})" if envelope.reserve and what == reserved else ""
+            why = f" ({envelope.reserve})" if envelope.reserve and what in reserved else ""
             raise NotReady(
                 f"{procedure.title()} asks for up to {wanted} of {TOLD[what]}{why}, the bench allows {allowed}: "
                 f"{LIMITS[what]}"
@@ -72,7 +106,7 @@ def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float,
     found = [
         ("travel", envelope.travel, limits.travel, "deg", 1 / DEG),
         ("speed", envelope.speed, limits.speed, "rpm", 1 / RPM),
-        ("torque", envelope.torque, limits.torque, "N·m", 1.0),
+        ("torque", envelope.torque, bench.gains.torque_limit, "N·m", 1.0),
     ]
     if limits.shaft_torque is not None and math.isfinite(envelope.shaft_torque):
         found.append(("shaft", envelope.shaft_torque, limits.shaft_torque, "N·m", 1.0))

@@ -19,6 +19,8 @@ from sim.plant import Plant, Truth
 NEVER = math.inf
 RELAX = 0.001  # s of wall time, for other processes to catch up
 WANDER_SHARE = 0.05  # of its correlation time: friction is held constant for this long at most
+MOST_LOAD = 1000.0  # N·m, more than a gear of this size survives
+MOST_DEPTH = 10.0  # mm, farther the wave generator is out of the gear
 
 
 class World(Clock):
@@ -92,7 +94,9 @@ class World(Clock):
         self._next = min(self._lapse, self._plans[0][0] if self._plans else NEVER)
 
     def load_torque(self, tau_ext: float) -> None:
-        """Put `tau_ext` N·m on the load, positive drives it forward: a dead weight on a pulley."""
+        """Put `tau_ext` N·m on the load, positive drives it forward: a dead weight on a pulley. Raises UsageError."""
+        if not abs(tau_ext) <= MOST_LOAD:  # nor what is no number
+            raise UsageError(f"a weight of {tau_ext:g} N·m: expected a number from {-MOST_LOAD:g} to {MOST_LOAD:g} N·m")
         self.plant.tau_ext = tau_ext
 
     def lock_output(self) -> None:
@@ -111,8 +115,10 @@ class World(Clock):
 
         What chance makes of the kinematic error this time comes from the seed; `parameters` then says it. The spring is
         relaxed afterwards, so angles read before do not compare; the energy ledger starts anew. Raises UsageError while
-        it turns.
+        it turns, and for what is no depth.
         """
+        if not abs(depth_mm) <= MOST_DEPTH:  # nor what is no number
+            raise UsageError(f"a depth of {depth_mm:g} mm: expected a number from {-MOST_DEPTH:g} to {MOST_DEPTH:g} mm")
         x = self.truth()
         if x.omega_m != 0.0 or x.omega_l != 0.0:
             raise UsageError(f"the motor turns at {x.omega_m:.3g} rad/s, the gear can be reassembled at rest only")

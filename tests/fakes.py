@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from rig.control.filter import SpeedFilter
 from rig.core.clock import Clock
 from rig.core.devices import AngleReading, Drive, DriveReading, Encoder, Identity, TorqueReading, TorqueSensor
+from rig.core.drivetrain import Drivetrain
 from rig.core.errors import NotReady
 from rig.core.gains import Gains
 from rig.core.procedure import Setting
@@ -17,7 +18,8 @@ from rig.guard import Limits
 from rig.instruments import Instruments
 
 GAINS = Gains(Kp=3.0, Ki=30.0, Kd=0.12, integrator_limit=1.5, torque_limit=5.0, feedforward=0.0033)
-SETTING = Setting(period=0.001, ratio=50.0, control=GAINS)
+DRIVETRAIN = Drivetrain(J_m=1.1e-3, J_l=1.28e-4, B=3.3e-3, tau_c=0.32, omega_n=158.0, zeta=0.04, ratio=50.0)
+SETTING = Setting(period=0.001, ratio=50.0, control=GAINS, drivetrain=DRIVETRAIN)
 LIMITS = Limits(
     speed=62.8,
     torque=5.0,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 import socket
 import threading
 from collections.abc import Iterator
@@ -63,6 +65,24 @@ def test_an_output_left_locked_by_a_run_that_died_is_freed(
     assert twin.world.plant.locked
 
 
+def test_values_are_told_with_their_units_and_an_error_code_as_a_run_says_it(
+    twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert ask(tmp_path, "status") == 0
+    assert "error_code     none" in capsys.readouterr().out
+    twin.drive.fault(0x8130)
+    assert ask(tmp_path, "status") == 0
+    said = capsys.readouterr().out
+    assert "error_code     8130h" in said
+    assert re.search(r"^  t +[0-9.e+-]+ s$", said, re.M)
+    assert re.search(r"^  late +[0-9.e+-]+ s$", said, re.M)
+    assert re.search(r"^  load +[0-9.]+ % of the bus$", said, re.M)
+    assert ask(tmp_path, "truth") == 0
+    said = capsys.readouterr().out
+    for key, unit in (("theta_m", "rad"), ("omega_l", "rad/s"), ("tau_m", "N·m"), ("phi", "rad")):
+        assert re.search(rf"^  {key} +[0-9.e+-]+ {unit}$", said, re.M), key
+
+
 def test_a_weight_is_hung_by_its_number_alone(twin: Assembly, tmp_path: Path) -> None:
     twin.world.lock_output()
     assert ask(tmp_path, "hang", "-2.5") == 0
@@ -83,7 +103,12 @@ def test_what_there_is_to_ask_for_is_told(twin: Assembly, tmp_path: Path, capsys
         (["free", "3"], 2, "'3' is not understood; expected KEY=VALUE"),
         (["hang", "1", "2"], 2, "'2' is not understood"),
         (["shove"], 3, "no command 'shove'; expected one of"),
-        (["hang", "much"], 3, "the twin refused load"),
+        (["hang", "much"], 2, "tau_ext = much is no finite number; expected the torque on the output in N·m"),
+        (["hang", "nan"], 2, "tau_ext = nan is no finite number"),
+        (["hang", "inf"], 2, "tau_ext = inf is no finite number"),
+        (["reassemble", "nan"], 2, "depth_mm = nan is no finite number; expected the depth in mm"),
+        (["load", "tau_ext=nan"], 2, "tau_ext = nan is no finite number"),
+        (["hang", "1e9"], 3, "a weight of 1e+09 N·m: expected a number from -1000 to 1000 N·m"),
     ],
 )
 def test_what_cannot_be_meant_is_a_sentence(
@@ -110,6 +135,33 @@ def test_where_no_twin_runs_it_is_said(tmp_path: Path, capsys: pytest.CaptureFix
 )
 def test_faults_are_asked_for_by_their_keys(words: list[str], asked: dict[str, Any]) -> None:
     assert understood(words) == asked
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (b'{"do": "load", "tau_ext": NaN}', "tau_ext = nan: expected a finite number"),
+        (b'{"do": "load", "tau_ext": 1e999}', "tau_ext = inf: expected a finite number"),
+        (b'{"do": "load", "tau_ext": "nan"}', "a weight of nan N"),
+        (b'{"do": "reassemble", "depth_mm": "nan"}', "a depth of nan mm"),
+    ],
+)
+def test_the_twin_judges_its_numbers_itself_and_lives_on(line: bytes, told: str) -> None:
+    assembly = wired().twin
+    answer = perform(plant_verbs(assembly, Reactor(assembly.agenda)), line)
+    assert answer["ok"] is False
+    assert told in answer["error"]
+    assembly.world.advance_to(assembly.world.t + 0.01)
+    assert assembly.world.truth().theta_m == assembly.world.truth().theta_m
+    assert assembly.world.plant.tau_ext == 0.0
+
+
+def test_an_infinity_stays_where_it_is_the_usual_value() -> None:
+    def drop(count: float = math.inf) -> None:
+        """Frames"""
+
+    assert perform({"drop": drop}, b'{"do": "drop", "count": Infinity}') == {"ok": True}
+    assert perform({"drop": drop}, b'{"do": "drop", "count": NaN}')["ok"] is False
 
 
 def test_a_key_given_twice_is_refused() -> None:

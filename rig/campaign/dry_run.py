@@ -10,17 +10,16 @@ from rig.campaign.changes import ByHand, Deed, Measure, deeds
 from rig.campaign.planner import Campaign
 from rig.campaign.preview import stored_energy
 from rig.campaign.steps import Item
-from rig.campaign.swing import declared_gear, resonance_speed
+from rig.campaign.swing import resonance_speed
 from rig.campaign.unseen import unseen
-from rig.core.channels import CHANNELS
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.core.procedure import Procedure
 from rig.core.units import RPM, TURN
 from rig.procedures.lock_check import LockCheck
 from rig.procedures.sign_and_scale import SignAndScale
 from rig.procedures.weigh import Weigh
+from rig.runfile.room import rows_bytes
 
-SHARE = 1.4  # journal as it is, archive at about 0.4 of it
 CHANGE = 60.0  # s a person takes for one, a guess for the total; the twin's hand takes none
 
 
@@ -52,11 +51,6 @@ def figures(campaign: Campaign, item: Item) -> Figures:
         shaft_torque=shaft,
         bytes=rows_bytes(envelope.duration * bench.file.loop.rate),
     )
-
-
-def rows_bytes(rows: float) -> float:
-    """On disk."""
-    return rows * 8 * len(CHANNELS) * SHARE
 
 
 def checks_of(change: Change) -> list[Procedure]:
@@ -130,7 +124,7 @@ def totals(campaign: Campaign, todo: list[Deed]) -> Iterator[str]:
         clamped = f"torque      at most {asked:g} N·m (clamped), limit {limit:g} N·m"
         yield clamped if what == "torque" else _margin(what, asked, limit, unit)
     yield f"stored      at most {max(f.energy for f in found):.3f} J, in motion and wound up in the gear"
-    at = resonance_speed(declared_gear(bench)) / RPM
+    at = resonance_speed(bench.declared_gear) / RPM
     yield (
         f"predicted   the swing, from the declared gear (order 2 resonates at {at:.0f} rpm of the motor) and "
         f"{campaign.plan.file.order_2_arcmin:g} arcmin of order 2, zero to peak; damping and inertias as declared"

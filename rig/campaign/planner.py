@@ -10,7 +10,7 @@ from rig.bench import Bench
 from rig.campaign.order import shuffled, with_sentinels
 from rig.campaign.plan import Plan
 from rig.campaign.steps import Item, extra_items, items_of
-from rig.campaign.swing import declared_gear, into_resonance, swing
+from rig.campaign.swing import into_resonance, swing
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope
 from rig.core.units import ARCMIN
@@ -44,7 +44,7 @@ class Campaign:
         if item.rigging.output_locked:
             return 0.0
         amplitude = self.plan.file.order_2_arcmin * ARCMIN
-        return swing(declared_gear(self.bench), amplitude, self.envelope(item).speed)
+        return swing(self.bench.declared_gear, amplitude, self.envelope(item).speed)
 
 
 def planned(plan: Plan, bench: Bench, seed: int) -> Campaign:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 
 from rig.bench import Bench
-from rig.campaign.swing import ORDER_2, declared_gear, swing
-from rig.core.channels import CHANNELS
+from rig.campaign.swing import ORDER_2, swing
 from rig.core.procedure import Procedure
 from rig.refusals import TOLD, margins
+from rig.runfile.room import rows_bytes
 
 
 def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     """What a dry run prints: travel, speed, torque, energy, duration, bytes, and the margins to every limit."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
     rows = int(envelope.duration * bench.file.loop.rate)
-    size = rows * 8 * len(CHANNELS) * 1.4 / 1e6  # journal as it is, archive at about 0.4 of it
+    size = rows_bytes(rows) / 1e6
     lines = [
         f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
         f"duration    at most {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
@@ -23,7 +23,9 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
         "wound up in the gear",
     ]
     for what, asked, limit, unit, scale in margins(bench, procedure):
-        if what == "torque":  # the loop is clamped there: what it will need is known only once it runs
+        if (
+            what == "torque" and asked <= limit
+        ):  # the loop is clamped there: what it will need is known only once it runs
             lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
             continue
         lines.append(
@@ -35,13 +37,15 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
 
 
 def shaft_torque(bench: Bench, procedure: Procedure) -> float:
-    """What the torque sensor is expected to carry at most [N·m], nothing hung on the output: what a lock test winds up,
-    or the swing of order 2 at the highest speed.
+    """What the torque sensor is expected to carry at most [N·m], nothing hung on the output: what a lock test winds up
+    or torque steps shake, or the swing of order 2 at the highest speed.
     """
     envelope = procedure.envelope(bench.setting(lambda text: None))
+    if math.isfinite(envelope.shaft_torque):
+        return envelope.shaft_torque
     if procedure.output_locked:
-        return envelope.shaft_torque if math.isfinite(envelope.shaft_torque) else 0.0
-    return swing(declared_gear(bench), ORDER_2, envelope.speed)
+        return 0.0
+    return swing(bench.declared_gear, ORDER_2, envelope.speed)
 
 
 def stored_energy(bench: Bench, procedure: Procedure, shaft_torque: float) -> float:
@@ -54,9 +58,10 @@ def stored_energy(bench: Bench, procedure: Procedure, shaft_torque: float) -> fl
 
 def tightest(bench: Bench, procedure: Procedure) -> tuple[str, float]:
     """Which limit the run comes nearest to, and the share of it that is left; below zero it is broken. Motor torque is
-    none of them: the loop is held at its limit, and what it will need is known only once it runs.
+    none of them unless it is broken: the loop is held at its limit, and what it will need is known only once it runs.
     """
-    left = {what: 1 - asked / limit for what, asked, limit, _, _ in margins(bench, procedure) if what != "torque"}
+    asked_for = margins(bench, procedure)
+    left = {what: 1 - asked / limit for what, asked, limit, _, _ in asked_for if what != "torque" or asked > limit}
     if bench.limits.shaft_torque is not None:
         left.setdefault("shaft", 1 - shaft_torque(bench, procedure) / bench.limits.shaft_torque)
     nearest = min(left, key=lambda what: left[what])

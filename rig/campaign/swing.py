@@ -8,19 +8,13 @@ from rig.bench import Bench
 from rig.core.procedure import Envelope
 from rig.core.units import ARCMIN, RPM
 from rig.model.fourier import FourierSeries
-from rig.model.gear import Gear, sigma_of
+from rig.model.gear import Gear
 from rig.model.linear import natural_frequency
 from rig.model.resonance import worst_swing
 
 ORDER = 2  # the wave generator is an ellipse: twice a turn is what it does most
 CLEAR = 0.85  # of the resonance's speed: nearer, a run would swing over 3.6 times as far as its spring alone lets it
 ORDER_2 = 1.0 * ARCMIN  # rad, zero to peak: twice what a catalogue's 1 arcmin peak to peak can hold, as in plans
-
-
-def declared_gear(bench: Bench) -> Gear:
-    """The bench's gear without its kinematic error, which nobody declares."""
-    g = bench.file.gear
-    return Gear(g.N, g.J_m, g.J_l, g.K, g.B_m, g.B_l, g.B_ml, g.B_sp, FourierSeries((), ()), sigma_of(g.output))
 
 
 def resonance_speed(gear: Gear) -> float:
@@ -39,7 +33,7 @@ def swing(gear: Gear, amplitude: float, omega_m: float) -> float:
 
 def into_resonance(bench: Bench, envelope: Envelope, amplitude: float) -> str:
     """What happens on the way to its speed on a free output, in words; "" where it stays clear of the resonance."""
-    gear = declared_gear(bench)
+    gear = bench.declared_gear
     at, speed = resonance_speed(gear), envelope.speed
     if speed <= CLEAR * at:
         return ""
@@ -53,7 +47,7 @@ def into_resonance(bench: Bench, envelope: Envelope, amplitude: float) -> str:
 
 def predicted(bench: Bench, speed: float, amplitude: float) -> str:
     """The line of a dry run: how far order 2 is expected to swing the shaft torque up to `speed` rad/s."""
-    gear = declared_gear(bench)
+    gear = bench.declared_gear
     return (
         f"predicted   the shaft torque swings by ±{swing(gear, amplitude, speed):.2f} N·m at most, from the declared "
         f"gear (order 2 resonates at {resonance_speed(gear) / RPM:.0f} rpm of the motor) and {amplitude / ARCMIN:g} "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,18 @@ HAND = {
     "reassemble": ("reassemble", "depth_mm"),
 }
 
+NUMBERS = {
+    "tau_ext": "the torque on the output in N·m, for example 'hdrig twin hang 3'",
+    "depth_mm": "the depth in mm, for example 'hdrig twin reassemble 0.1'",
+}
+
+UNITS = {
+    **dict.fromkeys(("t", "late"), "s"),
+    **dict.fromkeys(("theta_m", "theta_l", "phi"), "rad"),
+    **dict.fromkeys(("omega_m", "omega_l"), "rad/s"),
+    **dict.fromkeys(("tau_m", "tau_l"), "N·m"),
+}
+
 
 def ask(control: Path, words: Sequence[str]) -> list[str]:
     """The answer, a line each. Raises UsageError: not understood; NotReady: nobody there, or the twin refuses."""
@@ -34,7 +47,16 @@ def ask(control: Path, words: Sequence[str]) -> list[str]:
     answer = TwinHand(str(control)).ask(asked)
     answer.pop("ok")
     done = f"SIMULATED: the twin at {control}: {' '.join(words)}"
-    return [done, *(f"  {key:14s} {value}" for key, value in answer.items())]
+    return [done, *(f"  {key:14s} {told(key, value)}" for key, value in answer.items())]
+
+
+def told(key: str, value: Any) -> str:
+    """One value of an answer for a person, with its unit; an error code as manuals write it, 8130h."""
+    if key == "error_code" and isinstance(value, int):
+        return f"{value:04X}h" if value else "none"
+    if key == "load" and isinstance(value, float):
+        return f"{100 * value:.1f} % of the bus"
+    return f"{value:.6g} {UNITS[key]}" if key in UNITS and isinstance(value, float) else str(value)
 
 
 def understood(words: Sequence[str]) -> dict[str, Any]:
@@ -49,8 +71,15 @@ def understood(words: Sequence[str]) -> dict[str, Any]:
         if not key or key in out:
             raise UsageError(f"hdrig twin {' '.join(words)}: '{word}' is not understood; expected KEY=VALUE")
         out[key] = toml_value(value)
+    refuse_numbers(f"hdrig twin {verb}", out)
     if own == "tau_ext" and own not in out:
-        raise UsageError(
-            f"hdrig twin {verb}: expected the torque on the output in N·m, for example 'hdrig twin hang 3'"
-        )
+        raise UsageError(f"hdrig twin {verb}: expected {NUMBERS[own]}")
     return out
+
+
+def refuse_numbers(who: str, asked: dict[str, Any]) -> None:
+    """Raises UsageError where what the hand is asked for is no finite number."""
+    for key, expected in NUMBERS.items():
+        value = asked.get(key, 0.0)
+        if type(value) not in (int, float) or not abs(value) < math.inf:
+            raise UsageError(f"{who}: {key} = {value} is no finite number; expected {expected}")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rig.commands.folders import expand
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.person import Person
+from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.evaluation.identification import TERMS, gear_of
@@ -59,6 +60,8 @@ def run(args: argparse.Namespace) -> int:
             bench, clock, folder, interrupts, args.note, Person(interrupts), create=create_in, checks="checks"
         ) as session,
     ):
+        if session.simulated and not bench.simulated:
+            say(wired_twin(bench.file.name))
         found, where = compensate(session, gear, args.speed, args.revolutions, say)
     write_compensation(folder, found, where, gear, bench.simulated)
     for one in found:

@@ -20,11 +20,13 @@ def run(args: argparse.Namespace) -> int:
     from rig.doctor.finding import Health
 
     bench = read(args.bench, args.set)
-    worst = Health.GOOD
+    worst, twin = Health.GOOD, bench.simulated
     for check in CHECKS:
         for finding in check(bench):
-            print(f"{finding.health:9s} {finding.what}: {finding.sentence}", flush=True)
+            mark = " (SIMULATED)" if finding.simulated else ""
+            print(f"{finding.health:9s} {finding.what}{mark}: {finding.sentence}", flush=True)
+            twin = twin or finding.simulated
             worst = max(worst, finding.health, key=list(Health).index)
-    simulated = " (SIMULATED)" if bench.simulated else ""
+    simulated = " (SIMULATED)" if twin else ""
     print(f"{bench.file.name}{simulated}: {worst}")
     return Exit.NOT_READY if worst is Health.BAD else Exit.PASS

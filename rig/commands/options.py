@@ -35,10 +35,12 @@ def show_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def open_bench(args: argparse.Namespace) -> tuple[Bench, ClockName]:
-    """The bench the options describe, and its clock: virtual on the twin unless told otherwise."""
+    """The bench the options describe, and its clock: virtual on the twin unless told otherwise. Raises UsageError."""
     seed = [] if args.seed is None else [f"twin.seed={args.seed}"]
     bench = read(args.bench, [*args.set, *seed])
-    return bench, args.clock or ("virtual" if bench.simulated else "wall")
+    clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
+    bench.refuse_clock(clock)
+    return bench, clock
 
 
 def procedure_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,5 +67,7 @@ def parameters_of(assignments: list[str]) -> dict[str, Any]:
         name, equals, text = assignment.partition("=")
         if not equals:
             raise UsageError(f"--with {assignment}: expected name=value, for example cycles=1")
+        if name in values:
+            raise UsageError(f"--with {assignment}: {name} is given already, as {values[name]}; expected each one once")
         values[name] = toml_value(text)
     return values

@@ -23,14 +23,15 @@ def run(args: argparse.Namespace) -> int:
 
     bench = read(args.bench, args.set)
     with Session(bench, "virtual" if bench.simulated else "wall", Path("runs"), Interrupts()) as session:
+        mark = " (SIMULATED)" if session.simulated else ""
         if session.supervisor.state is not State.FAULT:
-            print(f"{bench.file.name}: nothing to reset, no device is in fault")
+            print(f"{bench.file.name}{mark}: nothing to reset, no device is in fault")
             return Exit.PASS
         why = session.supervisor.fault
-        print(f"{bench.file.name} is in fault: {why}")
+        print(f"{bench.file.name}{mark} is in fault: {why}")
         try:
             session.reset()
         except NotReady as stays:
             raise NotReady(f"{stays}; nothing was energised") from None
-        print(f"{bench.file.name}: reset, no device is in fault any more; nothing is energised")
+        print(f"{bench.file.name}{mark}: reset, no device is in fault any more; nothing is energised")
     return Exit.PASS

@@ -13,16 +13,22 @@ from rig.runfile.process import sole_writer
 from rig.runfile.writing import writing
 
 BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
+BELOW = "r" * 120  # as long as a run folder and a file in it: the longest path has to leave room for them
 
 
 def refuse_unwritable(folder: Path, option: str = "--out") -> None:
-    """Raises UsageError when `folder`, or the nearest one above it that exists, takes no new file. Leaves nothing."""
-    there = folder
-    while not there.exists() and there != there.parent:
-        there = there.parent
-    with writing(folder, option), tempfile.NamedTemporaryFile(dir=there, prefix=".hdrig-") as tried:
-        tried.write(BLOCK)
-        tried.flush()
+    """Raises UsageError when `folder`, or the nearest one above it that exists, takes no new file, or
+    when no folder of that name can be made there. Leaves nothing.
+    """
+    with writing(folder, option):
+        there = folder
+        while not os.path.lexists(there) and there != there.parent:
+            there = there.parent
+        missing = [name for name in folder.relative_to(there).parts if name != ".."]
+        with tempfile.TemporaryDirectory(dir=there, prefix=".hdrig-") as tried:
+            made = Path(tried, *missing)
+            made.mkdir(parents=True, exist_ok=True)
+            (made / BELOW).write_bytes(BLOCK)
 
 
 def refuse_unwritable_file(path: Path, option: str) -> None:

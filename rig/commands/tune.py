@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from rig.commands.options import bench_arguments, open_bench
+from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.interrupts import Interrupts
@@ -34,6 +35,8 @@ def run(args: argparse.Namespace) -> int:
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
+        if session.simulated and not bench.simulated:
+            say(wired_twin(bench.file.name))
         best = find_gains(session, bench, print, say)
         if best is not None and args.write is not None:
             with writing(args.write, "--write"):

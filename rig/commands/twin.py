@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rig.bench import read, twin_parameters
 from rig.commands.ask_twin import HELP, ask
+from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.realtime import RealTime
 
@@ -51,6 +52,7 @@ def run(args: argparse.Namespace) -> int:
     bench = read(args.bench, args.set)
     if bench.file.twin is None:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
+    refuse_no_place(args)
     print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
     print("wait for 'ready': the first start on a machine compiles the plant, ten seconds or more", file=sys.stderr)
     from sim.wire.assembly import Assembly
@@ -70,3 +72,12 @@ def run(args: argparse.Namespace) -> int:
     with RealTime():  # devices answer in time whatever else runs on the machine
         process.run()
     return Exit.PASS
+
+
+def refuse_no_place(args: argparse.Namespace) -> None:
+    """Raises UsageError where a socket or a link that was asked for cannot be made, before anything is."""
+    for option in ("bus", "control", "slcan", "odrive"):
+        if (path := getattr(args, option)) is not None:
+            refuse_unwritable(path.parent, f"--{option}")
+    if args.serial is not None:
+        refuse_unwritable(args.serial, "--serial")

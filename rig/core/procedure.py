@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from rig.core.drivetrain import Drivetrain
 from rig.core.gains import Gains
 from rig.core.kinds import Regime
 from rig.core.sample import Sample, Setpoint
@@ -26,7 +27,7 @@ class Envelope:
     torque: float  # N·m, motor side
     coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
     shaft_torque: float = math.inf  # N·m at the torque sensor, either way; inf: nothing below the bench's own limit
-    reserve: str = ""  # in words, what of the shaft torque, or of the speed where that is inf, nobody asked for
+    reserve: str = ""  # in words, what of speed and shaft torque (output locked: of that alone) nobody asked for
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Setting:
     period: float  # s, one tick
     ratio: float  # gear ratio N
     control: Gains
+    drivetrain: Drivetrain  # as declared
     note: Callable[[str], None] = field(default=lambda text: None)  # a line in events.jsonl
     stiffness: float = math.nan  # N·m/rad at the output, declared, of the whole path
 

@@ -15,7 +15,7 @@ def check_devices(bench: Bench) -> list[Finding]:
     except HdrigError as why:
         return [Finding("devices", Health.BAD, str(why))]
     found = [
-        Finding(name, Health.GOOD, " ".join(part for part in (who.model, who.serial, who.firmware) if part))
+        Finding(name, Health.GOOD, " ".join(filter(None, (who.model, who.serial, who.firmware))), who.simulated)
         for name, who in identities.items()
     ]
     found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]

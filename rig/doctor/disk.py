@@ -14,7 +14,12 @@ LEAST_HOURS = 4.0  # of recording: an afternoon
 
 def check_disk(bench: Bench) -> list[Finding]:
     """Free space where runs go (the working directory), in hours at the bench's rate."""
-    return [judge(shutil.disk_usage(Path.cwd()).free, bench.file.loop.rate)]
+    try:
+        free = shutil.disk_usage(Path.cwd()).free
+    except OSError as error:
+        told = f"the working folder, where runs would go, is not there ({error.strerror}); start hdrig in one that is"
+        return [Finding("disk", Health.BAD, told)]
+    return [judge(free, bench.file.loop.rate)]
 
 
 def judge(free: int, rate: float) -> Finding:

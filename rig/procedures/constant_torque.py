@@ -37,6 +37,10 @@ class ConstantTorque(Procedure):
         """The speed with what it may overshoot; the torque is what the loop may give while it holds the speed."""
         return self.plan.envelope(setting)
 
+    def remarks(self, setting: Setting) -> list[str]:
+        """Where a torque that is given takes the motor."""
+        return self.plan.remarks(setting)
+
     def conditions(self) -> dict[str, Any]:
         """For the manifest; `settle_s` tells the analysis what to leave out."""
         return self.plan.conditions()

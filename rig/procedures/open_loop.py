@@ -82,20 +82,47 @@ class OpenLoop:
         """s the measured part may take."""
         return MARGIN * self.revolutions * TURN / abs(self.omega)
 
+    def settled(self, setting: Setting) -> float:
+        """rad/s, at least 0, that the torque drives the motor to in the time it acts; the asked speed where the torque
+        is found from it.
+        """
+        if not self.torque:
+            return abs(self.omega)
+        return setting.drivetrain.speed_after(abs(self.torque), self.settle + self.longest, abs(self.omega))
+
     def envelope(self, setting: Setting) -> Envelope:
         """With the margin in speed on all that is not held by the loop."""
-        omega, fast = abs(self.omega), MARGIN * abs(self.omega)
+        omega, settled = abs(self.omega), self.settled(setting)
+        fast = MARGIN * max(omega, settled)
         travel = hold_travel(omega, self.average) + fast * self.settle + (self.revolutions + 1) * TURN
         duration = hold_duration(omega, self.average) + self.settle + self.longest + slow_down_duration(fast)
         return Envelope(
-            duration, travel + slow_down_travel(fast), fast, setting.control.torque_limit, reserve=self.reserve
+            duration,
+            travel + slow_down_travel(fast),
+            fast,
+            max(setting.control.torque_limit, abs(self.torque)),
+            reserve=self.reserve(setting),
         )
 
-    @property
-    def reserve(self) -> str:
+    def reserve(self, setting: Setting) -> str:
         """What of its speed was not asked for, in words."""
-        share = f"{100 * (MARGIN - 1):.0f} %"
+        share, settled = f"{100 * (MARGIN - 1):.0f} %", self.settled(setting)
+        if settled > abs(self.omega):
+            return f"{self.driven(setting)}, and {share} that it may miss it by"
         return f"speed_rpm = {self.speed_rpm:g}, and {share} that a torque nothing corrects may miss it by"
+
+    def driven(self, setting: Setting) -> str:
+        """Where a torque that is given takes the motor, in words."""
+        tau_c = setting.drivetrain.tau_c
+        friction = f"gear.tau_c = {tau_c:g} N·m" if tau_c else "no gear.tau_c: hdrig run friction measures it"
+        return (
+            f"torque = {self.torque:g} N·m takes the motor to {self.settled(setting) / RPM:.0f} rpm by the declared "
+            f"inertia, damping and friction ({friction})"
+        )
+
+    def remarks(self, setting: Setting) -> list[str]:
+        """Of a torque that is given."""
+        return [f"open loop   {self.driven(setting)}, held at {self.speed_rpm:g} rpm before"] if self.torque else []
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

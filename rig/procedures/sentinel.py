@@ -38,6 +38,10 @@ class Sentinel(Procedure):
         """As a constant-torque run."""
         return self.plan.envelope(setting)
 
+    def remarks(self, setting: Setting) -> list[str]:
+        """Where a torque that is given takes the motor."""
+        return self.plan.remarks(setting)
+
     def conditions(self) -> dict[str, Any]:
         """For the manifest; `settle_s` tells the analysis what to leave out."""
         return self.plan.conditions()

@@ -68,8 +68,9 @@ class SignAndScale(Procedure):
 
     def envelope(self, setting: Setting) -> Envelope:
         """The load need not follow: whether it does is the question."""
-        nudge = self.nudge_share * setting.control.torque_limit / self.nudge_rate
-        torque = setting.control.torque_limit
+        limit = setting.control.torque_limit
+        nudge = self.nudge_share * limit / self.nudge_rate
+        torque = max(1.0, self.nudge_share) * limit  # beyond the limit it is refused
         return Envelope(nudge + 2 * self.turn.duration + 3.0, 1.5 * TURN, self.turn.speed, torque, coupled=False)
 
     def conditions(self) -> dict[str, object]:

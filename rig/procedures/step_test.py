@@ -12,11 +12,13 @@ from typing import ClassVar
 from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
-from rig.core.units import RPM
+from rig.core.units import DEG, TURN
 from rig.procedures.nudge import REST, nudge
 
 NUDGE_RATE = 1.0  # N·m/s
 NUDGE_DEG = 5.0  # deg of the motor that count as moved: 0.1° of a locked output, 12.5 N·m at 7160 N·m/rad
+OVERSHOOT = 1.5  # of what is expected at the shaft: kinematic error, stick-slip, a nudge that runs on
+OVERSHOOT_BY = 3.0  # N·m, and so much more
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,18 @@ class StepTest(Procedure):
     repeats: int = 3  # each way
 
     def envelope(self, setting: Setting) -> Envelope:
-        """Bounds with friction and load inertia left out."""
+        """By the declared inertias, damping and friction: each step starts from rest or against the motion."""
         duration = self.torque / NUDGE_RATE + REST + 2 * self.repeats * (self.on + self.off)
-        return Envelope(duration, 4 * 2 * math.pi, 0.6 * 600 * RPM, self.torque, coupled=False)
+        speed = setting.drivetrain.step_speed(self.torque, self.on)
+        travel = speed * (self.on + self.off) + TURN  # as if nothing slowed it down, and the nudge
+        shaft, reserve = self.shaft_torque(setting), f"torque = {self.torque:g} N·m, on = {self.on:g} s"
+        return Envelope(duration, travel, speed, self.torque, coupled=False, shaft_torque=shaft, reserve=reserve)
+
+    def shaft_torque(self, setting: Setting) -> float:
+        """N·m at the torque sensor at most: a step of a free output, or the nudge of a locked one."""
+        step = setting.drivetrain.step_shaft_torque(self.torque, self.on + self.off)
+        wound = setting.stiffness * NUDGE_DEG * DEG / setting.ratio
+        return OVERSHOOT * max(step, wound) + OVERSHOOT_BY if wound > 0 else math.inf  # NaN: no stiffness declared
 
     def conditions(self) -> dict[str, object]:
         """For the manifest."""

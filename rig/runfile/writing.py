@@ -8,6 +8,8 @@ from pathlib import Path
 
 from rig.core.errors import UsageError
 
+LONGEST = 200  # characters
+
 
 @contextlib.contextmanager
 def writing(target: Path, option: str = "--out") -> Iterator[None]:
@@ -16,4 +18,9 @@ def writing(target: Path, option: str = "--out") -> Iterator[None]:
         yield
     except OSError as error:
         why = error.strerror or str(error)
-        raise UsageError(f"cannot write {target}: {why}; name another place with {option}") from None
+        raise UsageError(f"cannot write {_short(target)}: {why}; name another place with {option}") from None
+
+
+def _short(target: Path) -> str:
+    """A path that a line can hold."""
+    return text if len(text := str(target)) <= LONGEST else f"{text[: LONGEST - 3]}..."

@@ -19,11 +19,10 @@ def manifest_of(session: Session, procedure: Procedure, mode: Mode) -> dict[str,
     conditions = {**procedure.conditions(), **session.rigging.conditions()}
     if session.note:
         conditions["note"] = session.note
-    simulated = any(identity.simulated for identity in session.identities.values())
     return {
         **manifest,
         # the twin over a real wire is a simulation all the same
-        "backend": "sim" if simulated else manifest["backend"],
+        "backend": "sim" if session.simulated else manifest["backend"],
         "transport": manifest["backend"],
         **session.facts,
         "conditions": conditions,

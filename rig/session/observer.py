@@ -25,6 +25,9 @@ class Begun:
 class Observer:
     """Looks away. Called in the thread of the loop: whoever overrides is quick."""
 
+    def simulated(self, bench: str) -> None:
+        """The bench of this name has real drivers, and a device says that it is the twin's."""
+
     def event(self, kind: str, text: str, t: float | None) -> None:
         """As it goes into `events.jsonl`; `t` s since the run's start, None outside of one."""
 

@@ -21,6 +21,7 @@ from rig.procedures.sign_and_scale import Proof, SignAndScale
 from rig.procedures.weigh import Weigh, Weighing
 from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refuse_rigging
 from rig.runfile.folder import create
+from rig.runfile.room import refuse_no_room
 from rig.session.changing import prepare, show
 from rig.session.done import Done, Ended, Watch, nobody
 from rig.session.log import SessionLog
@@ -60,6 +61,8 @@ class Session:
             for remark in device.remarks:
                 self.log.event("note", remark)
         self.supervisor.act(Act.CONNECT)
+        if self.simulated and not self.bench.simulated:
+            self.observer.simulated(self.bench.file.name)
         return self
 
     def __exit__(
@@ -68,13 +71,32 @@ class Session:
         self.instruments.close()
         self.supervisor.act(Act.DISCONNECT)
 
+    @property
+    def simulated(self) -> bool:
+        """The bench is the twin, or a device says that it is the twin's, over whatever wire."""
+        return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
+
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs. Raises NotReady with what is missing or too much."""
+        """The bench can do what the procedure needs. Raises NotReady: in fault, what is missing or too
+        much; UsageError: no room on the disk for what it records.
+        """
+        if self.supervisor.state is State.FAULT:
+            raise NotReady(
+                f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
+                f"`hdrig reset --bench {self.bench.source}`"
+            )
         refuse_endless(self.bench, procedure)
         missing = [c for c in procedure.needs if c not in self.instruments.channels]
         if missing:
             raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.title()} needs")
         refuse_beyond_limits(self.bench, procedure)
+        refuse_no_room(self.root, self._rows(procedure), procedure.title())
+
+    def _rows(self, procedure: Procedure) -> float:
+        """Most that it records, with the proof that has to come first."""
+        proof = [SignAndScale()] if procedure.closes_loop and self.proof is None else []
+        setting = self.bench.setting(lambda text: None)
+        return sum(one.envelope(setting).duration for one in (*proof, procedure)) * self.bench.file.loop.rate
 
     def rewire(self, bench: Bench) -> None:
         """Go on with other gains and another speed filter; the devices stay as they are."""
@@ -183,12 +205,7 @@ class Session:
             self.log.close()
 
     def _refuse_now(self) -> None:
-        """Raises NotReady in fault, Ended once the operator has asked for an end."""
-        if self.supervisor.state is State.FAULT:
-            raise NotReady(
-                f"the rig is in fault: {self.supervisor.fault}; see that it is whole and free to turn, then "
-                f"`hdrig reset --bench {self.bench.source}`"
-            )
+        """Raises Ended once the operator has asked for an end."""
         if self.interrupts.count:
             raise Ended(f"stopped {self.interrupts.who}; nothing more was started", self.interrupts.exit)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 import socket
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -41,10 +42,19 @@ def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
         name = asked.pop("do")
         if name not in verbs:
             raise UsageError(f"no command '{name}'; expected one of {', '.join(sorted(verbs))}")
-        inspect.signature(verbs[name]).bind(**asked)
+        known = inspect.signature(verbs[name])
+        known.bind(**asked)
+        for key, value in asked.items():
+            refuse_no_number(key, value, known.parameters[key].default)
         return {"ok": True, **(verbs[name](**asked) or {})}
     except (HdrigError, ValueError, TypeError, OverflowError) as error:
         return {"ok": False, "error": str(error)}
+
+
+def refuse_no_number(key: str, value: object, usual: object) -> None:
+    """Raises UsageError for NaN, and for an infinity where none is the `usual` value."""
+    if isinstance(value, float) and not math.isfinite(value) and value != usual:
+        raise UsageError(f"{key} = {value:g}: expected a finite number")
 
 
 @final

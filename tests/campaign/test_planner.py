@@ -10,7 +10,7 @@ import pytest
 
 from rig.bench import read
 from rig.campaign.dry_run import figures, lines
-from rig.campaign.swing import declared_gear, resonance_speed, swing
+from rig.campaign.swing import resonance_speed, swing
 from rig.cli import main
 from rig.core.errors import NotReady, UsageError
 from tests.campaign.plans import HEAD, LOADED, LOCKED, REST, campaign, turning
@@ -77,13 +77,13 @@ def test_a_weight_and_a_swing_that_together_go_beyond_the_sensor_are_refused() -
 
 
 def test_the_resonance_is_where_the_declared_inertias_and_stiffness_put_it() -> None:
-    gear = declared_gear(read("twin"))
+    gear = read("twin").declared_gear
     inertia = 1 / (1 / 0.32 + 1 / (2500 * 1.1e-3))
     assert resonance_speed(gear) == pytest.approx(math.sqrt(7160 / inertia) / 2, rel=1e-12)
 
 
 def test_well_below_the_resonance_the_swing_grows_with_the_square_of_the_speed() -> None:
-    gear = declared_gear(read("twin"))
+    gear = read("twin").declared_gear
     slow, faster = swing(gear, 1e-4, 2.0), swing(gear, 1e-4, 4.0)
     assert faster / slow == pytest.approx(4.0, rel=0.01)
     # the load follows the error: its inertia times the acceleration of the error, J_e·(2Ω)²·C_2

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from rig.bench import read
 from rig.cli import main
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
+from rig.doctor.disk import check_disk
+from rig.doctor.finding import Health
 from rig.runfile.writing import writing
 from tests.commands.made_run import made_run
 
@@ -84,3 +87,39 @@ def test_a_run_whose_report_finds_no_room_is_complete_and_says_so(
     manifest = next(p for p in tmp_path.rglob("manifest.json") if "standstill" in p.parent.name)
     assert json.loads(manifest.read_text())["status"] == "completed"
     assert DataError.exit == Exit.INCOMPLETE
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_moves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for beyond in (tmp_path / "l" / ("x" * 480), Path(tmp_path, *(["a" * 200] * 20))):
+        assert main(["run", "jog", "--out", str(beyond)]) == Exit.USAGE
+        said = capsys.readouterr().err
+        assert "File name too long; name another place with --out" in said
+        assert "about to turn" not in said
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_target_by_way_of_a_folder_that_is_not_there_leaves_nothing(tmp_path: Path) -> None:
+    refuse_unwritable(tmp_path / "a" / ".." / ".." / "b")
+    refuse_unwritable(tmp_path / "a" / "b")
+    assert list(tmp_path.iterdir()) == []
+    assert not (tmp_path.parent / "b").exists()
+
+
+@pytest.mark.parametrize("option", ["serial", "slcan", "odrive", "bus", "control"])
+def test_a_door_of_the_twin_that_cannot_be_made_is_refused(
+    option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = ["--bus", str(tmp_path / "can"), "--control", str(tmp_path / "control")]
+    assert main(["twin", *own, f"--{option}", "/proc/x/y", "--for", "0"]) == Exit.USAGE
+    assert f"name another place with --{option}" in capsys.readouterr().err
+
+
+def test_the_doctor_in_a_folder_that_is_gone_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    found = check_disk(read("twin"))
+    assert [finding.health for finding in found] == [Health.BAD]
+    assert "the working folder, where runs would go, is not there" in found[0].sentence

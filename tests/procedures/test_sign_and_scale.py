@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -21,7 +22,7 @@ def prove(prepare: Callable[[FakeWorld], None] = lambda w: None, ratio: float = 
     prepare(world)
     supervisor.act(Act.CONNECT)
     supervisor.act(Act.CHECK)
-    setting = SETTING.__class__(SETTING.period, ratio, SETTING.control)
+    setting = replace(SETTING, ratio=ratio)
     procedure = SignAndScale()
     guard = Guard(LIMITS, procedure.envelope(setting), ratio)
     rig = instruments(world)

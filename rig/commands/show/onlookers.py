@@ -18,6 +18,10 @@ class Onlookers(Observer):
     def __init__(self, *each: Observer) -> None:
         self._each = each
 
+    def simulated(self, bench: str) -> None:
+        for one in self._each:
+            one.simulated(bench)
+
     def event(self, kind: str, text: str, t: float | None) -> None:
         for one in self._each:
             one.event(kind, text, t)

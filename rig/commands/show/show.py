@@ -5,6 +5,7 @@ With `--json` each is a line on stdout, and nothing else is. Every event has `ev
 | event | further keys | when |
 |---|---|---|
 | bench | bench, simulated, clock, ratio, gear | first |
+| simulated | text | connected: over the wire it is the twin that answers |
 | said | text | a sentence for the person |
 | prompt | text | somebody is asked for a change by hand, or whether to try again |
 | state, trip, operator, note, finding | text, t | as in `events.jsonl`; `t` s of run time, null outside of a run |
@@ -31,6 +32,7 @@ from typing import Any, final
 
 from rig.bench import Bench
 from rig.commands.show.outlet import Outlet, outlet
+from rig.commands.show.words import wired_twin
 from rig.core.clock import NEVER
 from rig.core.errors import Exit, HdrigError
 from rig.core.sample import Sample
@@ -83,6 +85,10 @@ class Show(Observer):
             self.tell("exit", code=int(code), error=error)
             self._outlet.close()
         return int(code)
+
+    def simulated(self, bench: str) -> None:
+        """From the session, once connected: over the wire it is the twin that answers."""
+        self.tell("simulated", text=wired_twin(bench))
 
     def event(self, kind: str, text: str, t: float | None) -> None:
         """From the session."""

@@ -1,4 +1,4 @@
-"""A terminal: what is said scrolls by, the run stands in two lines at its foot, and nothing of them stays behind."""
+"""A terminal: what is said scrolls by, the run stands in three lines at its foot, and nothing of them stays behind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, TextIO, final
 from rig.commands.show.screens import Screen
 from rig.commands.show.words import late, peak
 
-KEYS = "keys: h hold  s stop  Space halt (torque off)"
+KEYS = "keys: Space halt (torque off)  Ctrl-C stop (twice: halt)  s stop  h hold"  # fits 80 columns
 BAR = 12  # characters
 HOLDING = "holding"  # of the states an event can carry
 SETTLED = 1.0  # s to watch before a pace is believed
@@ -34,6 +34,9 @@ class Terminal(Screen):
                 self._mark = "SIMULATED " if event["simulated"] else ""
                 if event["simulated"]:
                     self._say(f"SIMULATED: bench '{event['bench']}' is the twin, {event['clock']} clock")
+            case "simulated":
+                self._mark = "SIMULATED "
+                self._say(event["text"])
             case "said" | "prompt" | "trip" | "operator" | "figure":
                 self._say(event["text"])
             case "run":
@@ -63,7 +66,8 @@ class Terminal(Screen):
         return [
             f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{left}, "
             f"{peak(event)}",
-            f"{late(event)} · {KEYS}",
+            late(event),
+            KEYS,
         ]
 
     def _left(self, t: float) -> str:

@@ -17,3 +17,8 @@ def late(event: dict[str, Any]) -> str:
     if event.get("lateness_p50_us") is None:
         return f"virtual clock, {missed}"
     return f"late p50 {event['lateness_p50_us']} µs, p99 {event['lateness_p99_us']} µs, {missed}"
+
+
+def wired_twin(bench: str) -> str:
+    """Of a bench with real drivers whose devices say that they are the twin's."""
+    return f"SIMULATED: the devices of bench '{bench}' say that they are the twin's, over the wire"

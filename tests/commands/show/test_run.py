@@ -41,7 +41,7 @@ def test_hold_then_stop_by_key(terminal: Terminal) -> None:
 
 
 def test_halt_by_the_space_bar(terminal: Terminal) -> None:
-    assert "keys: h hold  s stop  Space halt (torque off)" in terminal.seen
+    assert "keys: Space halt (torque off)  Ctrl-C stop (twice: halt)  s stop  h hold" in terminal.seen
     assert "SIMULATED RUNNING kinematic-error" in terminal.seen
     terminal.press(" ")
     assert terminal.end() == 130
