@@ -130,8 +130,10 @@ def test_the_quick_plan_runs_to_its_end_and_says_what_it_measured(
     folder = next(tmp_path.glob("*/campaign.json")).parent
     assert (folder / "summary.txt").read_text() in out
     assert "SIMULATED campaign quick completed" in out
-    assert len(re.findall(r"^sentinels: .* rpm first, .* rpm last, change .* rpm over 2 sentinels\.$", out, re.M)) == 1
-    assert len(re.findall(r"^sentinels: .* over 2 sentinels\.$", out, re.M)) == 4
+    torque = r"^sentinels: Mean motor torque .* N·m first, .* N·m last, change .* ± .* over 2 sentinels \(.*95 %.*\)\.$"
+    assert len(re.findall(torque, out, re.M)) == 1
+    assert len(re.findall(r"^sentinels: each found its own torque, so speed .* not compared", out, re.M)) == 1
+    assert " rpm first" not in out  # 3 mN·m are 14 rpm: what followed from them was no change of the gear
     for entry in book["runs"]:
         assert {"report.html", "result.json", "samples.parquet"} <= {p.name for p in (folder / entry["run"]).iterdir()}
     assert errors(folder) == []

@@ -46,6 +46,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say(conditions: Mapping[str,
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_over_two_hundred_runs_every_coefficient_above_one_arcsec_is_covered_in_90_to_99_percent() -> None:
     covered = np.mean([inside(seed)[0] for seed in range(200)], axis=0)[LARGE]
     assert np.all((covered >= 0.90) & (covered <= 0.995)), np.round(covered, 3)

@@ -54,7 +54,7 @@ def checked(found: Trace) -> Trace:
     ("drop", "said"),
     [
         (("tau_l",), "No shaft torque"),
-        (("theta_l",), "No load angle"),
+        pytest.param(("theta_l",), "No load angle", marks=pytest.mark.long),
         (("theta_m", "tau_m"), "No motor angle"),
         (("t",), "No run has a time column"),
         pytest.param(("theta_l", "tau_l"), "No load angle", marks=pytest.mark.long),
