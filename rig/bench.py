@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from rig.bench_places import check_keys, check_places
+from rig.bench_places import check_keys, check_together
 from rig.config import BenchFile, load_text, read_bench
 from rig.control.filter import SpeedFilter
 from rig.core.clock import Clock, WallClock
@@ -94,7 +94,7 @@ class Bench:
         return Drivetrain(
             J_m=g.J_m,
             J_l=g.J_l / g.N**2,
-            B=g.B_m + g.B_ml * (1.0 + gear.sigma / g.N) ** 2 + g.B_l / g.N**2,
+            B=gear.viscous,
             tau_c=g.tau_c,
             omega_n=natural_frequency(gear),
             zeta=damping_ratio(gear),
@@ -233,7 +233,7 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
         read_bench(text, str(path))  # what is wrong in the file itself is said first
         text = override(text, assignments, str(path))
     bench = Bench(read_bench(text, str(path)), text, str(path))
-    _check_together(bench)
+    check_together(bench.source, bench.file)
     for role in ROLES:
         if (made := bench.device(role)) is not None:
             check_keys(bench.source, role, getattr(bench.file.devices, role), getattr(made, "keys", ()))
@@ -290,49 +290,6 @@ def device_class(kind: str, where: str) -> Callable[..., Device]:
     module, _, name = catalogue[kind].partition(":")
     found: Callable[..., Device] = getattr(importlib.import_module(module), name)
     return found
-
-
-def _check_together(bench: Bench) -> None:
-    """What no single key shows."""
-    f = bench.file
-    devices = [d for d in (f.devices.drive, f.devices.load_encoder, f.devices.torque_sensor) if d is not None]
-    if len({d.type.startswith("twin.") for d in devices}) > 1:
-        mixed = ", ".join(d.type for d in devices)
-        raise UsageError(f"{bench.source}: real and simulated devices on one bench ({mixed}): never silently simulated")
-    if bench.simulated and f.twin is None:
-        raise UsageError(f"{bench.source}: devices of the twin need a [twin] section")
-    for role in ("load_encoder", "torque_sensor"):
-        if getattr(f.devices, role) and getattr(f, role) is None:
-            raise UsageError(f"{bench.source}: devices.{role} needs a [{role}] section")
-    if f.twin and f.twin.watchdog * f.loop.rate < 3:
-        raise UsageError(
-            f"{bench.source}: the drive's watchdog of {f.twin.watchdog:g} s is under three periods of the loop "
-            f"({3 / f.loop.rate:g} s at {f.loop.rate:g} Hz)"
-        )
-    for device in devices:
-        if device.watchdog is not None and device.watchdog * f.loop.rate < 3:
-            raise UsageError(
-                f"{bench.source}: a watchdog of {device.watchdog:g} s is under three periods of the loop "
-                f"({3 / f.loop.rate:g} s at {f.loop.rate:g} Hz)"
-            )
-    watchdog, stale = f.devices.drive.watchdog, f.limits.stale_s
-    if watchdog is not None and watchdog <= stale:
-        raise UsageError(
-            f"{bench.source}: devices.drive.watchdog = {watchdog:g} s is no longer than limits.stale_s = {stale:g} s: "
-            "the drive would take the torque off before the guard does and nobody would know why; expected a longer "
-            "watchdog, or a shorter stale_s"
-        )
-    if f.loop.latch_lead * f.loop.rate >= 1:
-        raise UsageError(
-            f"{bench.source}: loop.latch_lead = {f.loop.latch_lead:g} s is no shorter than the period of "
-            f"{1 / f.loop.rate:g} s: devices would have to answer before the tick they are read in"
-        )
-    check_places(bench.source, f)
-    if f.torque_sensor and f.limits.shaft_torque > f.torque_sensor.range:
-        raise UsageError(
-            f"{bench.source}: limits.shaft_torque = {f.limits.shaft_torque:g} N·m is beyond the torque sensor's "
-            f"range of {f.torque_sensor.range:g} N·m"
-        )
 
 
 def twin_parameters(f: BenchFile) -> Any:

@@ -23,9 +23,8 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
         "wound up in the gear",
     ]
     for what, asked, limit, unit, scale in margins(bench, procedure):
-        if (
-            what == "torque" and asked <= limit
-        ):  # the loop is clamped there: what it will need is known only once it runs
+        # the loop is clamped there: what it will need is known only once it runs
+        if what == "torque" and asked <= limit:
             lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
             continue
         lines.append(

@@ -44,3 +44,8 @@ class Gear:
     tau_s: float = 0.0  # N·m, breakaway torque, motor side
     omega_s: float = 1.0  # rad/s, Stribeck speed, motor side
     F_cl: float = 0.0  # N·m, Coulomb friction, load side
+
+    @property
+    def viscous(self) -> float:
+        """Damping seen at the motor when all turns together [N·m·s/rad]: B_m + B_ml·(1 + σ/N)² + B_l/N²."""
+        return self.B_m + self.B_ml * (1.0 + self.sigma / self.ratio) ** 2 + self.B_l / self.ratio**2

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rig.analysis import Verdict, analyse
@@ -55,3 +57,13 @@ def test_what_a_manifest_says_oddly_promises_nothing(odd: Any) -> None:
     about = {"rows": odd, "loop": odd, "duration": odd, "files": odd}
     assert rows_gone(about, 10) == ""
     assert time_untold(about, slow_run(1).column("t")) == ""
+
+
+def test_the_time_of_a_long_run_is_looked_at_in_little_memory() -> None:
+    t = np.arange(3_000_000) / 1000.0
+    tracemalloc.start()
+    try:
+        assert time_untold({"loop": {"rate": 1000.0}, "duration": 3000.0}, t) == ""
+        assert tracemalloc.get_traced_memory()[1] < 1e6  # bytes; a copy of the column has 24e6
+    finally:
+        tracemalloc.stop()

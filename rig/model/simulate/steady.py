@@ -126,14 +126,13 @@ def torque_for(gear: Gear, omega: float, tau_ext: float = 0.0) -> float:
 def drag(gear: Gear, omega: float, tau_ext: float = 0.0) -> float:
     """Motor torque [N·m] that keeps `omega` rad/s of a gear without kinematic error."""
     way, N = float(np.sign(omega)), gear.ratio
-    viscous = gear.B_m + gear.B_ml * (1.0 + gear.sigma / N) ** 2 + gear.B_l / N**2
-    return float(friction(gear, np.array(omega), way)[0] + viscous * omega + (gear.F_cl * way - tau_ext) / N)
+    return float(friction(gear, np.array(omega), way)[0] + gear.viscous * omega + (gear.F_cl * way - tau_ext) / N)
 
 
 def _speed_without_ripple(gear: Gear, tau: float, tau_ext: float) -> tuple[float, float]:
     """Direction, and the speed at which drag equals the torque on the rising branch of friction."""
     way = float(np.sign(tau + tau_ext / gear.ratio)) or 1.0
-    viscous = gear.B_m + gear.B_ml * (1.0 + gear.sigma / gear.ratio) ** 2 + gear.B_l / gear.ratio**2
+    viscous = gear.viscous
     left = way * (tau + tau_ext / gear.ratio) - gear.tau_c - gear.F_cl / gear.ratio
     if left <= 0.0 or viscous <= 0.0:
         raise NoSteadyState(
