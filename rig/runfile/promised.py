@@ -36,10 +36,10 @@ def time_untold(about: Mapping[str, Any], t: Array | None) -> str:
     rate = number(loop.get("rate") if isinstance(loop, Mapping) else None)
     # of a run of hours a few thousand rows tell as much as all, and take no memory
     at = np.unique(np.linspace(0, t.size - 2, min(LOOKED_AT, t.size - 1)).astype(int))
-    steps, known = t[at + 1] - t[at], t[at][np.isfinite(t[at])]
-    if known.size < 2 or not np.isfinite(steps).any():
+    at = at[np.isfinite(t[at]) & np.isfinite(t[at + 1])]
+    if at.size < 2:
         return ""
-    period, span = float(np.nanmedian(steps)), float(known[-1] - known[0])
+    period, span = float(np.median(t[at + 1] - t[at])), float(t[at[-1] + 1] - t[at[0]])
     duration = number(about.get("duration"))
     if period > 0 and rate > 0 and _apart(period * rate):
         said, factor = (
