@@ -50,6 +50,7 @@ FAIRLY: Final = 0.2  # relative: what is fair takes so nearly what it should, in
 PLAINLY: Final = 0.8  # of the excess, for what is plain to see: a law a little off leaves a sixth, mimics a third
 ABOUT: Final = 0.25  # relative, the same: what it takes of its own sum of squares, and how it differs between runs
 SEVERAL: Final = 3  # fitted runs, from which on one size in all of them says something
+STRETCHES: Final = 8  # of each run, which stand for several where there are fewer: half a minute of a log of four
 ASTRAY: Final = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 NEARLY: Final = 0.85  # of the most evidence in the bank: shapes there are a step apart
 CLOSEST: Final = 3  # laws with nearly the most evidence, each refined before one is chosen

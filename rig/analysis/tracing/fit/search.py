@@ -126,6 +126,14 @@ def search(
     return Found(s, ranking)
 
 
+def ranking_beside(
+    d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach
+) -> tuple[Scored, ...]:
+    """The best shape of every effect, by what it explains beside what the design has."""
+    fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, frozenset())
+    return _best_of_each(fixed.ranked(fit(d), cross(bank, d, keys, 0)))
+
+
 def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], covered: Reach) -> tuple[Scored, Solution]:
     """The best of `worth` once its shape is refined, and the fit: among the first, those of other effects or laws with
     nearly as much evidence. Shapes in the bank are a step apart, and by half a step a look-alike can be ahead."""

@@ -18,7 +18,7 @@ from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.channels import CHANNELS, Rows
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
-from rig.analysis.tracing.fit.search import Found, search
+from rig.analysis.tracing.fit.search import Found, Scored, ranking_beside, search
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Reach
@@ -88,14 +88,25 @@ def search_some(
     d: Design, bank: Bank, runs: Sequence[int], covered: Reach, floors: Mapping[Key, float], **how: Any
 ) -> Found:
     """As `search` of `d`, on `some` of its rows; what is found is fitted to all of them."""
-    eq = some(d.eq, runs)
-    whole = all(eq.rows[key].y.size == y.size for key, y in d.y.items())
-    few = replace(d, eq=eq) if whole else design(eq, d.terms, runs)
+    few, whole = _few(d, runs)
     found = search(few, bank, runs, tuple(few.y), covered, floors, **how)
     if found.solution.design.terms == d.terms:
         return replace(found, solution=fit(d))
     s = _of_all(found.solution, d.eq, runs)
     return replace(found, solution=s if whole else fit(design(s.design.eq, s.design.terms, runs)), rough=not whole)
+
+
+def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach) -> tuple[Scored, ...]:
+    """As `ranking_beside` the design, on `some` of its rows."""
+    few, _ = _few(d, runs)
+    return ranking_beside(few, bank, runs, tuple(few.y), covered)
+
+
+def _few(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
+    """A design with `some` of its rows, and whether they are all."""
+    eq = some(d.eq, runs)
+    whole = all(eq.rows[key].y.size == y.size for key, y in d.y.items())
+    return (replace(d, eq=eq) if whole else design(eq, d.terms, runs)), whole
 
 
 def _of_all(s: Solution, eq: Equations, runs: Sequence[int]) -> Solution:

@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.local import clock, joined
-from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS
+from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STRETCHES
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
@@ -22,7 +22,6 @@ LINES = 3  # of one vibration: one that swells and fades has two beside its own
 AS_ONE = 0.7  # an interference in one sensor alone has 0
 CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
 FEWEST = 3  # runs, or stretches of one, that a line is told by
-STRETCHES = 8  # of a run, where there are fewer runs
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
 

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import INDEX
+from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
 from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL
+from rig.core.quantiles import Z95
 from rig.model.effect import Parameter, Reach
 
 
@@ -59,6 +64,32 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
     names = dict.fromkeys(term.name for term in s.design.terms)
     zero = [name for name in names if (found := scales(s, name, words)) and not _is_scaled(s, name, found, covered)]
     return [*zero, *(name for name in names if name not in zero and _out_of_reach(s, name, covered))]
+
+
+def instead_of_the_spring(s: Solution) -> list[str]:
+    """Effects in angle beside which the stiffness may be anything, and without which it is known: under a torque that
+    goes with the angle, as an arm's weight does, they and the spring are one wave."""
+    if not s.design.terms or _is_stiff(s):
+        return []
+    mine = {
+        name: [i for i, t in enumerate(s.design.terms) if t.name == name] for name in (t.name for t in s.design.terms)
+    }
+    return [
+        name
+        for name, places in mine.items()
+        if _acts_in_angle(s.design, places) and _is_stiff(fit(reduced(s.design, places)))
+    ]
+
+
+def _is_stiff(s: Solution) -> bool:
+    """Whether the 95 % interval of the compliance is above zero."""
+    at = INDEX["compliance"]
+    return s.value("compliance") > Z95 * float(np.sqrt(max(0.0, covariance(s)[at, at])))
+
+
+def _acts_in_angle(d: Design, places: Sequence[int]) -> bool:
+    starts = {int(d.place(i).start) for i in places}
+    return any(int(part.at[0]) in starts for key, parts in d.parts.items() if key[1] == "A" for part in parts)
 
 
 def scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:

@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
+from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import fit
 from rig.analysis.tracing.fit.refine import refine
-from rig.analysis.tracing.fit.search import Found, reduced, settled
-from rig.analysis.tracing.fit.some import search_some
+from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
+from rig.analysis.tracing.fit.some import ranking_of_some, search_some
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.selected import Selected, select
@@ -27,7 +28,7 @@ def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[
     """All of them, one after the other: each has its own reason, and most campaigns none."""
     selected = try_prefixes(selected, found, runs, covered)
     selected = try_without_eliminated(selected, found, bank, runs, covered)
-    selected = try_each_added(selected, found, runs, covered)
+    selected = try_each_added(selected, found, bank, runs, covered)
     return try_each_instead(selected, found, runs, covered)
 
 
@@ -65,19 +66,25 @@ def try_without_eliminated(
     return other if _settles(other, stay) or _stands_alone(other, stay) else selected
 
 
-def try_each_added(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
-    """Where much is left: the candidates with most evidence, each alone beside what stands. Many small ones that the
-    search put beside the true effect can drive it out. One of them counts when it explains everything."""
+def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where much is left: the candidates with most evidence at first, and those with most beside what stands, each
+    alone beside it. Many small ones that the search put beside the true effect can drive it out, or have it in a shape
+    that is its own no more. One of them counts when it explains everything, or all there is where it acts."""
     if selected.p.own.line is not None or not selected.loud:
         return selected
-    stay = {term.name for term in selected.solution.design.terms}
-    for scored in [r for r in found.ranking[:TRIED] if r.term.name not in stay]:
-        s = settled(refine(selected.solution.design, scored.term, runs, covered)[1], runs, covered)
+    d = selected.solution.design
+    stay = {term.name for term in d.terms}
+    for term in _most_of(found.ranking, stay) + _most_of(ranking_of_some(d, bank, runs, covered), stay):
+        s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
         if more and (_settles(other, stay) or _stands_alone(other, stay)):
             return other
     return selected
+
+
+def _most_of(ranking: Sequence[Scored], stay: Collection[str]) -> list[Term]:
+    return [r.term for r in ranking if r.term.name not in stay][:TRIED]
 
 
 def try_each_instead(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
@@ -109,10 +116,13 @@ def _known(other: Selected, stay: Collection[str]) -> bool:
 
 
 def _stands_alone(other: Selected, stay: Collection[str]) -> bool:
-    """Whether a second choice, where nothing had a name, explains nearly all of what it acts on with one size in all
-    runs: it is named though something is left beside it."""
-    plain = all(score.share > MOSTLY and score.fairly and score.left < MISSING for score in other.scores)
-    return not stay and bool(other.scores) and plain and not confounders_in(other.solution) and _known(other, stay)
+    """Whether a second choice explains nearly all of what it acts on with one size in all runs, in a channel in which
+    nothing else that has a name acts: it is named though something is left beside it."""
+    new = [score for score in other.scores if score.name not in stay]
+    theirs = {c for score in other.scores if score.name in stay for _, c in score.ground}
+    apart = all(c not in theirs for score in new for _, c in score.ground)
+    plain = all(score.share > MOSTLY and score.fairly and score.left < MISSING for score in new)
+    return apart and bool(new) and plain and not confounders_in(other.solution) and _known(other, stay)
 
 
 def _steadier(one: Selected, other: Selected) -> bool:

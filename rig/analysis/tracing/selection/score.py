@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,7 @@ from rig.analysis.tracing.thresholds import (
     REAL,
     SEVERAL,
     SMALLEST,
+    STRETCHES,
     UNREAL,
     UNSTEADY,
     WHATEVER,
@@ -43,7 +44,7 @@ class HeldOutScore:
     the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
     largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's. `runs`
-    fitted ones show it."""
+    fitted ones show it, or so many stretches of a lone one, between which its size differs by `stretched`."""
 
     name: str
     share: float
@@ -57,6 +58,7 @@ class HeldOutScore:
     anywhere: float = 0.0
     work: float = 0.0
     runs: int = SEVERAL
+    stretched: float = 0.0
 
     @property
     def named(self) -> bool:
@@ -79,7 +81,7 @@ class HeldOutScore:
         """Whether it is plainly what acts there, whatever its law leaves: most of the excess goes with it, with one
         size in all runs, of which there are a few: in one or two a size is the same for want of others. How large the
         rest is in floors says nothing against it: that of a law a little off grows with the effect."""
-        one = max(self.unsteady, self.apart) < ABOUT and self.runs >= SEVERAL
+        one = max(self.unsteady, self.apart, self.stretched) < ABOUT and self.runs >= SEVERAL
         return self.share > PLAINLY and abs(self.true - 1.0) < ABOUT and one
 
     @property
@@ -123,6 +125,8 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
     true = float((before - after) / own)
     held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
     unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
+    alone = len({run for run, _ in s.design.y}) < SEVERAL
+    stretched, shown = _in_stretches(s, rest, at.seen) if alone else (0.0, seen[2])
     # at reversals stands what no effect that acts while the motor turns can be held to
     acts = [[k for k in size if k[1] == c] for c in CHANNELS if c != "R" or {"R"} == {k[1] for k in size}]
     return HeldOutScore(
@@ -137,8 +141,16 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         harm(at, bare, whole),
         max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
         sum(r**2 * whole[key].size for key, r in size.items()),
-        seen[2],
+        shown,
+        stretched,
     )
+
+
+def _in_stretches(s: Solution, rest: Solution, floors: Mapping[Key, float]) -> tuple[float, int]:
+    """How much the size differs from stretch to stretch of one or two fitted runs, and how many show it: in one long
+    log they are what several runs would be. Of all channels together: what is left in another one wanders."""
+    unsteady, _, shown = unsteadiness(s, rest, s.design, floors, STRETCHES)
+    return unsteady, shown
 
 
 def harm(at: HeldOut, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
@@ -152,28 +164,39 @@ def harm(at: HeldOut, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> 
     return max(found)
 
 
-def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float]) -> tuple[float, float, int]:
+def unsteadiness(
+    s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int = 1
+) -> tuple[float, float, int]:
     """How much an effect's size differs from run to run: RMS, relative, weighted by what it does there, what noise
     makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. And how many
-    runs show it plainly. `rest` is the fit without the effect.
+    runs show it plainly. `rest` is the fit without the effect. With `parts`, of stretches of each run instead.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
     like an effect has its size from a compromise between runs; a real one has the same in each.
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     shown = set()
-    for key in d.y:
-        e = d.residual(key, s.x) / floors[key]
-        f = d.residual(key, rest.x) / floors[key] - e
+    for key, part, f, e in _done(s, rest, d, floors, parts):
         own = float(f @ f)
         if own > FAINT**2 * e.size:
             spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
             work[key[1]] += own
         if own > SMALLEST**2 * e.size:
-            shown.add(key[0])
+            shown.add((key[0], part))
     total = sum(work.values())
     fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
     apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
     # a channel it hardly shows in says nothing of it: what is left there is something else's
     whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
     return float(whole), float(apart), len(shown)
+
+
+def _done(
+    s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int
+) -> Iterator[tuple[Key, int, Array, Array]]:
+    """Block, part of the run, what the effect does there and what is left with it, both over the floor (n,)."""
+    for key in d.y:
+        e = d.residual(key, s.x) / floors[key]
+        f = d.residual(key, rest.x) / floors[key] - e
+        for part, (mine, left) in enumerate(zip(np.array_split(f, parts), np.array_split(e, parts), strict=True)):
+            yield key, part, mine, left

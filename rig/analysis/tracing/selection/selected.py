@@ -13,7 +13,7 @@ from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
-from rig.analysis.tracing.selection.elimination import backward_elimination, unresolved
+from rig.analysis.tracing.selection.elimination import backward_elimination, instead_of_the_spring, unresolved
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
@@ -51,7 +51,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
     p, solution = _own_kept(p, solution)
     solution, held, scores = backward_elimination(with_confounders(solution, runs, covered), p.held_out)
-    while vague := unresolved(solution, _in_words(solution, runs, scatter), covered):
+    while vague := _not_told(solution, runs, covered):
         # one at a time: without it another one's law may be plain
         candidates = [score for score in scores if score.name in vague]
         least = min(candidates, key=lambda score: min(score.share, 1.0) * score.size).name
@@ -65,6 +65,11 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         held = unseen(solution, p.held_out)
     selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
     return _without_insignificant(selected, runs, covered)
+
+
+def _not_told(s: Solution, runs: Sequence[int], covered: Reach) -> list[str]:
+    """Effects of whose law, or of which beside the spring, the data say nothing."""
+    return unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_spring(s)
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
