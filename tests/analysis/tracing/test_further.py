@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -94,3 +95,21 @@ def test_what_came_first_counts_where_it_leaves_less_and_loses_no_name(
     found: Any = SimpleNamespace(solution=model(("a", "a", "b", "c", "d")), names=("a", "b", "c", "d"))
     kept = further.try_prefixes(selected, found, (), None)  # type: ignore[arg-type]
     assert {term.name for term in kept.solution.design.terms} == expected
+
+
+def test_what_is_all_there_is_in_a_channel_of_its_own_is_named_beside_a_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A weight stands in L, something loud is left in M: a runout in A is neither's."""
+    monkeypatch.setattr(further, "confounders_in", lambda solution: [])
+    monkeypatch.setattr(further, "_known", lambda other, stay: True)
+    weight = HeldOutScore("gravity_unbalance", 0.997, 48.0, 2.8, 0.9, ((0, "L"),))
+    runout = HeldOutScore("output_once_per_rev", 0.98, 5.6, 1.2, 0.93, ((0, "A"),))
+
+    def stands(one: HeldOutScore, stay: set[str]) -> bool:
+        other: Any = SimpleNamespace(scores=[weight, one], solution=None)
+        return further._stands_alone(other, stay)
+
+    assert stands(runout, {"gravity_unbalance"})
+    assert not stands(replace(runout, ground=((0, "A"), (1, "L"))), {"gravity_unbalance"})  # what it acts in is shared
+    assert not stands(replace(runout, share=0.85), {"gravity_unbalance"})
+    assert not stands(replace(runout, left=1.5), {"gravity_unbalance"})
+    assert not stands(runout, {"gravity_unbalance", "output_once_per_rev"})  # nothing is new

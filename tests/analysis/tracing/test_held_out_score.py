@@ -20,9 +20,14 @@ KEYS = [(i, "M") for i in range(6)]
 
 
 def solved(
-    rng: np.random.Generator, true: dict[Any, Any], noise: float, shown: dict[Any, float] | None = None
-) -> float:
-    """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true`; `shown`: its RMS there."""
+    rng: np.random.Generator,
+    true: dict[Any, Any],
+    noise: float,
+    shown: dict[Any, float] | None = None,
+    parts: int = 1,
+) -> tuple[float, float, int]:
+    """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true` (a number, or row by row), and
+    how many show it; `shown`: its RMS there."""
     f = {k: (shown or {}).get(k, 1.0) * rng.standard_normal(4000) for k in KEYS}
     e = {k: (true[k] - 1.0) * f[k] + noise * rng.standard_normal(4000) for k in KEYS}
     left = {"with": e, "without": {k: e[k] + f[k] for k in KEYS}}
@@ -33,23 +38,34 @@ def solved(
     )
     whole: Any = SimpleNamespace(x="with")
     rest: Any = SimpleNamespace(x="without")
-    return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0))[0]
+    return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0), parts)
 
 
 def test_the_same_size_everywhere_is_steady_whatever_the_noise(rng: np.random.Generator) -> None:
-    assert solved(rng, dict.fromkeys(KEYS, 1.0), 0.1) < 0.01
-    assert solved(rng, dict.fromkeys(KEYS, 1.0), 1.0) < 0.02
+    assert solved(rng, dict.fromkeys(KEYS, 1.0), 0.1)[0] < 0.01
+    assert solved(rng, dict.fromkeys(KEYS, 1.0), 1.0)[0] < 0.02
 
 
 def test_a_compromise_between_runs_is_told_by_its_spread(rng: np.random.Generator) -> None:
     halves = {k: 1.5 if i % 2 else 0.5 for i, k in enumerate(KEYS)}
-    assert solved(rng, halves, 0.3) == pytest.approx(0.5, abs=0.02)
+    assert solved(rng, halves, 0.3)[0] == pytest.approx(0.5, abs=0.02)
 
 
 def test_a_run_in_which_it_hardly_shows_does_not_say_how_large_it_is(rng: np.random.Generator) -> None:
     wrong = dict.fromkeys(KEYS, 1.0) | {KEYS[0]: 25.0}
-    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.02}) < 0.02
-    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.3}) > 1.0
+    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.02})[0] < 0.02
+    assert solved(rng, wrong, 0.3, {KEYS[0]: 0.3})[0] > 1.0
+
+
+def test_stretches_of_a_lone_run_tell_what_runs_would(rng: np.random.Generator) -> None:
+    """A size that grows along the one run has its mean in it, and another one in every eighth of it."""
+    lone = dict.fromkeys(KEYS, 0.0) | {KEYS[0]: 1.0}  # the others hardly show it
+    grows = np.linspace(0.0, 2.0, 4000)
+    whole, _, runs = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone)
+    stretched, _, stretches = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone, parts=8)
+    assert (whole < 0.1, runs) == (True, 1)
+    assert (stretched > 0.5, stretches) == (True, 8)
+    assert solved(rng, dict.fromkeys(KEYS, 1.0), 0.1, lone, parts=8)[0] < 0.02
 
 
 def test_a_score_is_fair_within_a_fifth() -> None:
@@ -77,6 +93,7 @@ def test_a_score_is_plain_however_many_floors_its_law_leaves() -> None:
     assert not replace(plain, true=1.4).plain
     assert not replace(plain, unsteady=0.35).plain
     assert not replace(plain, apart=0.35).plain
+    assert not replace(plain, stretched=0.35).plain
 
 
 def found(frequency: float, *scales: tuple[float, float]) -> list[str]:

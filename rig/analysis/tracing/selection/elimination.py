@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
-from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL
+from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN
 from rig.core.quantiles import Z95
 from rig.model.effect import Parameter, Reach
 
@@ -67,24 +67,22 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
 
 
 def instead_of_the_spring(s: Solution) -> list[str]:
-    """Effects in angle beside which the stiffness may be anything, and without which it is known: under a torque that
+    """Effects in angle beside which the stiffness is not known any more, as it is without them: under a torque that
     goes with the angle, as an arm's weight does, they and the spring are one wave."""
     if not s.design.terms or _is_stiff(s):
         return []
-    mine = {
-        name: [i for i, t in enumerate(s.design.terms) if t.name == name] for name in (t.name for t in s.design.terms)
-    }
-    return [
-        name
-        for name, places in mine.items()
-        if _acts_in_angle(s.design, places) and _is_stiff(fit(reduced(s.design, places)))
-    ]
+    found = []
+    for name in dict.fromkeys(term.name for term in s.design.terms):
+        mine = [i for i, term in enumerate(s.design.terms) if term.name == name]
+        if _acts_in_angle(s.design, mine) and _is_stiff(fit(reduced(s.design, mine))):
+            found.append(name)
+    return found
 
 
 def _is_stiff(s: Solution) -> bool:
-    """Whether the 95 % interval of the compliance is above zero."""
+    """Whether the compliance is known to a third of itself."""
     at = INDEX["compliance"]
-    return s.value("compliance") > Z95 * float(np.sqrt(max(0.0, covariance(s)[at, at])))
+    return KNOWN * s.value("compliance") > Z95 * float(np.sqrt(max(0.0, covariance(s)[at, at])))
 
 
 def _acts_in_angle(d: Design, places: Sequence[int]) -> bool:
