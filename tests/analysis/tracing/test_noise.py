@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.equations import Noise
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
+from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.thresholds import LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated
@@ -104,3 +105,26 @@ def test_what_lock_tests_differ_by_is_no_floor_of_runs_that_turn_freely() -> Non
     assert floor_of(of, eq, (6, "L")) == pytest.approx(0.4)
     few: Any = SimpleNamespace(runs=runs, rows={key: rows[key] for key in [*rows][3:]})
     assert floor_of(of, few, (3, "L")) == pytest.approx(0.2)  # three free ones tell too little by themselves
+
+
+def pairs_at(rms: tuple[float, ...], freedom: float = 100.0) -> list[int]:
+    """Which of pairs of repeats at 12, 20, 30, 40 rad/s with those RMS are outlying."""
+    found: Any = [SimpleNamespace(pair=(2 * i, 2 * i + 1), rms=x, freedom=freedom) for i, x in enumerate(rms)]
+    eq: Any = SimpleNamespace(runs=[run_at(w, 0.0) for w in (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 40.0)])
+    return [found.index(s) for s in outlying(eq, found)]
+
+
+def test_repeats_that_hunt_at_one_speed_tell_no_other_speeds_floor() -> None:
+    assert pairs_at((1.2e-3, 1.2e-3, 9.8e-3)) == [2]
+    assert pairs_at((1.2e-3, 9.8e-3)) == []  # which of two is the usual one nobody can tell
+    assert pairs_at((1.2e-3, 2.0e-3, 3.0e-3, 4.0e-3)) == []  # a clock that jitters
+    assert pairs_at((1.2e-3, 1.2e-3, 9.8e-3), freedom=1.0) == []  # a gain, once alike and once not
+
+
+def test_a_floor_leaves_out_what_is_told_apart() -> None:
+    calm = {(i, "M"): 1.2e-3 for i in range(4)}
+    by_run = {**calm, (4, "M"): 9.8e-3, (5, "M"): 9.8e-3}
+    noise = Noise({"M": 1.2e-3}, {"M": 1.0}, {"M": 1e-3})
+    of = Measured(noise, by_run, {}, {}, dict.fromkeys(by_run, 500.0), frozenset({(4, "M"), (5, "M")}))
+    assert floor(of, 6) == pytest.approx(1.2e-3)  # at another speed
+    assert floor(of, 5) == pytest.approx(9.8e-3)  # of its own

@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.neighbours import neighbours
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
+from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, repeats, scatter
 from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
@@ -29,6 +30,7 @@ class Measured:
     white: dict[Key, float]
     how: dict[str, str]
     freedom: dict[Key, float]  # degrees of freedom of the RMS of a pair of repeats
+    apart: frozenset[Key] = frozenset()  # whose repeats differ by more than noise: no other condition's floor
 
 
 def guess(eq: Equations) -> Noise:
@@ -49,6 +51,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     by_run: dict[Key, float] = {}
     free: dict[Key, float] = {}
     how: dict[str, str] = {}
+    apart: set[Key] = set()
     for channel in WHOLE:
         found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
         words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
@@ -59,19 +62,29 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
             )
         if not found:
             continue
-        how[channel] = words
-        n = np.array([s.rows for s in found])
-        sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in found], weights=n)))
-        kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in found], axis=0, weights=n))
+        far = outlying(eq, found)
+        how[channel] = words + _said(eq, far)
+        usual = [s for s in found if s not in far]
+        n = np.array([s.rows for s in usual])
+        sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n)))
+        kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in usual], axis=0, weights=n))
+        apart |= {(i, channel) for s in far for i in s.pair}
         by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
         free |= {(i, channel): s.freedom for s in found for i in s.pair}
         by_run |= _never_compared(eq, e, channel, among, found)
-        local[channel] = own_offset(solution, channel, found, sigma[channel] ** 2 * kappa[channel])
+        local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
-    return Measured(_at_reversals(Noise(sigma, kappa, local), turned), by_run, white, how, free)
+    noise = _at_reversals(Noise(sigma, kappa, local), turned)
+    return Measured(noise, by_run, white, how, free, frozenset(apart))
+
+
+def _said(eq: Equations, far: Sequence[Scatter]) -> str:
+    """The pairs that are left out, in words."""
+    names = ", ".join(eq.runs[i].name for s in far for i in s.pair)
+    return f"; without {names}, which differ by more than noise does" if far else ""
 
 
 def _at_reversals(noise: Noise, white: float = 0.0) -> Noise:
@@ -94,7 +107,8 @@ def quieter(one: Measured, other: Measured) -> Measured:
     white = {key: rms for c, m in best.items() for key, rms in m.white.items() if key[1] == c}
     how = {c: m.how[c] for c, m in best.items() if c in m.how}
     free = {key: nu for c, m in best.items() for key, nu in m.freedom.items() if key[1] == c}
-    return Measured(noise, by_run, white, how, free)
+    apart = frozenset(key for c, m in best.items() for key in m.apart if key[1] == c)
+    return Measured(noise, by_run, white, how, free, apart)
 
 
 def _alone(

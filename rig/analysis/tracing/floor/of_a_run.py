@@ -30,7 +30,8 @@ def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
     """Of all pairs; of those that turn freely alone where it does and enough were compared: under the torques of a lock
     test a gain that is never twice the same makes many times what it does elsewhere."""
     run, channel = key
-    free = [i for i, c in measured.by_run if c == channel and not eq.runs[i].locked and (i, c) in eq.rows]
+    usual = [i for i, c in measured.by_run if c == channel and (i, c) not in measured.apart]
+    free = [i for i in usual if not eq.runs[i].locked and (i, channel) in eq.rows]
     if eq.runs[run].locked or len(free) < 2 * ENOUGH:
         return measured.noise.sigma[channel]
     rows = [eq.rows[i, channel].y.size for i in free]
@@ -81,7 +82,8 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     run, channel = key
     known = {i: v for (i, c), v in measured.by_run.items() if c == channel}
     said = [v for i, v in known.items() if eq.runs[i].said == eq.runs[run].said]
-    same = {i: v for i, v in known.items() if eq.runs[i].procedure == eq.runs[run].procedure}
+    usual = {i: v for i, v in known.items() if (i, channel) not in measured.apart}
+    same = {i: v for i, v in usual.items() if eq.runs[i].procedure == eq.runs[run].procedure}
     if said:
         return float(np.sqrt(np.mean(np.square(said))))
     return _at_other_conditions(same, eq, run) if same else _elsewhere(measured, eq, key)
