@@ -14,8 +14,8 @@ from rig import __version__
 from rig.commands import CATALOGUE
 from rig.core.errors import Exit
 from rig.core.way_out import ending_in_a_sentence
-from rig.ctrl_c import after_imports
-from rig.streams import Tolerant, show_what_fits
+from rig.process.ctrl_c import after_imports
+from rig.process.streams import Tolerant, show_what_fits
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (

@@ -12,7 +12,7 @@ from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
 from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Operator
 from rig.core.sample import NAN, Sample, Setpoint
-from rig.latching import LatchOffsets
+from rig.timing.latching import LatchOffsets
 
 FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
 STALE_M, STALE_L, STALE_TAU = int(Flag.STALE_M), int(Flag.STALE_L), int(Flag.STALE_TAU)

@@ -15,10 +15,10 @@ from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
 from rig.guard import Guard, Trip, stale
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
-from rig.realtime import RealTime
+from rig.process.interrupts import Interrupts
+from rig.process.realtime import RealTime
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop

@@ -11,8 +11,8 @@ from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
 from rig.core.units import DEG, RPM
-from rig.parameters import make
-from rig.parameters_told import Told, told
+from rig.parameters.read import make
+from rig.parameters.told import Told, told
 
 TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torque", "shaft": "shaft torque"}
 LIMITS = {

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rig.bench import Bench, override
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.core.errors import Exit, NotReady
 from rig.evaluation.step_test import response_of
 from rig.procedures.kinematic_error import KinematicError

@@ -13,10 +13,10 @@ from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
 

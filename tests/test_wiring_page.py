@@ -7,7 +7,7 @@ import re
 import pytest
 
 from rig.bench import BENCHES, ROLES, device_class
-from rig.config import (
+from rig.config.bench_file import (
     BenchFile,
     BusSection,
     ConsoleSection,

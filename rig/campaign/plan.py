@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 import tomlkit
 from pydantic import Field, ValidationError
 
-from rig.config import Strict, load_text, sentence
+from rig.config.bench_file import Strict, load_text, sentence
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 

@@ -16,7 +16,7 @@ from rig.campaign.steps import Item
 from rig.campaign.unseen import unseen
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Operator, Rigging
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.runfile.folder import create_in
 from rig.session import Done, Session, Watch
 from rig.session.observer import Observer

@@ -13,7 +13,7 @@ from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
-from rig.parameters import make
+from rig.parameters.read import make
 from rig.procedures import CATALOGUE as PROCEDURES
 from rig.procedures import procedure_class
 

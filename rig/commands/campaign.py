@@ -33,9 +33,9 @@ from rig.commands.viewing import view, view_argument
 from rig.core.errors import DataError, Exit, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.evaluation.traceback_file import broke_off
+from rig.process.software import operator
 from rig.runfile.manifest import told
 from rig.session.done import Watch, nobody
-from rig.software import operator
 
 DEFAULT = "twin"
 STUMBLES = (OSError, MemoryError, ArithmeticError, AssertionError, AttributeError, ImportError, LookupError, NameError,

@@ -16,7 +16,7 @@ from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.evaluation.identification import TERMS, gear_of
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.runfile.manifest import utc_now
 from rig.session import Session
 

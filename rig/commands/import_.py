@@ -44,8 +44,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints the run folder."""
+    from rig.process.software import software
     from rig.runfile.importing import import_file
-    from rig.software import software
 
     refuse_unwritable(args.out)
     print(import_file(args.file, args.map, args.out, software()))

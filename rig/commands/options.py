@@ -10,7 +10,7 @@ from rig.bench import Bench, ClockName, read, toml_value
 from rig.campaign.preview import plan_lines as plan_lines  # for the verbs that dry-run
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
-from rig.parameters import make
+from rig.parameters.read import make
 
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:

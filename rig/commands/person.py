@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 
 from rig.core.errors import Exit, HdrigError, NotReady
 from rig.core.operator import Change, Operator
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 
 LOOK = 0.2  # s between two looks at Ctrl-C
 

@@ -17,7 +17,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Connect, say what is wrong, clear it, look again; exit 3 when it comes back."""
     from rig.bench import read
-    from rig.interrupts import Interrupts
+    from rig.process.interrupts import Interrupts
     from rig.session import Session
     from rig.supervisor import State
 

@@ -26,7 +26,7 @@ from rig.commands.viewing import view, view_argument
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.procedure import Procedure
-from rig.parameters_told import told
+from rig.parameters.told import told
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import refuse_beyond_limits, refuse_endless
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file
 from rig.core.errors import Exit
 from rig.core.loading import load
-from rig.ctrl_c import uninterrupted
+from rig.process.ctrl_c import uninterrupted
 from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
@@ -42,8 +42,8 @@ def run(args: argparse.Namespace) -> int:
     from rig.analysis.tracing.runs.campaign import folders_of_runs
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.trace import trace
+    from rig.process.software import software
     from rig.runfile.manifest import utc_now
-    from rig.software import software
 
     target = args.out or args.campaign
     if args.campaign.is_dir():  # a minute of thought is not lost to a wrong name

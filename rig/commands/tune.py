@@ -10,7 +10,7 @@ from rig.commands.options import bench_arguments, open_bench
 from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.runfile.writing import writing
 from rig.session import Session
 from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains

@@ -12,7 +12,7 @@ from rig.bench import read, twin_parameters
 from rig.commands.ask_twin import HELP, ask
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
-from rig.realtime import RealTime
+from rig.process.realtime import RealTime
 
 FOLDER = Path("/tmp/hdrig-twin")
 MOST_LINES = 900.0  # lines/s, 12 bytes each, that a line of 115 200 baud carries

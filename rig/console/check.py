@@ -18,7 +18,7 @@ from rig.campaign.sweeps import plan_named
 from rig.core.errors import HdrigError, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
-from rig.parameters import make
+from rig.parameters.read import make
 from rig.procedures import CATALOGUE, procedure_class
 from rig.refusals import TOLD, margins, refuse_beyond_limits, refuse_endless
 from rig.runfile.process import is_being_made

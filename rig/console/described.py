@@ -12,7 +12,7 @@ from rig.bench import BENCHES
 from rig.campaign.plan import PLANS, read_plan
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
-from rig.parameters_told import Told, told
+from rig.parameters.told import Told, told
 from rig.procedures import CATALOGUE, procedure_class
 
 

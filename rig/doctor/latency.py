@@ -5,8 +5,8 @@ from __future__ import annotations
 from rig.bench import Bench
 from rig.core.clock import WallClock
 from rig.doctor.finding import Finding, Health
-from rig.realtime import RealTime
-from rig.timing import LoopTiming
+from rig.process.realtime import RealTime
+from rig.timing.ticks import LoopTiming
 
 SECONDS = 3.0
 P99_SHARE = 0.2  # of the period: PID and bus still fit into the rest

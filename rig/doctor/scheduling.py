@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rig.bench import Bench
 from rig.doctor.finding import Finding, Health
-from rig.realtime import RealTime
+from rig.process.realtime import RealTime
 
 HELP = "allow it with `ulimit -r 99 -l unlimited`, /etc/security/limits.conf, or the capability CAP_SYS_NICE"
 

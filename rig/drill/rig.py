@@ -12,11 +12,11 @@ from rig.bench import Bench, read, twin_parameters
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from sim.wire.assembly import Assembly
 from sim.wire.faults import fault_verbs
 from sim.wire.inprocess import InProcessBus, VirtualWire

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from rig.core.loading import load
 from rig.core.way_out import ending_in_a_sentence
-from rig.ctrl_c import after_imports
-from rig.streams import show_what_fits
+from rig.process.ctrl_c import after_imports
+from rig.process.streams import show_what_fits
 
 
 def run(folder: Path) -> int:

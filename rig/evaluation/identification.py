@@ -173,7 +173,7 @@ def covered(found: Identified) -> Covered | None:
 
 def made_with(runs: list[Run]) -> str:
     """When and with what."""
-    from rig.software import software
+    from rig.process.software import software
 
     said, started = software(), sorted(str(r.manifest.get("started_utc") or "") for r in runs)
     days = f"{started[0][:10]} to {started[-1][:10]}"

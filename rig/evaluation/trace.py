@@ -16,9 +16,9 @@ def trace_folder(folder: Path) -> Trace:
     """Trace all runs in `folder` and write there what was found. Raises NotReady where it cannot be written."""
     from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.trace import trace
+    from rig.process.software import software
     from rig.report.trace.campaign import provenance
     from rig.report.trace.page import write
-    from rig.software import software
 
     found = trace(folder)
     with told(NotReady, f"what the trace found cannot be written to {folder}"):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
-from rig.software import operator, software
+from rig.process.software import operator, software
 
 if TYPE_CHECKING:
     from rig.session.session import Session

@@ -8,7 +8,7 @@ from pathlib import Path
 from rig.core.procedure import Procedure
 from rig.loop import Ending
 from rig.session.done import Watch, nobody
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,15 @@ from rig.core.procedure import Procedure
 from rig.core.sample import Mode, Sample
 from rig.guard import Guard
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
+from rig.process.interrupts import Interrupts
 from rig.recorder import Recorder
 from rig.runfile.finalise import finalise
 from rig.session.done import Done, Ended, Watch
 from rig.session.log import SessionLog
 from rig.session.observer import Begun, Observer
 from rig.supervisor import Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 
 @dataclass(frozen=True)

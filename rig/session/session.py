@@ -16,9 +16,9 @@ from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
-from rig.interrupts import Interrupts
 from rig.procedures.sign_and_scale import Proof, SignAndScale
 from rig.procedures.weigh import Weigh, Weighing
+from rig.process.interrupts import Interrupts
 from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refuse_rigging
 from rig.runfile.folder import create
 from rig.runfile.room import refuse_no_room
@@ -29,7 +29,7 @@ from rig.session.manifest import manifest_of
 from rig.session.observer import Observer
 from rig.session.recording import Recording
 from rig.supervisor import Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 
 @dataclass

@@ -6,8 +6,8 @@ import contextlib
 from collections.abc import Iterator
 from typing import final
 
-from rig.interrupts import Interrupts
 from rig.live.switches import Counts, Switches
+from rig.process.interrupts import Interrupts
 
 
 @final

@@ -14,7 +14,7 @@ from rig.core.procedure import Procedure
 from rig.doctor import CHECKS
 from rig.doctor.devices import check_devices
 from rig.doctor.finding import Finding, Health
-from rig.parameters import make
+from rig.parameters.read import make
 from rig.procedures import CATALOGUE, procedure_class
 from rig.procedures.jog import Jog
 from rig.session import Session

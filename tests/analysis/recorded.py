@@ -12,10 +12,10 @@ from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.analysis.synthetic import Array, MadeRun
 
 COLUMNS = ("t", "theta_m", "theta_l", "omega_m", "tau_m", "tau_l")

@@ -16,7 +16,7 @@ from rig.campaign.plan import parse_plan
 from rig.campaign.planner import planned
 from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.session.done import Watch, nobody
 from tests.bench.built import Unavailable
 

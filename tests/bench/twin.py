@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rig.bench import ClockName, read
 from rig.core.procedure import Procedure
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.session import Done, Session
 from rig.session.done import Watch, nobody
 from rig.session.observer import Observer

@@ -13,7 +13,7 @@ from rig.campaign.run import Desk, conduct, open_session
 from rig.campaign.steps import Item
 from rig.core.errors import Exit
 from rig.core.operator import Change, Operator
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.session import Session, Watch
 
 

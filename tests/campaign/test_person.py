@@ -15,7 +15,7 @@ from rig.commands.campaign import refuse_nobody
 from rig.commands.person import NotMade, Person
 from rig.core.errors import Exit, NotReady
 from rig.core.operator import HangWeight
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from tests.campaign.plans import LOADED, REST, campaign
 
 CHANGE = HangWeight(5.0)

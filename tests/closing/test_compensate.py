@@ -12,9 +12,9 @@ from rig.analysis.across_runs.compensation import turned
 from rig.bench import read, twin_parameters
 from rig.closing.compensate import Compared, compensate
 from rig.core.errors import NotReady
-from rig.interrupts import Interrupts
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile, declared
+from rig.process.interrupts import Interrupts
 from rig.session import Session
 
 pytestmark = pytest.mark.xdist_group("compensate")  # what the module makes is made once, not for every worker

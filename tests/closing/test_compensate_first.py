@@ -9,7 +9,7 @@ import pytest
 from rig.bench import read
 from rig.closing.compensate import compensate, refuse_first, unlike_the_series
 from rig.core.errors import HdrigError, NotReady, UsageError
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.session import Session
 from tests.closing.test_compensate import gear
 

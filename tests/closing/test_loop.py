@@ -21,7 +21,7 @@ from rig.closing.loop import Closing
 from rig.closing.run import conduct
 from rig.closing.story import End, Story, read_story
 from rig.core.errors import Exit, UsageError
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.report.closing.page import write
 from tests.campaign.rigs import Quiet
 

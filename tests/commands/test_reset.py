@@ -13,7 +13,7 @@ from rig.commands.perform import clear, let_be
 from rig.commands.show.outlet import Here
 from rig.commands.show.show import Show
 from rig.core.errors import NotReady
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.session import Session
 from rig.supervisor import State
 from tests.drivers.virtual import wired

@@ -18,12 +18,12 @@ from rig.core.operator import LockOutput
 from rig.core.procedure import Procedure
 from rig.evaluation.afterwards import AFTER
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures import CATALOGUE, procedure_class
+from rig.process.interrupts import Interrupts
 from rig.report import words
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import ListSink
 
 COMPENSATED = "compensated"  # read by `rig.analysis.across_runs.compensation`, beside a run without

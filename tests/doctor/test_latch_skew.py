@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rig.bench import Bench, read
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.doctor.finding import Health
 from rig.doctor.latch_skew import check_latch_skew
 

@@ -9,11 +9,11 @@ from rig.control.setpoints import setpoints_of
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import ListSink
 
 SHORT = KinematicError(amplitude_deg=90.0, frequency=0.16, cycles=0.5)  # 9.6 rpm

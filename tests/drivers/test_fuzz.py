@@ -23,11 +23,11 @@ from rig.control.setpoints import AsTorque
 from rig.core.errors import HdrigError
 from rig.drill.rig import Recorded
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Loop
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from sim.wire.assembly import Assembly
 from sim.wire.faults import fault_verbs
 from sim.wire.inprocess import VirtualWire

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from rig.core.errors import NotReady
-from rig.interrupts import Interrupts
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.session import Session
 from rig.supervisor import Act, State
 from sim.wire.odrive import Error

@@ -14,9 +14,9 @@ from rig.bench import read
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
 from rig.core.sample import Mode, Position, Torque, Velocity
-from rig.interrupts import Interrupts
 from rig.procedures.coast_down import CoastDown
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.refusals import refuse_mode
 from sim.wire.servo import Motion
 from sim.wire.states402 import DriveState

@@ -6,7 +6,7 @@ import pytest
 
 from drivers.bus import Bus
 from drivers.scan import Found, listen, scan
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.core.devices import Identity
 from rig.core.errors import UsageError
 from rig.first_bench import adapter_options, first_bench

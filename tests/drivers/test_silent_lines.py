@@ -20,11 +20,11 @@ from rig.core.errors import NotReady
 from rig.core.procedure import Setting
 from rig.guard import Guard
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.standstill import Standstill
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeClock, FakeDrive, FakeWorld, ListSink
 
 DELIVERED = 10.0  # s a busy machine may take to hand over what was written to a pseudo terminal

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rig.bench import BENCHES, Bench, override, read, twin_parameters
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.instruments import Instruments
 from sim.wire.assembly import Assembly
 from sim.wire.bus import Bus

@@ -9,11 +9,11 @@ import pytest
 
 from rig.core.errors import NotReady
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Loop
 from rig.procedures.sign_and_scale import Leg, Proof, SignAndScale, judge
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
 

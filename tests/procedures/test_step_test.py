@@ -10,11 +10,11 @@ import pytest
 from rig.bench import read
 from rig.core.errors import NotReady
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Loop
 from rig.procedures.step_test import StepTest
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import ListSink
 
 MOST = 20.0  # N·m at the shaft: 5° of the motor against 7160 N·m/rad are 12.5, and it runs on a little

@@ -17,11 +17,11 @@ from rig.control.winding import stiffer
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.core.operator import LockOutput
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.stiffness_lock import StiffnessLock
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from tests.fakes import GAINS, ListSink
 
 SHORT: dict[str, Any] = {"tau_max": 10.0, "rate": 5.0, "cycles": 1, "hold": 0.3, "rates": (1.0,)}

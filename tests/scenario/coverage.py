@@ -14,11 +14,11 @@ from rig.bench import Bench, read
 from rig.core.channels import CHANNELS
 from rig.core.sample import Sample
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Loop
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from sim.world import World
 
 Array = npt.NDArray[np.float64]

@@ -30,10 +30,10 @@ from rig.drill.drill import as_expected
 from rig.drill.phase import PHASES, Phase
 from rig.drill.rig import Rows
 from rig.guard import Guard
-from rig.interrupts import Interrupts
 from rig.loop import Loop
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from sim.wire.faults import fault_verbs
 from sim.wire.verbs import plant_verbs
 from tests.scenario.real_time import twin_at

@@ -12,11 +12,11 @@ from rig.core.channels import Flag
 from rig.core.errors import Exit
 from rig.guard import Guard
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
 from rig.loop import Ending, Loop
 from rig.procedures.kinematic_error import KinematicError
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, State, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 from sim.faults import Frozen, Jump, Overload, Silent
 from tests.fakes import ListSink
 

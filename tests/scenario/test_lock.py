@@ -13,9 +13,9 @@ from rig.analysis import analyse
 from rig.bench import read
 from rig.cli import main
 from rig.core.operator import LockOutput
-from rig.interrupts import Interrupts
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.stiffness_lock import StiffnessLock
+from rig.process.interrupts import Interrupts
 from rig.runfile.run import Run
 from rig.session import Session
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rig.bench import BENCHES, read, twin_parameters
-from rig.config_effects import EffectsSection
+from rig.config.effects import EffectsSection
 from rig.core.errors import UsageError
 from sim.effects import Effects
 from sim.parameters import TwinParameters

@@ -15,14 +15,14 @@ from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard
 from rig.instruments import Instruments
-from rig.interrupts import Interrupts
 from rig.loop import Loop
 from rig.procedures.constant_torque import ConstantTorque
 from rig.procedures.friction import Friction
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.stiffness_lock import StiffnessLock
+from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 Array = npt.NDArray[np.float64]
 SPREAD = 0.3  # of every parameter, either way

@@ -31,7 +31,7 @@ from rig.analysis.identify.fit import fit
 from rig.analysis.identify.identified import identified, order_amplitudes
 from rig.analysis.identify.recording import recording
 from rig.bench import Bench, twin_parameters
-from rig.software import software
+from rig.process.software import software
 from tests.studies.campaign import PLANS, MemoryRun, random_bench, take
 
 Array = npt.NDArray[np.float64]

@@ -29,7 +29,7 @@ from rig.analysis.tracing.outcome.result import NextRun
 from rig.analysis.tracing.trace import trace
 from rig.closing.advice import sections
 from rig.core.errors import UsageError
-from rig.software import software
+from rig.process.software import software
 from tests.blind import plans
 from tests.blind.builder import Builder
 from tests.blind.campaign import simulate

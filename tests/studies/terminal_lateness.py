@@ -23,7 +23,7 @@ NOTHING = """
 import sys
 from pathlib import Path
 from rig.bench import read
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from rig.procedures.standstill import Standstill
 from rig.session import Session
 with Interrupts() as interrupts, Session(read("twin"), "wall", Path(sys.argv[1]), interrupts) as session:

@@ -19,9 +19,9 @@ from pathlib import Path
 
 from rig.bench import read
 from rig.core.errors import NotReady
-from rig.interrupts import Interrupts
 from rig.live.view.viewer import Viewer
 from rig.procedures.standstill import Standstill
+from rig.process.interrupts import Interrupts
 from rig.runfile.run import Run
 from rig.session import Session
 from rig.session.done import Watch, nobody

@@ -18,7 +18,7 @@ import pytest
 from drivers.cia402 import Cia402
 from drivers.wiring import Place, Wiring
 from rig.cli import main
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.core.clock import WallClock
 from rig.core.devices import Identity
 from rig.core.errors import NotReady

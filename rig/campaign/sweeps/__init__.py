@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, cast
 
 from rig.campaign.plan import PLANS, Plan, StepSection, plan_of, read_plan
-from rig.parameters import make
+from rig.parameters.read import make
 
 CATALOGUE: dict[str, str] = {
     "load-sweep": "rig.campaign.sweeps.load_sweep:LoadSweep",

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from rig.commands.person import Person
 from rig.commands.show.keys import Keys
 from rig.commands.show.show import Show
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 
 
 @contextlib.contextmanager

@@ -27,7 +27,7 @@ from collections.abc import Callable, Iterator
 from types import FrameType, TracebackType
 from typing import Any, final
 
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 
 LOOK = 0.5  # s between two looks whether this program has come to the foreground again
 SEQUENCE = re.compile(rb"\x1b[\[O][0-9;]*[A-Za-z~]")  # Home ends in H, F4 in S: neither is a letter somebody typed

@@ -15,7 +15,7 @@ import termios
 
 from rig.commands.show.enrich import Enriched
 from rig.commands.show.screens import screen_for
-from rig.streams import show_what_fits
+from rig.process.streams import show_what_fits
 
 
 def main() -> None:

@@ -40,7 +40,7 @@ from rig.loop import Ending
 from rig.runfile.manifest import utc_now
 from rig.session.done import Watch
 from rig.session.observer import Begun, Observer
-from rig.timing import LoopTiming
+from rig.timing.ticks import LoopTiming
 
 PERIOD = 0.1  # s of wall time between two pictures of a run
 LATENESS = 0.5  # s between two looks at the statistics, which take longer

@@ -140,7 +140,7 @@ def test_the_lines_for_the_bench_file_are_read_by_it() -> None:
     text = "\n".join(bench_lines(Result("other", Verdict.MEASURED, "", (one,), (), (), {}, {})))
     bench = read("twin")
     changed = bench.text.replace("[load_encoder]", text)
-    from rig.config import read_bench
+    from rig.config.bench_file import read_bench
 
     section = read_bench(changed, "changed").load_encoder
     assert section is not None
@@ -148,7 +148,7 @@ def test_the_lines_for_the_bench_file_are_read_by_it() -> None:
 
 
 def test_a_skew_without_its_interval_is_refused_in_a_bench_file() -> None:
-    from rig.config import read_bench
+    from rig.config.bench_file import read_bench
 
     with pytest.raises(UsageError, match="a skew without its interval is no measurement"):
         read_bench(read("twin").text.replace("[load_encoder]", "[load_encoder]\nskew = 1e-5"), "half")

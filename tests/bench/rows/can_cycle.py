@@ -15,11 +15,11 @@ import can
 import numpy as np
 
 from rig.bench import BENCHES, Bench
-from rig.config import read_bench
+from rig.config.bench_file import read_bench
 from rig.core.clock import WallClock
 from rig.core.sample import Torque
 from rig.instruments import Instruments
-from rig.realtime import RealTime
+from rig.process.realtime import RealTime
 from tests.bench.child import HDRIG
 from tests.bench.figure import AtMost, Figure, Shown, ratio
 from tests.bench.row import Row

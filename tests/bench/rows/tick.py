@@ -14,10 +14,10 @@ import psutil
 from rig.bench import read
 from rig.core.clock import Clock, WallClock
 from rig.core.sample import Sample
-from rig.interrupts import Interrupts
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.standstill import Standstill
-from rig.realtime import RealTime
+from rig.process.interrupts import Interrupts
+from rig.process.realtime import RealTime
 from rig.session import Session
 from tests.bench.figure import AtMost, Figure, Shown
 from tests.bench.row import Row

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from rig.commands.show.keys import Keys
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from tests.commands.show.terminals import Terminal
 
 Pressed = Callable[[str], None]
@@ -111,7 +111,7 @@ def test_without_a_terminal_nothing_is_done(monkeypatch: pytest.MonkeyPatch) -> 
 SLEEPER = """
 import sys
 from rig.commands.show.keys import Keys
-from rig.interrupts import Interrupts
+from rig.process.interrupts import Interrupts
 from tests.commands.show.terminals import Terminal
 interrupts = Interrupts()
 with Keys(interrupts, lambda: False):

@@ -12,7 +12,7 @@ import pytest
 
 import rig.commands.list_
 from rig.cli import main
-from rig.streams import Tolerant
+from rig.process.streams import Tolerant
 
 TEN = "import sys, rig.cli; sys.exit(rig.cli.main(sys.argv[1:]))"
 

@@ -14,12 +14,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from rig.config_effects import EffectsSection
+from rig.config.effects import EffectsSection
+from rig.config.quantities import NotNegative, Positive, quantity
+from rig.config.quantities import Strict as Strict  # these two also for readers of other files of the same kind
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.regular import regular
-from rig.quantities import NotNegative, Positive, quantity
-from rig.quantities import Strict as Strict  # these two also for readers of other files of the same kind
 
 LONGEST = 2**20  # bytes: the longest bench that ships has under 20 000
 

@@ -1,7 +1,7 @@
 """Ctrl-C and a service manager's stop outside of a session: KeyboardInterrupt, but not in the middle of an import.
 
 Raised there it is lost in a callback of the import system, or leaves half a module behind, which shows as an error of
-another kind. So it waits until the import is done. In a session `rig.interrupts` takes over.
+another kind. So it waits until the import is done. In a session `rig.process.interrupts` takes over.
 """
 
 from __future__ import annotations

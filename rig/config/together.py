@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from rig.config import BenchFile, DeviceSection
+from rig.config.bench_file import BenchFile, DeviceSection
 from rig.core.errors import UsageError
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from rig.bench import read
-from rig.latching import LatchOffsets
-from rig.timing import LoopTiming
+from rig.timing.latching import LatchOffsets
+from rig.timing.ticks import LoopTiming
 from tests.drivers.running import run
 from tests.drivers.virtual import wired
 

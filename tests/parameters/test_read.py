@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from rig.core.errors import UsageError
-from rig.parameters import make
+from rig.parameters.read import make
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pytest
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
 from rig.cli import main
-from rig.parameters_told import told
+from rig.parameters.told import told
 from rig.procedures import CATALOGUE, procedure_class
 
 KINDS = {name: procedure_class(name) for name in CATALOGUE} | {name: sweep_class(name) for name in SWEEPS}

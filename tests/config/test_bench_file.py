@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rig
-from rig.config import BenchFile, load_text, read_bench
+from rig.config.bench_file import BenchFile, load_text, read_bench
 from rig.core.errors import UsageError
 
 TEXT = (Path(rig.__file__).parent / "benches" / "twin.toml").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
-from rig.parameters_told import told
+from rig.parameters.told import told
 
 Made = TypeVar("Made")
 LARGEST = 1e100  # nothing on a rig is near, and its square is still a number

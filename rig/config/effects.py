@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import model_validator
 
-from rig.quantities import NotNegative, Positive, Strict, quantity
+from rig.config.quantities import NotNegative, Positive, Strict, quantity
 
 FINITE = {"allow_inf_nan": False}
 SHARE = {"ge": 0, "lt": 1, "allow_inf_nan": False}

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.ctrl_c import after_imports, uninterrupted
+from rig.process.ctrl_c import after_imports, uninterrupted
 from rig.runfile.manifest import write_atomic
 
 SLOW = """

@@ -1,0 +1,1 @@
+"""The bench file, read strictly."""

@@ -1,0 +1,1 @@
+"""A procedure's parameters: as somebody wrote them, and in words."""

@@ -1,0 +1,1 @@
+"""The process and its operating system: signals, output that may vanish, priority, which software it is."""

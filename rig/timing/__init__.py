@@ -1,0 +1,1 @@
+"""When ticks came and when channels were latched, in constant memory."""
