@@ -94,11 +94,14 @@ class TorsionalMode(Effect):
         return (*shape[:3], float(np.clip(coefficients[0], 0.0, self.SOFTEST)))
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
-        """A mode that the fit pushed out of the band, or down to where none is looked for; a stiff coupling needs none
-        inside."""
+        """A mode that the fit pushed out of the band, or down to where none is looked for, or damped until it was no
+        peak; a stiff coupling needs none inside."""
         low, high = self.bounds(reach)[1]
-        above = shape[0] in (LOAD, MOTOR, DRIVEN) and shape[1] > self.AT_THE_END * high
-        return above or (shape[0] in (LOAD, MOTOR, DRIVEN, SOFT) and shape[1] * self.AT_THE_END < low)
+        if shape[0] not in (LOAD, MOTOR, DRIVEN, SOFT):
+            return False
+        flat = shape[2] > self.AT_THE_END * self.bounds(reach)[2][1]
+        above = shape[0] != SOFT and shape[1] > self.AT_THE_END * high
+        return flat or above or shape[1] * self.AT_THE_END < low
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """A resonance is a peak: where its frequency is known no better than that, something else has been fitted."""

@@ -62,8 +62,17 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
     difference between some runs and others, which many laws make.
     """
     names = dict.fromkeys(term.name for term in s.design.terms)
-    zero = [name for name in names if (found := scales(s, name, words)) and not _is_scaled(s, name, found, covered)]
-    return [*zero, *(name for name in names if name not in zero and _out_of_reach(s, name, covered))]
+    return [name for name in names if not _is_resolved(s, name, scales(s, name, words), covered)]
+
+
+def _is_resolved(s: Solution, name: str, found: Sequence[Parameter], covered: Reach) -> bool:
+    """Whether one term of an effect at least has its scale, where it has one, and lies within what was excited."""
+    terms = [term for term in s.design.terms if term.name == name]
+    within = [not term.effect.beyond(term.shape, covered) for term in terms]
+    scaled = [terms[0].effect.is_scaled(p, covered) for p in found]
+    if len(scaled) == len(within):
+        return any(a and b for a, b in zip(within, scaled, strict=True))
+    return any(within) and (any(scaled) or not scaled)
 
 
 def instead_of_the_spring(s: Solution) -> list[str]:
@@ -95,13 +104,3 @@ def scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> 
     effect = next(term.effect for term in s.design.terms if term.name == name)
     first = [n for n, free in zip(effect.shape_names, effect.loose, strict=True) if free][:1]
     return [p for p in words.get(name, ()) for n in first if p.name == n or p.name.removeprefix(f"{n}_").isdigit()]
-
-
-def _is_scaled(s: Solution, name: str, found: Sequence[Parameter], covered: Reach) -> bool:
-    effect = next(term.effect for term in s.design.terms if term.name == name)
-    return any(effect.is_scaled(p, covered) for p in found)
-
-
-def _out_of_reach(s: Solution, name: str, covered: Reach) -> bool:
-    terms = [term for term in s.design.terms if term.name == name]
-    return all(term.effect.beyond(term.shape, covered) for term in terms)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
@@ -22,6 +23,8 @@ from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_res
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
+
+SAME_ORDER: Final = 0.05  # of a turn
 
 
 def decide(
@@ -58,9 +61,10 @@ def decide(
         return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
-    shared = [name for name in names if name not in p.own.made]
+    best = where[0]
+    shared = [name for name in names if name not in p.own.made and name not in _of_the_same_order(s, best)]
     told = line is None and (known or total <= EXPLAINED)
-    best, taken = where[0], _share(*_most(p, before, after))
+    taken = _share(*_most(p, before, after))
     stand = _standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
@@ -107,6 +111,15 @@ def _standing(
     sure = {score.name for score in scores if score.whatever_the_floor}
     clean = _beside(coordinate, [name for name in names if (name not in amiss if told else name in sure)])
     return tuple(name for name in names if name in plain or name in clean)
+
+
+def _of_the_same_order(s: Solution, rest: Home) -> set[str]:
+    """Effects of the order of the motor angle that is left: what makes a wave in the angle makes one in the torque too,
+    and a torque that leaves it there is not what makes both."""
+    if rest.coordinate != "motor_angle" or rest.order is None:
+        return set()
+    orders = [(t.name, t.shape[0]) for t in s.design.terms if t.effect.shape_names[:1] == ("order",)]
+    return {name for name, order in orders if abs(order - rest.order) < SAME_ORDER}
 
 
 def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
