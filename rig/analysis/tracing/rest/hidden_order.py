@@ -1,10 +1,11 @@
-"""An order of the motor that is in the floor: where nothing was repeated, the floor is what one turn differs from the
+"""An order of the motor or of the output that is in the floor: where nothing was repeated, the floor is what one turn differs from the
 next by, and what comes back with no whole order does. What the fitted runs show of it foretells the others."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
@@ -19,11 +20,13 @@ from rig.analysis.tracing.rest.unknown import MOST, smooth_term
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
 
+ANGLES: Final = ("motor_angle", "load_angle")
+
 
 def hidden_order(
     eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float]
 ) -> Home | None:
-    """The order of the motor that takes most of the unseen residuals, with its share of them; None where repeats tell
+    """The order of an angle that takes most of the unseen residuals, with its share of them; None where repeats tell
     the floor, or none takes enough."""
     if repeats(eq.runs, sorted({i for i, _ in fitted})):
         return None
@@ -40,7 +43,7 @@ def _in_channel(
         return []
     r = train.thinned(MOST)
     h = Halves(r, folds(r))
-    tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
+    tried = [best_order(h, angle, channel, sense) for angle in ANGLES for sense in SENSES]
 
     def left(home: Home) -> float:
         return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]

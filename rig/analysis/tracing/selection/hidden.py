@@ -55,7 +55,8 @@ def _in_the_floor(
     if home.frequency_hz:
         what = f"something that comes and goes {how_often(home)}"
     elif home.order:
-        what = f"something that comes back {home.order:.3f} times a turn of the motor"
+        shaft = "motor" if home.coordinate == "motor_angle" else "output"
+        what = f"something that comes back {home.order:.3f} times a turn of the {shaft}"
     differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
     sentence = (
         f"{differing} differ in {CHANNEL[home.channel].name} because of {what} "
