@@ -1,5 +1,6 @@
-"""An order of the motor or of the output that is in the floor: where nothing was repeated, the floor is what one turn differs from the
-next by, and what comes back with no whole order does. What the fitted runs show of it foretells the others."""
+"""An order of the motor or of the output that is in the floor: where nothing was repeated, the floor is what one turn
+differs from the next by, and what comes back with no whole order does. What the fitted runs show of it foretells the
+others."""
 
 from __future__ import annotations
 
