@@ -96,9 +96,10 @@ def test_a_score_is_plain_however_many_floors_its_law_leaves() -> None:
     assert not replace(plain, stretched=0.35).plain
 
 
-def found(frequency: float, *scales: tuple[float, float]) -> list[str]:
+def found(frequency: float, *scales: tuple[float, float], zeta: tuple[float, ...] = ()) -> list[str]:
     """What stays unresolved of a mode at `frequency` Hz whose frequencies have those intervals."""
-    terms = tuple(Term(TorsionalMode(), (0.0, frequency, 0.04, 0.0)) for _ in scales)
+    damped = zeta or (0.04,) * len(scales)
+    terms = tuple(Term(TorsionalMode(), (0.0, frequency, z, 0.0)) for z in damped)
     solution: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
     words = [Parameter(f"frequency_{i}" if i > 1 else "frequency", 50.0, c, "Hz") for i, c in enumerate(scales, 1)]
     return unresolved(solution, {"torsional_mode": words}, REACH)
@@ -111,3 +112,10 @@ def test_a_law_is_unresolved_only_when_no_term_of_it_shows_its_scale() -> None:
 
 def test_a_resonance_above_the_band_is_no_resonance() -> None:
     assert found(1.19 * REACH.band, (48.0, 52.0)) == ["torsional_mode"]
+
+
+def test_a_mode_damped_until_it_is_no_peak_is_none_and_makes_no_other_ones_scale_known() -> None:
+    """A jump of speeds had been fitted by two: one of 6 to 165 Hz, one of ζ = 0.4, the most that is fitted."""
+    assert found(50.0, (48.0, 52.0), zeta=(0.4,)) == ["torsional_mode"]
+    assert found(50.0, (6.0, 165.0), (48.0, 52.0), zeta=(0.29, 0.4)) == ["torsional_mode"]
+    assert found(50.0, (6.0, 165.0), (48.0, 52.0), zeta=(0.29, 0.04)) == []

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
+import pytest
+
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import _share as share
 from rig.analysis.tracing.selection.verdict import _standing as standing
 from rig.analysis.tracing.thresholds import PART
+from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
+from rig.model.effects.torque_ripple import TorqueRipple
 
 CLEAN = HeldOutScore("cogging_torque", 0.7, 3.0, 1.1, 1.0, (), anywhere=1.1)
 PLAIN = HeldOutScore("hysteretic_stiffness", 0.9, 30.0, 6.0, 1.0, (), anywhere=6.0)
@@ -51,3 +60,12 @@ def test_what_leaves_much_in_the_runs_it_acts_in_stands_only_where_it_is_plain()
 def test_what_takes_next_to_nothing_of_the_channel_it_gains_most_in_is_no_part_of_it() -> None:
     assert share(4.34, 4.28) < PART < share(4.34, 3.6)  # a sensor's wobble, of which a spring took a thirtieth
     assert share(1.3, 1.0) == 1.0
+
+
+@pytest.mark.parametrize(("left", "same"), [(19.0, {"torque_ripple"}), (18.0, set()), (None, set())])
+def test_a_ripple_of_the_order_that_is_left_in_the_angle_is_no_ripple(left: float | None, same: set[str]) -> None:
+    """A wave of the kinematic error that the series has no term for turns the inertia to and fro as well."""
+    terms = (Term(TorqueRipple(), (19.0, 0.0)), Term(NonlinearStiffness(), (2.0, 19.0)))
+    s: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
+    assert of_the_same_order(s, Home("motor_angle", "A", 0.9, order=left)) == same
+    assert of_the_same_order(s, Home("load_angle", "A", 0.9, order=left)) == set()

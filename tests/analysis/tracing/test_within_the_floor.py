@@ -25,6 +25,7 @@ EVERY = 84.0  # s
 SEAL = 2.6  # s
 PUMP = 48.0  # s
 CAGE = 0.4512  # orders of the motor
+SEGMENTS = 11  # of the scale of a load encoder
 NO_REPEATS = ("slow_ke_1", "speed_120rpm_1", "speed_200rpm_1", "speed_300rpm_1", "lock_60_1")
 
 
@@ -45,6 +46,11 @@ def swelling(c: Columns, began: float) -> Columns:
 
 def untrue(c: Columns, began: float) -> Columns:
     return {"theta_l": c["theta_l"] - 3e-5 * np.cos(CAGE * c["theta_m"] + 0.3)}
+
+
+def stitched(c: Columns, began: float) -> Columns:
+    along = SEGMENTS * c["theta_l"] / (2 * np.pi)
+    return {"theta_l": c["theta_l"] + 4e-5 * (2 * (along - np.floor(along)) - 1)}
 
 
 def dragging(c: Columns, began: float) -> Columns:
@@ -91,6 +97,13 @@ def test_an_order_that_is_none_of_the_gears_is_told_where_nothing_was_repeated(t
     verdict = spiked(tmp_path, shared / "cases" / "open-1", untrue, NO_REPEATS).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "motor_angle")
     assert verdict.order == pytest.approx(CAGE, abs=2e-3)
+
+
+@pytest.mark.slow
+def test_a_scale_that_is_stitched_is_told_where_nothing_was_repeated(tmp_path: Path, shared: Path) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", stitched, NO_REPEATS).verdict
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "load_angle")
+    assert verdict.order == pytest.approx(SEGMENTS, abs=0.02)
 
 
 @pytest.mark.slow

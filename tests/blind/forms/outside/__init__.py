@@ -13,6 +13,7 @@ from tests.blind.forms.outside import (
     one_way_drag,
     sensor_gain_temperature,
     stiffness_aging,
+    stitched_grating,
     torque_sensor_hysteresis,
 )
 
@@ -29,5 +30,6 @@ OUTSIDE = (
     *one_way_drag.FORMS,
     *sensor_gain_temperature.FORMS,
     *stiffness_aging.FORMS,
+    *stitched_grating.FORMS,
     *torque_sensor_hysteresis.FORMS,
 )
