@@ -21,7 +21,7 @@ from rig.analysis.tracing.rest.unknown import MOST, smooth_term
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
 
-ANGLES: Final = ("motor_angle", "load_angle")
+WHOLE_ORDER: Final = 0.05  # how far from a whole number
 
 
 def hidden_order(
@@ -44,10 +44,16 @@ def _in_channel(
         return []
     r = train.thinned(MOST)
     h = Halves(r, folds(r))
-    tried = [best_order(h, angle, channel, sense) for angle in ANGLES for sense in SENSES]
+    tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
+    # both angles are nearly one: what comes back with a turn of the output comes back a whole number of times in it
+    tried += [home for sense in SENSES if _is_whole(home := best_order(h, "load_angle", channel, sense))]
 
     def left(home: Home) -> float:
         return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
 
     bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
     return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in tried if home is not None]
+
+
+def _is_whole(home: Home | None) -> bool:
+    return home is not None and home.order is not None and abs(home.order - round(home.order)) < WHOLE_ORDER
