@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
-from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN
+from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN, SHADOW
 from rig.core.quantiles import Z95
 from rig.model.effect import Parameter, Reach
 
@@ -23,7 +23,7 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
     d = unseen(s, at)
     while True:
         scored = scores(s, d, at)
-        failing = [score for score in scored if not score.named or not _can_be(s, score.name)]
+        failing = [x for x in scored if not x.named or _in_the_shadow(x, scored) or not _can_be(s, x.name)]
         if not failing:
             return s, d, scored
         # what spoils a channel spoils the others' sizes with it
@@ -32,6 +32,14 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
         s, d = fit(reduced(s.design, gone)), reduced(d, gone)
         if (again := _put_right(s)) is not s:
             s, d = again, unseen(again, at)
+
+
+def _in_the_shadow(one: HeldOutScore, scored: Sequence[HeldOutScore]) -> bool:
+    """Whether an effect that is not fair stands beside one so much larger in the same channel that what is wrong with
+    the large one's law is as much."""
+    channels = {c for _, c in one.ground}
+    larger = [x for x in scored if x.size > SHADOW * one.size and channels & {c for _, c in x.ground}]
+    return bool(larger) and not one.fairly
 
 
 def _put_right(s: Solution) -> Solution:
