@@ -65,6 +65,18 @@ def test_what_load_does_to_the_kinematic_error_shows_in_the_pair_alone() -> None
     assert found["load_angle"] < 0.1
 
 
+def test_friction_along_the_motor_angle_shows_beside_the_direction_alone() -> None:
+    base, rng = made("nothing"), np.random.default_rng(5)
+    way = np.where(np.arange(24000) // 1000 % 2, 1.0, -1.0)
+    e = 3 * np.sqrt(2) * way * np.cos(base.at["motor_angle"]) + rng.normal(0, 1, 24000)
+    there_and_back = replace(base, e=e, at=base.at | {"direction": way})
+    found = dict(
+        zip([*COORDINATES, *map(" ".join, PAIRS)], shares(there_and_back, FLOORS, "A")["share.A"], strict=True)
+    )
+    assert found["motor_angle direction"] > 0.8
+    assert max(found["motor_angle"], found["direction"]) < 0.1
+
+
 def test_a_loop_in_the_torque_shows_as_memory_though_the_torque_is_noisy() -> None:
     base = made("nothing")
     rng = np.random.default_rng(5)

@@ -48,7 +48,7 @@ def curves(after: float = 1.0, seed: int = 1) -> dict[str, Array]:
             out[f"{stem}.before"], out[f"{stem}.after"] = rng.uniform(5, 9, bins), after * rng.uniform(0.9, 1.1, bins)
         out[f"interval.{channel}.before"] = np.array([7.7, 9.2]) * (1 if channel == "A" else 1e-3)
         out[f"interval.{channel}.after"] = np.array([0.95, 1.05]) * after * (1 if channel == "A" else 1e-3)
-    out["share.A"] = np.array([0.11, 0.07, 0.0, 0.09, 0.1, 0.0, 0.0, 0.88, 0.15, 0.05])
+    out["share.A"] = np.array([0.11, 0.07, 0.0, 0.09, 0.1, 0.0, 0.0, 0.12, 0.88, 0.15, 0.05])
     for run, at in RUNS.items():
         out[f"run_at.{run}"] = np.array(at)
         turns = np.linspace(0, 2, 200)

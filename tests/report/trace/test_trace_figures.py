@@ -59,9 +59,9 @@ def test_what_predicts_the_residual_is_named_in_the_order_the_tracer_gives() -> 
     assert home.told(CURVES) == [
         "Kinematic error: motor angle and torque predict 88\u00a0% of the excess over the floor."
     ]
-    close = CURVES | {"share.A": np.array([0.0, 0.0, 0.0, 0.0, 0.61, 0.0, 0.0, 0.0, 0.0, 0.86])}
+    close = CURVES | {"share.A": np.array([0.0, 0.0, 0.0, 0.0, 0.61, 0.0, 0.0, 0.0, 0.0, 0.0, 0.86])}
     assert home.told(close)[0].endswith("; torque, rising or falling: 61\u00a0%.")
-    assert PAIRS[0] == ("motor_angle", "load")
+    assert [" and ".join(pair).replace("_", " ").replace("load", "torque") for pair in PAIRS] == [*home.ROWS[7:]]
 
 
 def test_the_motor_torque_is_shown_in_millinewton_metres() -> None:

@@ -108,7 +108,7 @@ def test_runs_beyond_the_fitted_range_decide_nothing_and_no_rival_is_spoken_of()
 
 
 def test_no_coordinate_predicts_more_than_all() -> None:
-    assert "177" not in " ".join(home.told({"share.A": np.array([1.77, *[0.1] * 9])}))
+    assert "177" not in " ".join(home.told({"share.A": np.array([1.77, *[0.1] * 10])}))
 
 
 def test_the_error_before_and_after_stands_beside_its_floor(pages: dict[str, Reader]) -> None:

@@ -31,7 +31,7 @@ def pictures(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array
 
     where.<C>.<coordinate>.x, .before, .after (b,)
         RMS over floor in bins of a coordinate; x in ° for angles, ±1, N·m, rpm, s
-    share.<C> (10,)
+    share.<C> (11,)
         share of the excess before that each of `shares.COORDINATES`, then of `PAIRS`, predicts in rows it was not
         fitted to, 0 to 1; absent where there is no excess, NaN for the load in L, whose reading is itself the load
     share_frequency_hz.<C> (2,)

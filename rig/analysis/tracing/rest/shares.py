@@ -20,7 +20,7 @@ COARSE: Final = 8  # levels of the second coordinate: loads and speeds of a camp
 RIDGE: Final = 1.0  # rows: a harmonic that no run shows stays zero
 ORDERS_OF: Final = {"motor_angle": 15, "load_angle": 8}  # the paper's series; runout, ovality, gravity
 COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory", "speed", "time")
-PAIRS: Final = (("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
+PAIRS: Final = (("motor_angle", "direction"), ("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
 
 
 def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Array]:

@@ -20,6 +20,7 @@ ROWS = (
     "torque, rising or falling",
     "speed",
     "time",
+    "motor angle and direction",
     "motor angle and torque",
     "motor angle and speed",
     "speed and direction",
@@ -31,7 +32,7 @@ STEP, LEFT, HEAD, FOOT, GAP = 21.0, 158.0, 30.0, 16.0, 46.0
 
 
 def draw(curves: Curves, frame: Frame) -> Figure | None:
-    """Uses share.<C> (10,) and share_frequency_hz.<C> (2,). None when no channel has an excess."""
+    """Uses share.<C> (11,) and share_frequency_hz.<C> (2,). None when no channel has an excess."""
     shown = [(c, rows) for c in CHANNELS if (rows := _rows(curves, c)) is not None]
     if not shown:
         return None
