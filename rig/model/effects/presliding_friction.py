@@ -20,7 +20,8 @@ class PreslidingFriction(Effect):
     """Instead of jumping, τ_c·sgn ω_m builds up with the way: τ_c·z, dz/dθ_m = (1 − z·sgn ω_m)/x_0; or the load's
     friction τ_cl does, with θ_l      [dahl1968]
 
-    The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal. Elements that
+    The column is z − sgn ω_m, what the baseline's constant friction has too much after each reversal, and z where the
+    sign is not sure. Elements that
     slip one after the other, τ_i after w_i, take any curve that the way from rest makes, and the same at twice the size
     after a reversal      [iwan1966]
 
@@ -68,11 +69,11 @@ class PreslidingFriction(Effect):
             return {Port.LOAD_TORQUE: (presliding(signals.theta_l, x_0, start) - signals.way)[:, None]}
         if law == ELEMENTS:
             states = [_element(signals.theta_m, x_0 * share, start) for share in self.SPREAD]
-            return {Port.MOTOR_TORQUE: np.stack(states, 1) - np.sign(signals.omega_m)[:, None]}
+            return {Port.MOTOR_TORQUE: np.stack(states, 1) - signals.way[:, None]}
         if law == BRISTLES:
             states = [presliding(signals.theta_m, x_0 * share, start) for share in self.DECADES]
-            return {Port.MOTOR_TORQUE: np.stack(states, 1) - np.sign(signals.omega_m)[:, None]}
-        return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - np.sign(signals.omega_m))[:, None]}
+            return {Port.MOTOR_TORQUE: np.stack(states, 1) - signals.way[:, None]}
+        return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - signals.way)[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The friction that builds up, and over which way."""

@@ -27,7 +27,8 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
     inside[:ENDS] = inside[-ENDS:] = False
     sliding = smooth(settled(piece).astype(float)) > 1 - 1e-9
     if channel == "R":
-        return np.asarray(inside & ~sliding & (smooth((piece.way != 0).astype(float)) > 1 - 1e-9))
+        signed = smooth((piece.way != 0).astype(float)) > 1 - 1e-9
+        return np.asarray(inside & ~sliding & (signed | run.closely))
     if channel == "A":
         known = inside & _angle_known(piece, run)
         torque_known = run.locked or "tau_l" in run.knows

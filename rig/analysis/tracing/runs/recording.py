@@ -53,6 +53,7 @@ class Recording(Once):
     step_m: float = 0.0  # rad, the smallest change of the motor angle in the file; 0 where there is none
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
+    closely: bool = False  # whether the rows around a reversal are looked at in which friction has no sure sign
 
     @property
     def knows(self) -> frozenset[str]:

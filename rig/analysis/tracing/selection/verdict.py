@@ -20,7 +20,7 @@ from rig.analysis.tracing.selection.hidden import hidden
 from rig.analysis.tracing.selection.next_run import along, deciding
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_rest
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART
+from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART, QUIET
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
 
@@ -88,10 +88,12 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
 
 def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
     """RMS over floor of the worst channel without and with what was found; without reversals where they have a little
-    left."""
+    left, unless what was found acts there alone."""
     total, _ = p.held_out.worst(after)
     if total > EXPLAINED:
-        before, after = ({key: x for key, x in e.items() if key[1] != "R"} for e in (before, after))
+        elsewhere = [{key: x for key, x in e.items() if key[1] != "R"} for e in (before, after)]
+        if p.held_out.worst(elsewhere[0])[0] > QUIET:
+            before, after = elsewhere
     return p.held_out.worst(before)[0], p.held_out.worst(after)[0]
 
 
