@@ -51,17 +51,40 @@ def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) 
 
 @njit(cache=True, nogil=True)
 def presliding(theta: Array, x0: float, start: float = 0.0) -> Array:
-    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,)."""
+    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,).
+
+    Where it turns back between two samples it has gone further than either says: to the top of the parabola through
+    three of them. Of a way of milliradians that is a twentieth.
+    """
     out = np.empty_like(theta)
     z, last = start, theta[0] if theta.size else 0.0
     for i in range(theta.size):
-        moved = theta[i] - last
-        last = theta[i]
-        if moved != 0.0:
-            way = math.copysign(1.0, moved)
-            z = way + (z - way) * math.exp(-abs(moved) / x0)
+        here, top, late = theta[i], theta[i], False
+        if 0 < i < theta.size - 1:
+            before, after = theta[i - 1], theta[i + 1]
+            bend = before - 2.0 * here + after
+            if (here - before) * (after - here) < 0.0 and bend != 0.0:
+                aside = 0.5 * (before - after) / bend
+                top, late = here - 0.25 * (before - after) * aside, aside > 0.0
+        if not late:
+            z = _slid(z, top - last, x0)
+            last = top
+        z = _slid(z, here - last, x0)
         out[i] = z
+        last = here
+        if late:
+            z = _slid(z, top - last, x0)
+            last = top
     return out
+
+
+@njit(cache=True, nogil=True)
+def _slid(z: float, moved: float, x0: float) -> float:
+    """Dahl's state after `moved` more."""
+    if moved == 0.0:
+        return z
+    way = math.copysign(1.0, moved)
+    return way + (z - way) * math.exp(-abs(moved) / x0)
 
 
 def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
