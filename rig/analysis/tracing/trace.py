@@ -12,7 +12,7 @@ from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.refine import refine
-from rig.analysis.tracing.fit.search import Found, relawed, settled, still
+from rig.analysis.tracing.fit.search import Found, reduced, relawed, settled, still
 from rig.analysis.tracing.fit.some import search_some, some
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
@@ -59,7 +59,21 @@ def _looked_closely(
     first = max(shapes, key=lambda term: fit(extended(d, term, runs)).gain)
     p, s = _beside(p, settled(refine(d, first, runs, covered)[1], runs, covered), covered)
     other = select(p, Found(s, found.ranking), runs, covered)
-    return (other, found) if _adds(other, so_far) else (so_far, found)
+    if not _adds(other, so_far):
+        return so_far, found
+    return _out_of_its_shadow(other, found, runs, covered), found
+
+
+def _out_of_its_shadow(other: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without what had a name before for what is left of friction that builds up, if nothing is left without it."""
+    mine = next(score.size for score in other.scores if score.name == BUILDS_UP.name)
+    small = {score.name for score in other.scores if SHADOW * score.size < mine}
+    d = other.solution.design
+    gone = [i for i, term in enumerate(d.terms) if term.name in small]
+    if not gone:
+        return other
+    fewer = select(other.p, Found(fit(reduced(d, gone)), found.ranking), runs, covered)
+    return other if fewer.loud or BUILDS_UP.name not in _named(fewer) else fewer
 
 
 def _adds(other: Selected, so_far: Selected) -> bool:
