@@ -22,21 +22,10 @@ from rig.model.memory import presliding
 NEAR: Final = 0.12  # s on both sides of a reversal
 AROUND: Final = 2.0  # s: the same motion, in which friction has its sign
 JUMP: Final = 1.5e-4  # rad of the motor: a count or two of an encoder, over which even a jump seems to build up
-WAYS: Final = (
-    6e-4,
-    1e-3,
-    1.5e-3,
-    2e-3,
-    2.5e-3,
-    3e-3,
-    4e-3,
-    5e-3,
-    7e-3,
-    1e-2,
-)  # rad; what takes longer the equations see
-HALF: Final = (
-    0.5  # of what a jump leaves, RMS; of 230 campaigns without such friction none came below, with it 0.1 to 0.5
-)
+# rad; what takes longer the equations see
+WAYS: Final = (6e-4, 1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 7e-3, 1e-2, 1.5e-2, 2.5e-2)
+# of what a jump leaves, RMS; of 230 campaigns without such friction none came below it, with it were 0.1 to 0.5
+HALF: Final = 0.5
 ENOUGH: Final = 8  # runs
 SHOWN: Final = 0.6  # of them
 ALIKE: Final = 2.0  # how far a run's way may be from the usual one, as a ratio
