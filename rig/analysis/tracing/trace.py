@@ -14,6 +14,7 @@ from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, reduced, relawed, settled, still
 from rig.analysis.tracing.fit.some import search_some, some
+from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
 from rig.analysis.tracing.outcome.report import report
@@ -28,9 +29,11 @@ from rig.analysis.tracing.thresholds import SHADOW
 from rig.analysis.tracing.workers import give_back, one_heap
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
+from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.presliding_friction import MOTOR, PreslidingFriction
 
 BUILDS_UP: Final = PreslidingFriction()
+LATE: Final = ChannelTimeSkew.name
 
 
 def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
@@ -41,6 +44,8 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     selected, found = _selected(prepare(campaign, hold_out))
     if BUILDS_UP.name not in _named(selected) and builds_up([selected.p.eq.runs[i] for i in selected.p.split.fitted]):
         selected, found = _looked_closely(selected, found, campaign, hold_out)
+    if LATE not in _named(selected) and about_a_line(selected.solution) is not None:
+        selected, found = _with_homed_encoders(selected, found, hold_out)
     return report(selected.p, found, selected.solution, selected.held, selected.scores, selected.words)
 
 
@@ -74,6 +79,15 @@ def _out_of_its_shadow(other: Selected, found: Found, runs: Sequence[int], cover
         return other
     fewer = select(other.p, Found(fit(reduced(d, gone)), found.ranking), runs, covered)
     return other if fewer.loud or BUILDS_UP.name not in _named(fewer) else fewer
+
+
+def _with_homed_encoders(so_far: Selected, found: Found, hold_out: Sequence[str]) -> tuple[Selected, Found]:
+    """The same where what shifts a run's zero is no zero of its own. It counts where it names a reading that comes late
+    and nothing else more, and explains everything."""
+    runs = tuple(replace(run, homed=True) for run in so_far.p.campaign.runs)
+    other, ranked = _selected(prepare(replace(so_far.p.campaign, runs=runs), hold_out))
+    late = not other.loud and _named(other) == {LATE, *_named(so_far)}
+    return (other, ranked) if late else (so_far, found)
 
 
 def _adds(other: Selected, so_far: Selected) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.floor.neighbours import neighbours
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
@@ -74,6 +75,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         by_run |= _never_compared(eq, e, channel, among, found)
         local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
+    if eq.runs[0].homed and (scatter_of_zeros := about_a_line(solution)) is not None:
+        local["A"] = scatter_of_zeros
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)

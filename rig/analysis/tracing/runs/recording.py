@@ -54,6 +54,7 @@ class Recording(Once):
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
     closely: bool = False  # whether the rows around a reversal are looked at in which friction has no sure sign
+    homed: bool = False  # whether its zeros are those of all others, but for what its speed makes of them
 
     @property
     def knows(self) -> frozenset[str]:

@@ -25,6 +25,7 @@ from rig.model.effect import Array
 from rig.model.effects import LIBRARY
 
 SAME_ORDER: Final = 0.05  # of a turn
+QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
 def decide(
@@ -157,6 +158,8 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
     sentence = lacks(names, before, after)
     if all(name in p.own.made and not p.own.made[name].keys() & p.held_out.floors.keys() for name in names):
         sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
+    elif p.eq.runs[0].homed and after > QUIETER * before:
+        sentence = f"The model lacks {in_words(names)}: the zeros of runs lie on one line over their speed."
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."
     status = Status.AMBIGUOUS if rivals else Status.EXPLAINED

@@ -1,0 +1,32 @@
+"""A delay that shows in the zeros of runs alone is named where they lie on a line over the speed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rig.analysis.tracing.floor.homed import about_a_line
+from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.trace import trace
+from tests.blind.cases import Request
+from tests.blind.generate import write_case
+
+
+@pytest.mark.slow
+def test_a_load_angle_read_late_is_named_though_every_run_has_a_zero_of_its_own(tmp_path: Path) -> None:
+    write_case(Request("single", 7, "paper_once", "channel_time_skew", "load_late", 3.0), tmp_path, "case")
+    hidden = json.loads((tmp_path / "truth" / "case.json").read_text())["hidden"][0]["parameters"]
+    found = trace(tmp_path / "case")
+    assert (found.verdict.status, found.verdict.effects) == (Status.EXPLAINED, ("channel_time_skew",))
+    late = found.effects[0].parameters[0]
+    assert (late.name, late.value) == ("skew_theta_l", pytest.approx(hidden["late_s"], rel=0.3))
+
+
+@pytest.mark.slow
+def test_zeros_that_follow_no_speed_are_every_runs_own(shared: Path) -> None:
+    p = prepare(read_campaign(shared / "cases" / "open-1"), ())
+    assert about_a_line(p.baseline) is None
