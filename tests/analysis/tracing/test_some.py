@@ -58,7 +58,7 @@ def test_of_a_piece_nothing_is_asked_of_nothing_is_made() -> None:
 def test_what_some_rows_brought_is_fitted_to_all_of_them(
     tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`_looked_again` does not fit it once more."""
+    """`searched.beside` does not fit it once more."""
     monkeypatch.setattr("rig.analysis.tracing.fit.some.MOST", 4000)
     p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-5", RUNS, ())), ())
     runs = p.split.fitted

@@ -1,0 +1,76 @@
+"""A search and its selection: which effects the data want beside the baseline, once over what is prepared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rig.analysis.tracing.fit.bank import Bank, fill, reach
+from rig.analysis.tracing.fit.encoder_lines import with_lines
+from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.search import Found, relawed, still
+from rig.analysis.tracing.fit.some import search_some, some
+from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.floor.own import find
+from rig.analysis.tracing.prepared import Prepared, built
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
+from rig.analysis.tracing.selection.further import select_further
+from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certain, select
+from rig.analysis.tracing.workers import give_back
+from rig.model.effect import Reach
+from rig.model.effects import CATALOGUE
+
+
+def searched(p: Prepared) -> tuple[Selected, Found]:
+    """What stands of all that was searched for, and the candidates of the library."""
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    start = fit(design(p.eq, (), runs))
+    quiet = still(start, p.floors)
+    covered = with_lines(covered, start, runs)
+    candidates = [
+        *CATALOGUE.values(),
+        *(confounder.effect for confounder in CONFOUNDERS.values() if confounder.searched),
+    ]
+    # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
+    bank = fill(some(p.eq.afresh(), runs), candidates, runs, covered)
+    found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
+    give_back()
+    again, found = _again(p, found, bank, covered)
+    give_back()
+    selected = select(again, found, runs, covered)
+    if not quiet:
+        selected = select_further(selected, found, bank, runs, covered)
+    if (quiet or is_calm(p)) and not is_certain(selected):
+        found = Found(start, found.ranking)
+        selected = select(p, found, runs, covered)
+    del bank  # half a gigabyte, and the report is made by two processes
+    give_back()
+    return selected, replace(found, ranking=of_the_library(found.ranking))
+
+
+def _again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
+    """What each run has to itself and the floor, looked for beside the effects that were found, and what they uncover.
+
+    A large effect in the model's want hides lost counts, looks like them, and makes repeats differ.
+    """
+    if not found.solution.design.terms:
+        return p, found
+    again, s = beside(p, found.solution, covered, found.rough)
+    return again, search_some(s.design, bank, p.split.fitted, covered, again.floors, ranking=found.ranking)
+
+
+def beside(p: Prepared, s: Solution, covered: Reach, rough: bool = False) -> tuple[Prepared, Solution]:
+    """Prepared anew beside effects that were found, and they fitted to that. What a `rough` search found was fitted to
+    all rows just now."""
+    runs = p.split.fitted
+    eq = s.design.eq
+    free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
+    own = find(free, p.split)
+    columns = own.columns()
+    same = rough and not eq.own and not columns
+    with_own = s if same else fit(design(replace(eq, own=columns), s.design.terms, runs))
+    measured = quieter(p.measured, measure(with_own, runs))
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    again = replace(built(p.campaign, p.split, eq, measured, own), first=p.first)
+    return again, relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)

@@ -1,0 +1,98 @@
+"""Second looks at a campaign, each at what the first leaves out, where something outside of the equations asks for it.
+
+Both can only add: the first selection stands unless the look names what it was for, beside all that had a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+from rig.analysis.tracing.fit.bank import reach
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.model import design, extended, fit
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, reduced, settled
+from rig.analysis.tracing.floor.homed import about_a_line
+from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.building_up import builds_up
+from rig.analysis.tracing.runs.campaign import Campaign
+from rig.analysis.tracing.searched import beside, searched
+from rig.analysis.tracing.selection.selected import Selected, select
+from rig.analysis.tracing.thresholds import SHADOW
+from rig.model.effect import Reach
+from rig.model.effects.channel_time_skew import ChannelTimeSkew
+from rig.model.effects.presliding_friction import MOTOR, PreslidingFriction
+
+BUILDS_UP: Final = PreslidingFriction()
+LATE: Final = ChannelTimeSkew.name
+
+
+def second_looks(
+    selected: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]
+) -> tuple[Selected, Found]:
+    """What stands after both: around reversals, and at the zeros of runs."""
+    fitted = [selected.p.eq.runs[i] for i in selected.p.split.fitted]
+    if BUILDS_UP.name not in names(selected) and builds_up(fitted):
+        selected, found = looked_closely(selected, found, campaign, hold_out)
+    if LATE not in names(selected) and about_a_line(selected.solution) is not None:
+        selected, found = with_homed_encoders(selected, found, campaign, hold_out)
+    return selected, found
+
+
+def looked_closely(
+    so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]
+) -> tuple[Selected, Found]:
+    """Friction that builds up beside what stands, with the rows around reversals that no equation holds in where
+    friction jumps."""
+    p = prepare(replace(campaign, runs=tuple(replace(run, closely=True) for run in campaign.runs)), hold_out)
+    runs = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in runs])
+    d = design(p.eq, so_far.solution.design.terms, runs)
+    shapes = [Term(BUILDS_UP, shape) for shape in BUILDS_UP.shapes(covered) if shape[0] == MOTOR]
+    if not shapes:
+        return so_far, found
+    first = max(shapes, key=lambda term: fit(extended(d, term, runs)).gain)
+    p, s = beside(p, settled(refine(d, first, runs, covered)[1], runs, covered), covered)
+    other = select(p, Found(s, found.ranking), runs, covered)
+    if not _adds(other, so_far):
+        return so_far, found
+    return _out_of_its_shadow(other, found, runs, covered), found
+
+
+def _out_of_its_shadow(other: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without what had a name before for what is left of friction that builds up, if nothing is left without it."""
+    mine = next(score.size for score in other.scores if score.name == BUILDS_UP.name)
+    small = {score.name for score in other.scores if SHADOW * score.size < mine}
+    d = other.solution.design
+    gone = [i for i, term in enumerate(d.terms) if term.name in small]
+    if not gone:
+        return other
+    fewer = select(other.p, Found(fit(reduced(d, gone)), found.ranking), runs, covered)
+    return other if fewer.loud or BUILDS_UP.name not in names(fewer) else fewer
+
+
+def _adds(other: Selected, so_far: Selected) -> bool:
+    """Whether what builds up is named now, beside all that had a name before but for what lay in its shadow."""
+    mine = next((score for score in other.scores if score.name == BUILDS_UP.name), None)
+    if mine is None or (other.loud and not so_far.loud):
+        return False
+    lost = [score for score in so_far.scores if score.name not in names(other)]
+    return all(SHADOW * score.size < mine.size for score in lost)
+
+
+def with_homed_encoders(
+    so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]
+) -> tuple[Selected, Found]:
+    """The same where what shifts a run's zero is no zero of its own. It counts where it names a reading that comes late
+    and nothing else more, and explains everything."""
+    runs = tuple(replace(run, homed=True) for run in so_far.p.campaign.runs)
+    other, ranked = searched(prepare(replace(campaign, runs=runs), hold_out))
+    late = not other.loud and names(other) == {LATE, *names(so_far)}
+    return (other, ranked) if late else (so_far, found)
+
+
+def names(selected: Selected) -> set[str]:
+    """Effects that stand."""
+    return {term.name for term in selected.solution.design.terms}
