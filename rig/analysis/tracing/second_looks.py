@@ -19,6 +19,7 @@ from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.building_up import builds_up
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.searched import beside, searched
+from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, select
 from rig.analysis.tracing.thresholds import SHADOW
 from rig.model.effect import Reach
@@ -34,9 +35,9 @@ def second_looks(
 ) -> tuple[Selected, Found]:
     """What stands after both: around reversals, and at the zeros of runs."""
     fitted = [selected.p.eq.runs[i] for i in selected.p.split.fitted]
-    if BUILDS_UP.name not in names(selected) and builds_up(fitted):
+    if BUILDS_UP.name not in selected.names and builds_up(fitted):
         selected, found = looked_closely(selected, found, campaign, hold_out)
-    if LATE not in names(selected) and about_a_line(selected.solution) is not None:
+    if LATE not in selected.names and about_a_line(selected.solution) is not None:
         selected, found = with_homed_encoders(selected, found, campaign, hold_out)
     return selected, found
 
@@ -63,23 +64,32 @@ def looked_closely(
 
 def _out_of_its_shadow(other: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
     """Without what had a name before for what is left of friction that builds up, if nothing is left without it."""
-    mine = next(score.size for score in other.scores if score.name == BUILDS_UP.name)
-    small = {score.name for score in other.scores if SHADOW * score.size < mine}
+    mine = _built_up(other)
+    small = {score.name for score in other.scores if mine is not None and _in_its_shadow(score, mine)}
     d = other.solution.design
     gone = [i for i, term in enumerate(d.terms) if term.name in small]
     if not gone:
         return other
     fewer = select(other.p, Found(fit(reduced(d, gone)), found.ranking), runs, covered)
-    return other if fewer.loud or BUILDS_UP.name not in names(fewer) else fewer
+    return other if fewer.loud or BUILDS_UP.name not in fewer.names else fewer
 
 
 def _adds(other: Selected, so_far: Selected) -> bool:
     """Whether what builds up is named now, beside all that had a name before but for what lay in its shadow."""
-    mine = next((score for score in other.scores if score.name == BUILDS_UP.name), None)
+    mine = _built_up(other)
     if mine is None or (other.loud and not so_far.loud):
         return False
-    lost = [score for score in so_far.scores if score.name not in names(other)]
-    return all(SHADOW * score.size < mine.size for score in lost)
+    lost = [score for score in so_far.scores if score.name not in other.names]
+    return all(_in_its_shadow(score, mine) for score in lost)
+
+
+def _built_up(selected: Selected) -> HeldOutScore | None:
+    return next((score for score in selected.scores if score.name == BUILDS_UP.name), None)
+
+
+def _in_its_shadow(one: HeldOutScore, mine: HeldOutScore) -> bool:
+    """Whether an effect acts where the motor's friction does, and is a tenth of it: in other channels it is another."""
+    return SHADOW * one.size < mine.size and {c for _, c in one.ground} <= {"M", "R"}
 
 
 def with_homed_encoders(
@@ -89,10 +99,5 @@ def with_homed_encoders(
     and nothing else more, and explains everything."""
     runs = tuple(replace(run, homed=True) for run in so_far.p.campaign.runs)
     other, ranked = searched(prepare(replace(campaign, runs=runs), hold_out))
-    late = not other.loud and names(other) == {LATE, *names(so_far)}
+    late = not other.loud and other.names == {LATE, *so_far.names}
     return (other, ranked) if late else (so_far, found)
-
-
-def names(selected: Selected) -> set[str]:
-    """Effects that stand."""
-    return {term.name for term in selected.solution.design.terms}

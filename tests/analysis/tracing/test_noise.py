@@ -26,7 +26,8 @@ GAIN = 2e-3  # relative
 def run_at(speed: float, load: float) -> Any:
     pieces = (SimpleNamespace(torque=np.full(9, load)),)
     said = f"speed {speed} load {load}"
-    return SimpleNamespace(procedure="speed", said=said, turning=speed, locked=False, has=(), pieces=pieces)
+    motion = {"turning": speed, "mean_torque": load}
+    return SimpleNamespace(procedure="speed", said=said, **motion, locked=False, has=(), pieces=pieces)
 
 
 def campaign() -> Any:

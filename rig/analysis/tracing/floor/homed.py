@@ -15,15 +15,13 @@ from rig.analysis.tracing.floor.offsets import offset
 from rig.model.effect import MEASURED
 
 RUNS: Final = 5  # that turn freely
-CLEAR: Final = (
-    12.0  # standard deviations of the slope: delays have 20 and more, drift and scale errors up to 12 but for one
-)
+CLEAR: Final = 12.0  # standard deviations of the slope: delays have 20 and more
 LEFT: Final = 0.35  # of their scatter, beside the line: what goes with the way alone leaves half
 
 
 def about_a_line(s: Solution) -> float | None:
     """Scatter [rad] of the zeros of fitted runs about a line over the speed of the output; None where they lie on none,
-    where a run is too few, or where the torque, which winds the gear up with the speed, was not measured."""
+    where runs are too few, or where the torque, which winds the gear up with the speed, was not measured."""
     eq = s.design.eq
     runs = [i for i in sorted({i for i, c in s.keys if c == "A"}) if not eq.runs[i].locked]
     if len(runs) < RUNS or any(not eq.runs[i].has >= MEASURED for i in runs):

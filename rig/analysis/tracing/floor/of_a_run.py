@@ -103,9 +103,7 @@ def _at_other_conditions(same: Mapping[int, float], eq: Equations, run: int) -> 
 
 def _conditions(eq: Equations, run: int) -> tuple[float, float]:
     """Mean |ω_m| and mean torque of a run, both squared."""
-    torque = np.concatenate([p.torque for p in eq.runs[run].pieces])
-    mean = float(np.nanmean(torque)) if np.isfinite(torque).any() else 0.0
-    return eq.runs[run].turning ** 2, mean**2
+    return eq.runs[run].turning ** 2, eq.runs[run].mean_torque ** 2
 
 
 def _differ(square: Array) -> int:

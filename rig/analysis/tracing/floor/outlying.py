@@ -46,6 +46,4 @@ def _is_far(eq: Equations, one: Scatter, others: Sequence[Scatter]) -> bool:
 def _conditions(eq: Equations, pair: Scatter) -> Array:
     """Mean speed [rad/s] and mean torque [N·m] of a pair, (2,); a little torque is none."""
     run = eq.runs[pair.pair[0]]
-    torque = np.concatenate([p.torque for p in run.pieces])
-    mean = abs(float(np.nanmean(torque))) if np.isfinite(torque).any() else 0.0
-    return np.array([max(run.turning, 1e-9), max(mean, TORQUE)])
+    return np.array([max(run.turning, 1e-9), max(abs(run.mean_torque), TORQUE)])

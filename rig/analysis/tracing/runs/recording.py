@@ -71,6 +71,12 @@ class Recording(Once):
         """Mean |speed| of the motor, rad/s."""
         return float(np.mean([np.mean(np.abs(piece.omega_m)) for piece in self.pieces]))
 
+    @cached_property
+    def mean_torque(self) -> float:
+        """N·m through the gear, 0 where it is not known."""
+        torque = np.concatenate([piece.torque for piece in self.pieces])
+        return float(np.nanmean(torque)) if np.isfinite(torque).any() else 0.0
+
     def noisier(self, seed: int) -> Recording:
         """The same with its own sensor noise added once more: what noise does to columns is the difference."""
         rng = np.random.default_rng(seed)

@@ -35,6 +35,11 @@ class Selected:
     words: Words
 
     @property
+    def names(self) -> set[str]:
+        """Effects that stand."""
+        return {term.name for term in self.solution.design.terms}
+
+    @property
     def loud(self) -> bool:
         """Whether more is left on the held-out runs than may be."""
         return is_loud(self.p.held_out, self.solution, self.held)
