@@ -11,7 +11,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.selection.elimination import unresolved
-from rig.analysis.tracing.selection.score import HeldOutScore, unsteadiness
+from rig.analysis.tracing.selection.score import HeldOutScore, overall, unsteadiness
 from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
 from tests.contract.test_effects import REACH
@@ -119,3 +119,23 @@ def test_a_mode_damped_until_it_is_no_peak_is_none_and_makes_no_other_ones_scale
     assert found(50.0, (48.0, 52.0), zeta=(0.4,)) == ["torsional_mode"]
     assert found(50.0, (6.0, 165.0), (48.0, 52.0), zeta=(0.29, 0.4)) == ["torsional_mode"]
     assert found(50.0, (6.0, 165.0), (48.0, 52.0), zeta=(0.29, 0.04)) == []
+
+
+def held(**rows: int) -> Any:
+    """Blocks by channel and run, as `M0`; run 9 has a locked output."""
+    keys = {(int(name[1:]), name[0]): np.zeros(n) for name, n in rows.items()}
+    return SimpleNamespace(y=keys, eq=SimpleNamespace(runs={i: SimpleNamespace(locked=i == 9) for i in range(10)}))
+
+
+def test_an_effect_is_as_large_as_in_the_channel_it_does_most_in_over_all_its_runs() -> None:
+    many_rows, few = {(0, "A"): 4000.0}, {(0, "R"): 400.0}
+    d = held(A0=4000, A1=12000, R0=25)
+    assert overall(many_rows, d) == pytest.approx(0.5)  # run 1 has none of it
+    assert overall(few, d) == pytest.approx(4.0)
+    assert overall(many_rows | few, d) == pytest.approx(4.0)
+
+
+def test_the_torque_that_holds_a_locked_output_counts_only_for_what_acts_nowhere_else() -> None:
+    d = held(M0=100, M9=100)
+    assert overall({(9, "M"): 10_000.0, (0, "M"): 100.0}, d) == pytest.approx(1.0)
+    assert overall({(9, "M"): 10_000.0}, d) == pytest.approx(np.sqrt(50.0))

@@ -42,7 +42,7 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 
     def with_(names: list[str], loud: bool) -> Any:
-        scores = [SimpleNamespace(name=name, work=work[name]) for name in names]
+        scores = [SimpleNamespace(name=name, overall=work[name]) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=names)
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:

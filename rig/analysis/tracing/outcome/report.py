@@ -103,8 +103,8 @@ def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[d
     """The share of the error that each effect of the model removes, and their names, the one that does most first."""
     own = own_scores(p, s)
     shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
-    work = {score.name: score.work for score in scores} | {name: removed for name, (_, removed) in own.items()}
-    return shares, tuple(sorted(shares, key=lambda name: -work[name]))
+    does = {score.name: score.overall for score in scores} | {name: much for name, (_, much) in own.items()}
+    return shares, tuple(sorted(shares, key=lambda name: -does[name]))
 
 
 def _with_a_curve(

@@ -13,12 +13,13 @@ from rig.analysis.tracing.floor.repeats import alike
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.held_out import unseen
+from rig.analysis.tracing.selection.score import overall
 from rig.model.effect import Array
 
 
 def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
-    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and how
-    much that is, in squares of the floor. Where no held-out run has any, of the fitted runs' excess, as far as they
+    """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and its
+    RMS over the floor, overall. Where no held-out run has any, of the fitted runs' excess, as far as they
     have repeats that show none of it: it is read from single runs in any case, and nothing is foretold."""
     held, out = unseen(s, p.held_out), {}
     for name, mine in p.own.made.items():
@@ -34,11 +35,13 @@ def _taken(
     p: Prepared, s: Solution, d: Design, name: str, keys: list[Key], floors: Mapping[Key, float]
 ) -> tuple[float, float]:
     """From those blocks of a design that has the columns, beside one without them."""
+    if not keys:
+        return 0.0, 0.0
     others = replace(d.eq, own=p.own.without([name]).columns())
     bare = design(others, s.design.terms, sorted({run for run, _ in d.y}))
-    before, after = (sum(_square(at, s, key) / floors[key] ** 2 for key in keys) for at in (bare, d))
-    n = sum(d.y[key].size for key in keys)
-    return (float((before - after) / max(before - n, 0.02 * n)), before - after) if keys else (0.0, 0.0)
+    before, after = ({key: _square(at, s, key) / floors[key] ** 2 for key in keys} for at in (bare, d))
+    gone, n = {key: before[key] - after[key] for key in keys}, sum(d.y[key].size for key in keys)
+    return sum(gone.values()) / max(sum(before.values()) - n, 0.02 * n), overall(gone, d)
 
 
 def _square(d: Design, s: Solution, key: Key) -> float:

@@ -43,8 +43,9 @@ class HeldOutScore:
     ratio that remains there. `true` is what it takes away over what it would if it were all real, `unsteady` how much
     the size that single runs want differs from the one all have (RMS, relative, beyond what noise makes), `apart` the
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
-    largest ratio that remains in a channel in which it acts at all, `work` its sum of squares over the floor's. `runs`
-    fitted ones show it, or so many stretches of a lone one, between which its size differs by `stretched`."""
+    largest ratio that remains in a channel in which it acts at all, `overall` its RMS over the floor over all runs of
+    the channel it does most in. `runs` fitted ones show it, or so many stretches of a lone one, between which its size
+    differs by `stretched`."""
 
     name: str
     share: float
@@ -56,7 +57,7 @@ class HeldOutScore:
     apart: float = 0.0
     harm: float = 1.0
     anywhere: float = 0.0
-    work: float = 0.0
+    overall: float = 0.0
     runs: int = SEVERAL
     stretched: float = 0.0
 
@@ -140,10 +141,21 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         apart,
         harm(at, bare, whole),
         max((at.ratio(whole, keys) for keys in acts if keys), default=0.0),
-        sum(r**2 * whole[key].size for key, r in size.items()),
+        overall({key: r**2 * whole[key].size for key, r in size.items()}, d),
         shown,
         stretched,
     )
+
+
+def overall(work: Mapping[Key, float], d: Design) -> float:
+    """RMS over the floor, over all runs of a channel in the one where it is largest, of sums of squares by block. The
+    motor torque of a locked output is left out where there is other: held against a full load, an effect shows there
+    that hardly does in a gear that turns."""
+    turning = [key for key in d.y if key[1] != "M" or not d.eq.runs[key[0]].locked]
+    counted = turning if any(key in work for key in turning) else list(d.y)
+    blocks = [[key for key in counted if key[1] == c] for c in CHANNELS]
+    squares = [(sum(work.get(key, 0.0) for key in keys), sum(d.y[key].size for key in keys)) for keys in blocks if keys]
+    return max(float(np.sqrt(max(square, 0.0) / rows)) for square, rows in squares)
 
 
 def _in_stretches(s: Solution, rest: Solution, floors: Mapping[Key, float]) -> tuple[float, int]:

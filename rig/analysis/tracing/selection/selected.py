@@ -83,7 +83,7 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     insignificant = [
         score for score in selected.scores if (words := selected.words.get(score.name)) and words[0].holds_zero
     ]
-    for least in sorted(insignificant, key=lambda score: score.work):
+    for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         if (selected.loud or not fewer.loud) and len(fewer.scores) == len(selected.scores) - 1:
             return _without_insignificant(fewer, runs, covered)
