@@ -30,13 +30,13 @@ def quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
     return max(SLOWEST, BANDWIDTH * FINE / step) if step > COARSE else BANDWIDTH
 
 
-def noise_of(name: str, x: Array, encoders: Mapping[str, float]) -> float:
-    """RMS noise of a reading; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
+def noise_of(name: str, x: Array, encoders: Mapping[str, float], t: Array | None = None) -> float:
+    """RMS noise of a reading, taken at the times `t` where its clock is uneven; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
     less: while it moves by less than a count a row it looks free of noise."""
     counts = float(encoders.get("motor_counts_per_rev") or 0.0)
     if name == "theta_m" and counts > 0:
-        return float(min(max(rough(x), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
-    return rough(x)
+        return float(min(max(rough(x, t), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
+    return rough(x, t)
 
 
 def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:
@@ -45,19 +45,29 @@ def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:
     return min(2 * np.pi / counts, smallest_step(theta_m)) if counts > 0 else 0.0
 
 
-def rough(x: Array) -> float:
-    """RMS of the white noise in a reading (n,).
+def rough(x: Array, t: Array | None = None) -> float:
+    """RMS of the white noise in a reading (n,), at the times `t` (n,) in s where they are uneven.
 
     The fourth difference of white noise has 70 times its variance; reversals and jumps are in the largest few, which
     are left out. Of a reading in counts it takes a handful of values: their mean is as good as ever, the median is one
-    of them, up to a quarter off, and with it the noise that a fit allows for in an acceleration.
+    of them, up to a quarter off, and with it the noise that a fit allows for in an acceleration. Differences row by row
+    on a clock that is early or late would take the motion between for noise: a J_l a tenth off.
     """
-    d = np.abs(np.diff(x, 4))
+    d = np.abs(np.diff(x, 4) / 70**0.5 if t is None else _divided(x, t))
     d = d[np.isfinite(d)]
     if not d.size:
         return float("nan")
     kept = np.partition(d, k := min(int(KEPT * d.size), d.size - 1))[: k + 1]
-    return float(np.mean(kept) / (OF_KEPT * np.sqrt(70.0)))
+    return float(np.mean(kept) / OF_KEPT)
+
+
+def _divided(x: Array, t: Array) -> Array:
+    """Divided differences of five rows each (n - 4,): nothing of a cubic is left in them, and of white noise its RMS."""
+    at = [t[i : t.size - 4 + i] for i in range(5)]
+    with np.errstate(divide="ignore", invalid="ignore"):  # two rows at one time: not finite, and left out
+        weights = [1.0 / np.prod([at[i] - at[j] for j in range(5) if j != i], axis=0) for i in range(5)]
+        sum_of = sum(w * x[i : x.size - 4 + i] for i, w in enumerate(weights))
+        return np.asarray(sum_of / np.sqrt(sum(w * w for w in weights)))
 
 
 def smallest_step(x: Array) -> float:
