@@ -1,6 +1,6 @@
 """Second looks at a campaign, each at what the first leaves out, where something outside of the equations asks for it.
 
-Both can only add: the first selection stands unless the look names what it was for, beside all that had a name.
+All can only add: the first selection stands unless the look names what it was for, beside all that had a name.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.building_up import builds_up
 from rig.analysis.tracing.runs.campaign import Campaign
+from rig.analysis.tracing.runs.giving_way import gives_way
 from rig.analysis.tracing.searched import beside, searched
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, select
@@ -25,18 +26,22 @@ from rig.analysis.tracing.thresholds import SHADOW
 from rig.model.effect import Reach
 from rig.model.effects.channel_time_skew import ChannelTimeSkew
 from rig.model.effects.presliding_friction import MOTOR, PreslidingFriction
+from rig.model.effects.support_compliance import StiffSupport
 
 BUILDS_UP: Final = PreslidingFriction()
+MOVES: Final = StiffSupport()
 LATE: Final = ChannelTimeSkew.name
 
 
 def second_looks(
     selected: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]
 ) -> tuple[Selected, Found]:
-    """What stands after both: around reversals, and at the zeros of runs."""
+    """What stands after all: around reversals, at the load angle of lock tests, and at the zeros of runs."""
     fitted = [selected.p.eq.runs[i] for i in selected.p.split.fitted]
     if BUILDS_UP.name not in selected.names and builds_up(fitted):
         selected, found = looked_closely(selected, found, campaign, hold_out)
+    if MOVES.name not in selected.names and gives_way(fitted):
+        selected, found = unwound(selected, found, campaign, hold_out)
     if LATE not in selected.names and about_a_line(selected.solution) is not None:
         selected, found = with_homed_encoders(selected, found, campaign, hold_out)
     return selected, found
@@ -90,6 +95,21 @@ def _built_up(selected: Selected) -> HeldOutScore | None:
 def _in_its_shadow(one: HeldOutScore, mine: HeldOutScore) -> bool:
     """Whether an effect acts where the motor's friction does, and is a tenth of it: in other channels it is another."""
     return SHADOW * one.size < mine.size and {c for _, c in one.ground} <= {"M", "R"}
+
+
+def unwound(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
+    """A housing that moves beside what stands, with the load angle of lock tests by itself. It counts where it is named
+    beside all that had a name, and as much is explained."""
+    runs = tuple(replace(run, unwound=run.locked) for run in so_far.p.campaign.runs)
+    p = prepare(replace(campaign, runs=runs), hold_out)
+    fitted = p.split.fitted
+    covered = reach([p.eq.runs[i] for i in fitted])
+    d = design(p.eq, so_far.solution.design.terms, fitted)
+    (shape,) = MOVES.shapes(covered)
+    p, s = beside(p, settled(fit(extended(d, Term(MOVES, shape), fitted)), fitted, covered), covered)
+    other = select(p, Found(s, found.ranking), fitted, covered)
+    counts = other.names == {MOVES.name, *so_far.names} and (so_far.loud or not other.loud)
+    return (other, found) if counts else (so_far, found)
 
 
 def with_homed_encoders(

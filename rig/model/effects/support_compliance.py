@@ -75,3 +75,37 @@ class SupportCompliance(Effect):
     def plausible(self, fit: Fit) -> bool:
         """It gives way to a torque."""
         return bool(fit.coefficients[0] > 0)
+
+
+class StiffSupport(SupportCompliance):
+    """The same far below any resonance, which nothing shows: with encoders on the housing it is compliance alone. In a
+    gear that turns the baseline's K has it; a locked output's own angle shows it apart."""
+
+    shape_names: ClassVar[tuple[str, ...]] = ()
+    loose: ClassVar[tuple[bool, ...]] = ()
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
+        """Nothing is loose."""
+        return ()
+
+    def beyond(self, shape: Shape, reach: Reach) -> bool:
+        """There is no mode."""
+        return False
+
+    def has_state(self) -> bool:
+        """It follows the torque."""
+        return False
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column, in both readings."""
+        moved = np.nan_to_num(signals.torque)[:, None]
+        return {Port.READS_THETA_L: moved, Port.READS_THETA_M: moved}
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """Compliance of the support."""
+        compliance = np.eye(1, fit.covariance.shape[0])[0]
+        return (parameter("compliance", fit.coefficients[0], fit.half_width(compliance), "rad/(N·m)"),)

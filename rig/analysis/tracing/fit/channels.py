@@ -156,7 +156,7 @@ def _derived(run: Recording, channel: str) -> bool:
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
-    make = {"A": _angle, "M": _motor, "R": _motor, "L": _load}[channel]
+    make = {"A": _held if run.unwound else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])
@@ -192,6 +192,12 @@ def _angle(s: Signals, f: Smoother, has: Has) -> Columns:
     if "tau_l" not in has:  # what the load's bearings take is missing in T
         columns |= {"B_l": f(s.theta_l, 1) / s.gear.K, "tau_cl": f(s.way) / s.gear.K}
     return y, columns
+
+
+def _held(s: Signals, f: Smoother, has: Has) -> Columns:
+    """A of an output that is locked, without the wind-up: what its encoder reads, which should be nothing."""
+    y = f(-s.theta_l)
+    return y, {"c_0": np.ones_like(y)}
 
 
 def third_rate(run: Recording) -> Array:

@@ -230,7 +230,9 @@ def columns(run: Recording, term: Term, kept: dict[str, Rows]) -> dict[str, Arra
 def unmasked_columns(run: Recording, term: Term, kept: Collection[str]) -> dict[str, Array]:
     """Columns of `term` in the channels `kept`, pieces joined, all rows (n, k)."""
     acts = acting(run, term)
-    made = [footprint(act, piece, run.smoother, run.knows) for act, piece in zip(acts, run.pieces, strict=True)]
+    made = [
+        footprint(act, piece, run.smoother, run.knows, run.unwound) for act, piece in zip(acts, run.pieces, strict=True)
+    ]
     if len(made) == 1:
         return {c: made[0][c] for c in kept if c in made[0]}
     return {c: np.concatenate([m[c] for m in made]) for c in kept if c in made[0]}

@@ -37,6 +37,7 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     found = [sentence for channel, sentence in SENSORS.items() if channel not in has]
     moving = [run for run in runs if run.procedure != "standstill"]
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
+    found += _held_output(moving)
     return tuple(found)
 
 
@@ -95,6 +96,14 @@ def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     speeds = [run.turning / RPM for run in runs if not run.locked]
     return [f"All runs turn at about {np.mean(speeds):.3g} rpm: constant friction, damping, falling friction and drag "
             "cannot be told apart, nor a real kinematic error from an encoder's."]  # fmt: skip
+
+
+def _held_output(runs: Sequence[Recording]) -> list[str]:
+    if not any(run.unwound for run in runs):
+        return []
+    return ["In lock tests the load angle follows the torque, and was compared by itself there. A housing that moves "
+            "under the encoder and a lock that gives way look the same in it: a dial gauge on each tells them apart, "
+            "and the spring is read from the runs that turn."]  # fmt: skip
 
 
 def _one_load(runs: Sequence[Recording]) -> list[str]:

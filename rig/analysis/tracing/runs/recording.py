@@ -55,6 +55,7 @@ class Recording(Once):
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
     closely: bool = False  # whether the rows around a reversal are looked at in which friction has no sure sign
     homed: bool = False  # whether its zeros are those of all others, but for what its speed makes of them
+    unwound: bool = False  # of a locked one: whether its load angle is looked at by itself, not the wind-up
 
     @property
     def knows(self) -> frozenset[str]:

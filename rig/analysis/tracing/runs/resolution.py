@@ -31,8 +31,9 @@ def quiet(theta_m: Array | None, encoders: Mapping[str, float]) -> float:
 
 
 def noise_of(name: str, x: Array, encoders: Mapping[str, float], t: Array | None = None) -> float:
-    """RMS noise of a reading, taken at the times `t` where its clock is uneven; of a motor encoder of known counts no more than rounding: the loop may shake it. And no
-    less: while it moves by less than a count a row it looks free of noise."""
+    """RMS noise of a reading, taken at the times `t` where its clock is uneven; of a motor encoder of known counts no
+    more than rounding: the loop may shake it. And no less: while it moves by less than a count a row it looks free of
+    noise."""
     counts = float(encoders.get("motor_counts_per_rev") or 0.0)
     if name == "theta_m" and counts > 0:
         return float(min(max(rough(x, t), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
@@ -62,7 +63,7 @@ def rough(x: Array, t: Array | None = None) -> float:
 
 
 def _divided(x: Array, t: Array) -> Array:
-    """Divided differences of five rows each (n - 4,): nothing of a cubic is left in them, and of white noise its RMS."""
+    """Divided differences of five rows each (n - 4,): of a cubic nothing is left in them, of white noise its RMS."""
     at = [t[i : t.size - 4 + i] for i in range(5)]
     with np.errstate(divide="ignore", invalid="ignore"):  # two rows at one time: not finite, and left out
         weights = [1.0 / np.prod([at[i] - at[j] for j in range(5) if j != i], axis=0) for i in range(5)]
