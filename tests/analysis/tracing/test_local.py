@@ -9,7 +9,8 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor import steps
-from rig.analysis.tracing.floor.steps import Steps, _jumps, _rested, explained, lost_counts
+from rig.analysis.tracing.floor.jumps import EDGE, among, jumps
+from rig.analysis.tracing.floor.steps import Steps, _rested, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.model.effects.missed_counts import LOAD
@@ -21,7 +22,7 @@ ANY = (0.0, np.inf)
 def test_a_jump_is_found_at_its_row_with_its_size(rng: np.random.Generator) -> None:
     e = 4e-6 * rng.standard_normal(4000)
     e[2500:] += 3e-5
-    (found,) = _jumps(e, np.ones(4000, bool), 7.0, ANY)
+    (found,) = jumps(e, np.ones(4000, bool), 7.0, ANY)
     assert abs(found[0] - 2500) <= 4
     assert found[1] == pytest.approx(3e-5, rel=0.2)
 
@@ -29,20 +30,20 @@ def test_a_jump_is_found_at_its_row_with_its_size(rng: np.random.Generator) -> N
 def test_what_comes_back_within_a_second_is_not_lost(rng: np.random.Generator) -> None:
     e = 4e-6 * rng.standard_normal(4000)
     e[2500:2550] += 3e-5
-    assert _jumps(e, np.ones(4000, bool), 7.0, ANY) == []
+    assert jumps(e, np.ones(4000, bool), 7.0, ANY) == []
 
 
 def test_two_losses_in_quick_succession_are_two(rng: np.random.Generator) -> None:
     e = 4e-6 * rng.standard_normal(4000)
     e[2600:] += 3e-5
     e[2700:] += 3e-5
-    assert sorted(at for at, _ in _jumps(e, np.ones(4000, bool), 7.0, ANY)) == pytest.approx([2600, 2700], abs=4)
+    assert sorted(at for at, _ in jumps(e, np.ones(4000, bool), 7.0, ANY)) == pytest.approx([2600, 2700], abs=4)
 
 
 def test_a_jump_where_the_motor_turns_back_is_none(rng: np.random.Generator) -> None:
     e = 4e-6 * rng.standard_normal(4000)
     e[2500:] += 3e-5
-    assert _jumps(e, np.abs(np.arange(4000) - 2500) > 43, 7.0, ANY) == []
+    assert jumps(e, np.abs(np.arange(4000) - 2500) > 43, 7.0, ANY) == []
 
 
 def onward_at(theta: np.ndarray) -> np.ndarray:
@@ -63,10 +64,26 @@ def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() ->
     assert onward_at(30.0 * t + 0.05 * np.sin(60.0 * t))[100:3900].all()
 
 
-def test_noise_drift_and_waves_have_no_jumps(rng: np.random.Generator) -> None:
+def test_noise_drift_and_waves_have_nojumps(rng: np.random.Generator) -> None:
     n = np.arange(4000)
     for e in (0 * n, 1e-8 * n, 2e-5 * np.sin(n / 60)):
-        assert _jumps(e + 4e-6 * rng.standard_normal(n.size), n >= 0, 7.0, ANY) == []
+        assert jumps(e + 4e-6 * rng.standard_normal(n.size), n >= 0, 7.0, ANY) == []
+
+
+def test_jumps_that_stand_in_each_others_windows_are_told_apart(rng: np.random.Generator) -> None:
+    """A walk of lost and found counts at 400 rpm: the windows of a single jump hold several of these."""
+    count, rows = 3.9e-5, [100, 190, 222, 300, 330, 420, 560, 600, 640, 800, 1000, 1030]
+    ways = [1, -1, 1, 2, -1, -1, 1, 1, -1, 2, 1, -1]
+    e = np.zeros(1224)
+    for row, way in zip(rows, ways, strict=True):
+        e[row:] += way * count
+    e += 4e-6 * rng.standard_normal(e.size)
+    everywhere = np.ones(e.size, dtype=bool)
+    alone = jumps(e, everywhere, 4.0, (0.65 * count, 1.35 * count))
+    found = [row for row, _ in among(e, everywhere, alone, count)]
+    assert len(alone) < 6
+    assert len(found) == pytest.approx(len(rows), abs=1)
+    assert all(min(abs(row - true) for true in rows) <= EDGE for row in found)
 
 
 def test_a_line_stands_out_of_its_surroundings_at_its_frequency(rng: np.random.Generator) -> None:
@@ -234,8 +251,8 @@ def test_a_step_that_wander_hides_in_short_means_is_found_in_long_ones(rng: np.r
     e = 5e-6 * wander / np.std(wander)
     e[2500:] += 1e-5
     known = (0.65e-5, 1.35e-5)
-    assert _jumps(e, np.ones(4000, bool), 4.0, known) == []
-    (found,) = _jumps(e, np.ones(4000, bool), 4.0, known, window=steps.FAR)
+    assert jumps(e, np.ones(4000, bool), 4.0, known) == []
+    (found,) = jumps(e, np.ones(4000, bool), 4.0, known, window=steps.FAR)
     assert abs(found[0] - 2500) <= 20
 
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, WINDOW, Mask, among, jumps
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
@@ -18,11 +18,7 @@ from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import EACH_RUN
 from rig.model.effects.missed_counts import LOAD, MOTOR
 
-Mask = npt.NDArray[np.bool_]
-
 LOST = EACH_RUN["missed_counts"]
-WINDOW = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
-FAR = 4 * WINDOW  # rows as far as which what was lost has not come back
 APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
@@ -31,7 +27,6 @@ AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
-EDGE = 3  # rows over which the low-pass spreads a step
 MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
 
 
@@ -62,7 +57,7 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     and goes winds the gear of `compliance` [rad/(N·m)] up, or seems to."""
     keys = [k for k in e if k[1] == "A"]
     onward = {key: _onward(eq, key) for key in keys}
-    sure = [abs(size) for key in keys for _, size in _jumps(e[key], onward[key], STEP, (0.0, np.inf))]
+    sure = [abs(size) for key in keys for _, size in jumps(e[key], onward[key], STEP, (0.0, np.inf))]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
     rows: dict[int, tuple[int, ...]] = {}
@@ -70,7 +65,9 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     for key in keys if sure else []:
         where = onward[key] if len(sure) < MANY else onward[key] | _for_good(e[key], usual)
         again = (e[key], where, STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
-        found = _jumps(*again) or _jumps(*again, window=FAR)  # over longer means wander counts less
+        found = jumps(*again) or jumps(*again, window=FAR)
+        if len(sure) >= MANY:
+            found = among(e[key], onward[key], found, usual)
         found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
         if found and _lasts(eq, e, key, found):
             rows[key[0]] = tuple(at for at, _ in found)
@@ -185,41 +182,6 @@ def _filled(way: Array) -> Array:
     """Zeros replaced by the way before them: two rows on one count are no turning back."""
     at = np.maximum.accumulate(np.where(way != 0, np.arange(way.size), 0))
     return np.asarray(way[at])
-
-
-def _jumps(
-    e: Array, onward: Mask, least: float, between: tuple[float, float], window: int = WINDOW
-) -> list[tuple[int, float]]:
-    """Row and size of every jump: means of `window` rows on both sides differ, nearly all of it at once and for good.
-
-    `least` in usual differences of such windows, size `between` two bounds [rad]; only where the motor goes `onward`.
-    """
-    if e.size < 6 * window:
-        return []
-    total = np.concatenate([[0.0], np.cumsum(e)])
-    at = np.arange(window + EDGE, e.size - window - EDGE)
-    after = (total[at + EDGE + window] - total[at + EDGE]) / window
-    before = (total[at - EDGE] - total[at - EDGE - window]) / window
-    jump = after - before
-    usual = float(np.median(np.abs(jump))) / 0.6745
-    out: list[tuple[int, float]] = []
-    strength = np.abs(jump) / max(usual, 1e-300)
-    while strength.size and strength.max() > least:
-        top = int(np.argmax(strength))
-        row = int(at[top])
-        near = e[row + EDGE : row + 4 * EDGE].mean() - e[row - 4 * EDGE : row - EDGE].mean()
-        sharp = abs(near - jump[top]) < 0.5 * abs(jump[top])
-        stays = (_mean(total, row + WINDOW, row + FAR) - _mean(total, row - FAR, row - WINDOW)) / jump[top] > 0.5
-        if sharp and stays and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
-            out.append((row, float(jump[top])))
-        strength[max(0, top - window) : top + window] = 0.0
-    return out
-
-
-def _mean(total: Array, first: int, last: int) -> float:
-    """Of rows first..last, as far as there are such, from sums (n + 1,) of all before."""
-    lo, hi = max(first, 0), min(last, total.size - 1)
-    return float((total[hi] - total[lo]) / max(hi - lo, 1))
 
 
 def lost_counts(eq: Equations, steps: Steps, pairs: Sequence[tuple[int, int]]) -> bool:

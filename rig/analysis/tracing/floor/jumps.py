@@ -1,0 +1,77 @@
+"""Sharp jumps of a residual that last, of one run: alone, and where one stands in the window of the next."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.tracing.thresholds import STEP_AGAIN
+from rig.model.effect import Array
+
+Mask = npt.NDArray[np.bool_]
+
+WINDOW: Final = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
+FAR: Final = 4 * WINDOW  # rows: a longer window, over which wander counts less
+EDGE: Final = 3  # rows over which the low-pass spreads a step
+SHORTER: Final = (WINDOW // 2, WINDOW // 4)  # windows for jumps between others
+ROUNDS: Final = 40  # jumps found between others, at most
+ONE, TWO = 0.65, 2.7  # of the usual size, between which they are: one loss, or two at a time
+
+
+def jumps(
+    e: Array, onward: Mask, least: float, between: tuple[float, float], window: int = WINDOW
+) -> list[tuple[int, float]]:
+    """Row and size of every jump: means of `window` rows on both sides differ, nearly all of it at once and for good.
+
+    `least` in usual differences of such windows, size `between` two bounds [rad]; only where the motor goes `onward`.
+    """
+    if e.size < 6 * window:
+        return []
+    total = np.concatenate([[0.0], np.cumsum(e)])
+    at = np.arange(window + EDGE, e.size - window - EDGE)
+    after = (total[at + EDGE + window] - total[at + EDGE]) / window
+    before = (total[at - EDGE] - total[at - EDGE - window]) / window
+    jump = after - before
+    usual = float(np.median(np.abs(jump))) / 0.6745
+    least_far = min(window, WINDOW)
+    far = least_far * FAR // WINDOW  # rows as far as which what was lost has not come back
+    out: list[tuple[int, float]] = []
+    strength = np.abs(jump) / max(usual, 1e-300)
+    while strength.size and strength.max() > least:
+        top = int(np.argmax(strength))
+        row = int(at[top])
+        near = e[row + EDGE : row + 4 * EDGE].mean() - e[row - 4 * EDGE : row - EDGE].mean()
+        sharp = abs(near - jump[top]) < 0.5 * abs(jump[top])
+        stays = (_mean(total, row + least_far, row + far) - _mean(total, row - far, row - least_far)) / jump[top] > 0.5
+        if sharp and stays and onward[row] and between[0] <= abs(jump[top]) <= between[1]:
+            out.append((row, float(jump[top])))
+        strength[max(0, top - window) : top + window] = 0.0
+    return out
+
+
+def among(e: Array, onward: Mask, found: list[tuple[int, float]], usual: float) -> list[tuple[int, float]]:
+    """`found` with jumps of once or twice the `usual` size [rad] that stood in each other's windows."""
+    for _ in range(ROUNDS):
+        left = e - _stairs(e, found)
+        seen = [jump for w in SHORTER for jump in jumps(left, onward, STEP_AGAIN, (ONE * usual, TWO * usual), window=w)]
+        new = [jump for jump in seen if all(abs(jump[0] - row) > 2 * EDGE for row, _ in found)]
+        if not new:
+            break
+        found = sorted([*found, max(new, key=lambda jump: abs(jump[1]))])
+    return found
+
+
+def _stairs(e: Array, found: Sequence[tuple[int, float]]) -> Array:
+    """The stairs with jumps at those rows that come nearest to `e` (n,): its means between them."""
+    edges = [0, *sorted(row for row, _ in found), e.size]
+    return np.concatenate([np.full(b - a, e[a:b].mean()) for a, b in itertools.pairwise(edges) if b > a])
+
+
+def _mean(total: Array, first: int, last: int) -> float:
+    """Of rows first..last, as far as there are such, from sums (n + 1,) of all before."""
+    lo, hi = (min(max(row, 0), total.size - 1) for row in (first, last))
+    return float((total[hi] - total[lo]) / max(hi - lo, 1))
