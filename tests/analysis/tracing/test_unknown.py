@@ -5,10 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.binned import own_excess, straightened
+from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, straightened
 from rig.analysis.tracing.rest.home import plainest
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.past import since_turned
+from rig.analysis.tracing.rest.sudden import turned_since
 from rig.analysis.tracing.rest.unknown import homes
 from rig.model.memory import play
 
@@ -87,6 +88,10 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a second wave that is another one on the way back": (
         "direction",
         lambda at: at["direction"] * np.sin(2 * at["motor_angle"]),
+    ),
+    "a wave generator that slipped between two runs": (
+        "time",
+        lambda at: np.where(at["time"] > 50.0, 1.0, -3.0) * np.sin(2 * at["motor_angle"] + 0.4),
     ),
     "growth over the day": ("time", lambda at: at["time"] / 240 * np.cos(2 * at["motor_angle"])),
 }
@@ -239,3 +244,19 @@ def test_a_channel_that_coefficients_shared_with_another_one_bend_is_straight_be
     dented = Rest(bent.e + 3.0 * (np.abs(at["load"]) > 8.0), run, at, DT, z, believed)
     assert own_excess(dented) > 0.5
     assert plainest(homes(straightened(dented), "M"))[0].coordinate == "load"
+
+
+@pytest.mark.slow
+def test_another_kinematic_error_from_one_run_on_is_one_thing_and_not_what_the_way_or_the_load_makes() -> None:
+    rng = np.random.default_rng(8)
+    at = coordinates(rng)
+
+    def told(e: np.ndarray) -> float:
+        r = Rest(6.0 * e + rng.normal(0, 1, e.size), np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE)
+        found = turned_since(Halves(r, folds(r)), "A")
+        return found.share if found else 0.0
+
+    wave = np.sin(2 * at["motor_angle"] + 0.4)
+    assert told((at["time"] > 50.0) * wave) > 0.95
+    assert told(at["direction"] * wave) < 0.5
+    assert told(at["load"] / 8.0 * wave) < 0.1

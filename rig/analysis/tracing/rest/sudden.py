@@ -7,12 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves
+from rig.analysis.tracing.rest.binned import Halves, solved
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.readings import in_columns, share
 from rig.model.effect import Array
 
+LARGEST: Final = (1, 2, 4)  # orders of a wave generator that stand out: eccentricity, lobes, and what both gears make
 ENDS: Final = 0.03  # of the rows on each side: of less a step is what one run has to itself
 
 
@@ -29,3 +30,29 @@ def since(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home:
     moment = float(r.at["time"][order[int(np.argmax(strength))]])
     read = in_columns(lambda rest: ((rest.at["time"] > moment) * sense(rest))[:, None])
     return Home("time", channel, share(h, read), read=read)
+
+
+def turned_since(h: Halves, channel: str) -> Home | None:
+    """Another kinematic error from one run on: the wave generator slipped on its shaft, or was put in again. A slip
+    within a run is a step of what is left as well."""
+    r = h.rest
+    left = (h.alone[0] + h.alone[1]) / 2
+    starts = sorted(float(r.at["time"][r.run == run].min()) for run in np.unique(r.run))[1:]
+    taken = {moment: _taken(r, left, moment) for moment in starts}
+    if not taken:
+        return None
+    moment = max(taken, key=lambda at: taken[at])
+    read = in_columns(lambda rest: _waves_after(rest, moment))
+    return Home("time", channel, share(h, read), read=read)
+
+
+def _waves_after(r: Rest, moment: float) -> Array:
+    """Waves of the largest orders of the motor angle, after the moment alone, (n, 2k)."""
+    after, angle = r.at["time"] >= moment, r.at["motor_angle"]
+    return np.stack([after * f(order * angle) for order in LARGEST for f in (np.cos, np.sin)], 1)
+
+
+def _taken(r: Rest, left: Array, moment: float) -> float:
+    """Sum of squares they take from what is left."""
+    z = _waves_after(r, moment)
+    return float(np.sum((z @ solved(z.T @ z, z.T @ left)) ** 2))

@@ -16,7 +16,7 @@ from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
-from rig.analysis.tracing.rest.sudden import since
+from rig.analysis.tracing.rest.sudden import since, turned_since
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 from rig.model.effect import Array
 
@@ -130,7 +130,8 @@ def _of_the_output(found: Home, r: Rest) -> Home:
 def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
     """Steps at one moment, said first of all: they have one number. Not where a coordinate by itself does nearly as
     well: all slow runs may have been taken before all fast ones."""
-    steps = [since(h, channel, sense) for sense in SENSES]
+    turned = turned_since(h, channel) if channel == "A" else None
+    steps = [*(since(h, channel, sense) for sense in SENSES), *([turned] if turned else [])]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
     return [replace(step, first=best < PLAIN_ENOUGH * step.share) for step in steps]
 
