@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
     refuse_no_place(args)
     print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
-    print("wait for 'ready': the first start on a machine compiles the plant, ten seconds or more", file=sys.stderr)
+    print("starting: the first start on a machine compiles the plant, ten seconds or more", file=sys.stderr)
     from sim.wire.assembly import Assembly
     from sim.wire.motor import Rating
     from sim.wire.process import Doors, Process

@@ -80,8 +80,10 @@ def _value(field: Field[Any], raw: Any) -> Any:
 
 
 def _listed(text: str) -> Any:
-    """ "(1.0, 0.3)", "[1.0, 0.3]" and "1.0,0.3" as numbers; anything else as it is."""
-    words = [word for word in text.strip().strip("()[]").split(",") if word.strip()]
+    """ "(1.0, 0.3)", "[1.0, 0.3]", "(1.0,)" and "1.0,0.3" as numbers; anything else, with an empty item, as it is."""
+    words = text.strip().strip("()[]").split(",")
+    if len(words) > 1 and not words[-1].strip():
+        words.pop()
     try:
         return [float(word) for word in words]
     except ValueError:

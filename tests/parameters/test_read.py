@@ -23,8 +23,9 @@ def test_one_number_where_a_list_is_written_as_text_is_a_list_of_one(raw: object
     assert isinstance(raw, str) or float(made) == raw
 
 
-def test_one_number_where_a_list_is_wanted_is_a_list_of_one() -> None:
-    assert make(Asked, {"rates": 0.5}, "friction").rates == (0.5,)
+@pytest.mark.parametrize("written", [0.5, "0.5", "(0.5,)"])
+def test_one_number_where_a_list_is_wanted_is_a_list_of_one(written: object) -> None:
+    assert make(Asked, {"rates": written}, "friction").rates == (0.5,)
 
 
 @pytest.mark.parametrize("raw", [True, float("nan"), float("inf"), 1e300, None, ["fast"]])
@@ -43,7 +44,7 @@ def test_a_list_kept_as_text_may_be_written_as_one(written: object) -> None:
     assert make(Asked, {"speeds_rpm": written}, "try").speeds_rpm == "50,60"
 
 
-@pytest.mark.parametrize("written", ["1.0,fast", "", "(1.0, -0.3)"])
+@pytest.mark.parametrize("written", ["1.0,fast", "", "(1.0, -0.3)", "1.0,,3.0"])
 def test_what_is_no_list_of_numbers_above_zero_is_refused(written: str) -> None:
     with pytest.raises(UsageError, match="rates = "):
         make(Asked, {"rates": written}, "try")

@@ -18,6 +18,7 @@ from rig.analysis.orders.revolutions import ROWS_PER_TERM, TERMS, StrokeResult, 
 from rig.core.units import RPM, TURN
 
 SAME_SPEED = 1.15  # strokes whose speeds differ by less are averaged together
+SAME_RATIO = 0.01  # relative: wind-up and kinematic error over a stroke of half an output turn are less
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,22 @@ class KinematicError:
     u_zero: float  # rad, 1 σ of where the motor angle's zero is: one count wide; 0 when its counts are unknown
 
 
+def turns_per_turn(motion: Motion) -> float:
+    """Turns of the motor to one of the load, as both encoders say; nan without a load angle."""
+    if motion.theta_l is None:
+        return float("nan")
+    stride = max(motion.theta_m.size // 20000, 1)
+    return float(measured_ratio(motion.theta_m[::stride], motion.theta_l[::stride]))
+
+
 def angles_disagree(motion: Motion) -> str:
     """Why θ̃ would be nonsense: the two angles do not belong to a gear of this ratio. Empty when they do."""
     if motion.theta_l is None:
         return ""
-    stride = max(motion.theta_m.size // 20000, 1)
-    found = measured_ratio(motion.theta_m[::stride], motion.theta_l[::stride])
-    if abs(found / motion.ratio - 1.0) < 0.01:
+    found = turns_per_turn(motion)
+    if abs(found / motion.ratio - 1.0) < SAME_RATIO:
         return ""
-    if abs(found / motion.ratio + 1.0) < 0.01:
+    if abs(found / motion.ratio + 1.0) < SAME_RATIO:
         return "The load angle runs against the motor: flip the sign of one encoder, θ̃ is twice the motion until then."
     return (
         f"The encoders say {found:.5g} motor turns per load turn, the manifest says {motion.ratio:g}: θ̃ means nothing."

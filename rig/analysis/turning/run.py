@@ -8,7 +8,14 @@ from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Check
 from rig.analysis.kinematic_error import words
-from rig.analysis.kinematic_error.measure import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.kinematic_error.measure import (
+    SAME_RATIO,
+    KinematicError,
+    angles_disagree,
+    groups_by_speed,
+    measure,
+    turns_per_turn,
+)
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.speed import Speed
 from rig.analysis.motion.strokes import Stroke, find_strokes
@@ -61,7 +68,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = found.sentence or "The motor turned, the load angle is missing."
         return
     wrong = angles_disagree(motion)
-    found.checks.append(Check("ratio", not wrong, wrong or f"The encoders agree with the ratio {motion.ratio:g}."))
+    agree = f"The encoders turn {turns_per_turn(motion):.5g} to 1, declared {motion.ratio:g}: within {SAME_RATIO:.0%}."
+    found.checks.append(Check("ratio", not wrong, wrong or agree))
     if wrong:
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)

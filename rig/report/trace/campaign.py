@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rig.analysis.tracing.outcome.result import Trace
+from rig.analysis.tracing.runs.campaign import folders_of_runs
 from rig.analysis.tracing.runs.holdout import whole_run
+from rig.core.errors import UsageError
 from rig.core.numbers import number
 from rig.report.numbers import counted, duration
 from rig.report.provenance import software
@@ -76,12 +78,16 @@ class Provenance:
 def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) -> Provenance:
     """Of the campaign in `folder`; manifests that cannot be read are left out, the trace has said why."""
     found: dict[str, Mapping[str, Any]] = {}
-    for path in sorted(folder.glob("*/manifest.json")):
+    try:
+        places = folders_of_runs(folder)
+    except UsageError:  # none of them is left
+        places = []
+    for place in places:
         try:
-            manifest = parse(contents(path))
+            manifest = parse(contents(place / "manifest.json"))
         except (OSError, ValueError):
             continue
-        found[path.parent.name] = table(cut(manifest))
+        found[place.name] = table(cut(manifest))
     return Provenance(found, traced_with, traced_utc)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.holdout import split
+from rig.analysis.tracing.runs.holdout import _stretches, split
 from tests.analysis.tracing.test_few_channels import reduced
 
 
@@ -28,6 +28,30 @@ def run(speed: float, start: float) -> Any:
         pieces=(piece,),
         start=start,
     )
+
+
+class Piece:
+    """As much of a piece as a cut needs."""
+
+    def __init__(self, theta_m: np.ndarray) -> None:
+        self.theta_m = theta_m
+
+    def part(self, rows: slice) -> Piece:
+        return Piece(self.theta_m[rows])
+
+    @property
+    def way(self) -> float:
+        return float(np.sign(self.theta_m[-1] - self.theta_m[0]))
+
+
+@pytest.mark.parametrize("turns", [6.0, 30.0])
+def test_of_one_stroke_forth_and_back_both_ways_are_fitted_and_tested(turns: float) -> None:
+    up = np.linspace(0.0, 2 * np.pi * turns, 12_000)
+    whole: Any = SimpleNamespace(pieces=(Piece(np.concatenate([up, up[::-1]])),))
+    fitted, tested = _stretches(whole) or ((), ())
+    for part in (fitted, tested):
+        assert {piece.way for piece in part} == {1.0, -1.0}  # type: ignore[attr-defined]
+    assert sum(len(piece.theta_m) for piece in (*fitted, *tested)) > 0.98 * 24_000
 
 
 def held(runs: list[Any]) -> set[tuple[float, float]]:

@@ -298,6 +298,13 @@ def test_manifests_that_cannot_be_read_are_left_out(tmp_path: Path) -> None:
     assert "torn" not in found.manifests
 
 
+def test_runs_in_folders_of_their_day_are_found_as_the_trace_finds_them(tmp_path: Path) -> None:
+    run = tmp_path / "2026-11-20" / "0718-log"
+    run.mkdir(parents=True)
+    (run / "manifest.json").write_text('{"backend": "imported"}')
+    assert provenance(tmp_path, {}, "").manifests == {"0718-log": {"backend": "imported"}}
+
+
 @pytest.mark.slow
 def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> None:
     written = page.write(tmp_path, made_up.explained(), made_up.source())

@@ -86,6 +86,12 @@ BASELINE: Final = (
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
 """Coefficients of derivatives by time."""
+NEEDS: Final[Mapping[str, frozenset[str]]] = {
+    "A": frozenset({"theta_m", "theta_l"}),
+    "M": frozenset({"tau_m"}),
+    "R": frozenset({"tau_m", "theta_m", "tau_l", "t"}),
+    "L": frozenset({"tau_l"}),
+}
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 
 
@@ -122,7 +128,9 @@ class Rows:
 
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel; one angle will do for a torque."""
-    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "R": {"tau_m", "theta_m", "t"}, "L": {"tau_l"}}[channel]
+    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "R": {"tau_m", "theta_m", "tau_l", "t"}, "L": {"tau_l"}}[
+        channel
+    ]
     turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
     return turns and need <= run.knows
 

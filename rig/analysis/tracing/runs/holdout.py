@@ -19,6 +19,7 @@ from rig.model.effect import Signals
 LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
 KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
 SPARED = 3  # one stretch of so many is held out
+FORTH_AND_BACK = 2  # strokes
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 HELD_PART = "part held out"
 TOLD = 8  # names of runs in a sentence
@@ -150,7 +151,8 @@ Parts = tuple[tuple[Signals, ...], tuple[Signals, ...]]
 def _stretches(run: Recording) -> Parts | None:
     """Whole turns of the motor, long against the filters, every third stretch of them to test with.
 
-    Cut off at its end, a run of one turn of the output or less would be tested at output angles it was not fitted at.
+    Cut off at its end, a run of one turn of the output or less would be tested at output angles it was not fitted at,
+    and one stroke forth and back would be fitted one way and tested the other.
     """
     stretches = [s for piece in run.pieces for s in _whole_turns(piece)]
     if len(stretches) < SPARED + 1:
@@ -160,8 +162,10 @@ def _stretches(run: Recording) -> Parts | None:
 
 
 def _whole_turns(piece: Signals) -> list[Signals]:
-    theta = np.abs(piece.theta_m - piece.theta_m[0])
-    if len(strokes(piece.theta_m)) != 1 or theta[-1] < TURN:
+    theta, ways = np.abs(piece.theta_m - piece.theta_m[0]), strokes(piece.theta_m)
+    if len(ways) == FORTH_AND_BACK:
+        return [turn for way in ways for turn in _whole_turns(piece.part(way))]
+    if len(ways) != 1 or theta[-1] < TURN:
         return []
     rows = max(1.0, theta.size * TURN / theta[-1])
     turns = int(np.ceil(STRETCH / rows))
