@@ -1,6 +1,7 @@
 """Second looks at a campaign, each at what the first leaves out, where something outside of the equations asks for it.
 
-All can only add: the first selection stands unless the look names what it was for, beside all that had a name.
+They only add: the first selection stands unless the look names what it was for, beside all that had a name but for
+what lay in its shadow.
 """
 
 from __future__ import annotations

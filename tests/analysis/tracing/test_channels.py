@@ -1,9 +1,13 @@
 """The columns of the three equations are what the paper's equations say."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.fit.channels import ORDERS, series, slopes
+from rig.analysis.tracing.fit.channels import ORDERS, is_measured, series, slopes
+from rig.model.effect import MEASURED
 
 
 def test_the_series_is_cosine_and_sine_of_each_order_in_turn() -> None:
@@ -17,3 +21,13 @@ def test_the_series_is_cosine_and_sine_of_each_order_in_turn() -> None:
 def test_the_slopes_are_its_derivatives() -> None:
     theta, h = np.linspace(-7, 7, 50), 1e-6
     assert slopes(theta) == pytest.approx((series(theta + h) - series(theta - h)) / (2 * h), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("missing", "said"), [(set(), "AMRL"), ({"tau_l"}, "AM"), ({"theta_l"}, "MRL"), ({"tau_m"}, "AL")]
+)
+def test_a_channel_says_something_of_what_was_measured_and_reversals_need_the_torque_sensor(
+    missing: set[str], said: str
+) -> None:
+    run: Any = SimpleNamespace(procedure="kinematic_error", locked=False, knows=MEASURED - missing)
+    assert "".join(channel for channel in "AMRL" if is_measured(run, channel)) == said

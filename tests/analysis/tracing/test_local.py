@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor import steps
-from rig.analysis.tracing.floor.jumps import EDGE, among, jumps
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, jumps
 from rig.analysis.tracing.floor.steps import Steps, _rested, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
@@ -64,7 +64,7 @@ def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() ->
     assert onward_at(30.0 * t + 0.05 * np.sin(60.0 * t))[100:3900].all()
 
 
-def test_noise_drift_and_waves_have_nojumps(rng: np.random.Generator) -> None:
+def test_noise_drift_and_waves_have_no_jumps(rng: np.random.Generator) -> None:
     n = np.arange(4000)
     for e in (0 * n, 1e-8 * n, 2e-5 * np.sin(n / 60)):
         assert jumps(e + 4e-6 * rng.standard_normal(n.size), n >= 0, 7.0, ANY) == []
@@ -252,7 +252,7 @@ def test_a_step_that_wander_hides_in_short_means_is_found_in_long_ones(rng: np.r
     e[2500:] += 1e-5
     known = (0.65e-5, 1.35e-5)
     assert jumps(e, np.ones(4000, bool), 4.0, known) == []
-    (found,) = jumps(e, np.ones(4000, bool), 4.0, known, window=steps.FAR)
+    (found,) = jumps(e, np.ones(4000, bool), 4.0, known, window=FAR)
     assert abs(found[0] - 2500) <= 20
 
 

@@ -92,6 +92,7 @@ NEEDS: Final[Mapping[str, frozenset[str]]] = {
     "R": frozenset({"tau_m", "theta_m", "tau_l", "t"}),
     "L": frozenset({"tau_l"}),
 }
+"""What has to be measured for a channel."""
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 
 
@@ -127,12 +128,10 @@ class Rows:
 
 
 def is_measured(run: Recording, channel: str) -> bool:
-    """Whether this run can say anything in that channel; one angle will do for a torque."""
-    need = {"A": {"theta_m", "theta_l"}, "M": {"tau_m"}, "R": {"tau_m", "theta_m", "tau_l", "t"}, "L": {"tau_l"}}[
-        channel
-    ]
+    """Whether this run can say anything in that channel; one angle will do for a torque. Where the motor turns back,
+    what stands in for a torque sensor lacks the load's friction, which turns over later."""
     turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
-    return turns and need <= run.knows
+    return turns and NEEDS[channel] <= run.knows
 
 
 def rows(run: Recording, channel: str) -> Rows:

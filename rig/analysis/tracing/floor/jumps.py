@@ -19,7 +19,8 @@ FAR: Final = 4 * WINDOW  # rows: a longer window, over which wander counts less
 EDGE: Final = 3  # rows over which the low-pass spreads a step
 SHORTER: Final = (WINDOW // 2, WINDOW // 4)  # windows for jumps between others
 ROUNDS: Final = 40  # jumps found between others, at most
-ONE, TWO = 0.65, 2.7  # of the usual size, between which they are: one loss, or two at a time
+ONE: Final = 0.65  # of the usual size: the least that one loss may be
+TWO: Final = 2.7  # of the usual size: the most that two at a time may be
 
 
 def jumps(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
-from rig.analysis.tracing.floor.jumps import EDGE, FAR, WINDOW, Mask, among, jumps
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, jumps
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
@@ -64,7 +64,7 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
         where = onward[key] if len(sure) < MANY else onward[key] | _for_good(e[key], usual)
-        again = (e[key], where, STEP_AGAIN, (0.65 * usual, max(1.35 * usual, 1.1 * max(sure))))
+        again = (e[key], where, STEP_AGAIN, (ONE * usual, max(1.35 * usual, 1.1 * max(sure))))
         found = jumps(*again) or jumps(*again, window=FAR)
         if len(sure) >= MANY:
             found = among(e[key], onward[key], found, usual)
@@ -154,7 +154,7 @@ def _for_good(e: Array, size: float) -> Mask:
     n = np.arange(1, e.size + 1)
     total = np.cumsum(e)
     off = np.abs((total[-1] - total) / np.maximum(e.size - n, 1) - total / n)
-    return np.asarray((off > 0.65 * size) & (off < 1.35 * size))
+    return np.asarray((off > ONE * size) & (off < 1.35 * size))
 
 
 def _at_one_speed(theta: Array, t: Array, reach: int) -> Mask:

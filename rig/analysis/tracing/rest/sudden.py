@@ -38,21 +38,21 @@ def turned_since(h: Halves, channel: str) -> Home | None:
     r = h.rest
     left = (h.alone[0] + h.alone[1]) / 2
     starts = sorted(float(r.at["time"][r.run == run].min()) for run in np.unique(r.run))[1:]
-    taken = {moment: _taken(r, left, moment) for moment in starts}
+    waves = _waves(r)
+    after = {moment: r.at["time"] >= moment for moment in starts}
+    taken = {moment: _taken(waves[rows], left[rows]) for moment, rows in after.items()}
     if not taken:
         return None
     moment = max(taken, key=lambda at: taken[at])
-    read = in_columns(lambda rest: _waves_after(rest, moment))
+    read = in_columns(lambda rest: (rest.at["time"] >= moment)[:, None] * _waves(rest))
     return Home("time", channel, share(h, read), read=read)
 
 
-def _waves_after(r: Rest, moment: float) -> Array:
-    """Waves of the largest orders of the motor angle, after the moment alone, (n, 2k)."""
-    after, angle = r.at["time"] >= moment, r.at["motor_angle"]
-    return np.stack([after * f(order * angle) for order in LARGEST for f in (np.cos, np.sin)], 1)
+def _waves(r: Rest) -> Array:
+    """Waves of the largest orders of the motor angle, (n, 2k)."""
+    return np.stack([f(order * r.at["motor_angle"]) for order in LARGEST for f in (np.cos, np.sin)], 1)
 
 
-def _taken(r: Rest, left: Array, moment: float) -> float:
-    """Sum of squares they take from what is left."""
-    z = _waves_after(r, moment)
-    return float(np.sum((z @ solved(z.T @ z, z.T @ left)) ** 2))
+def _taken(waves: Array, left: Array) -> float:
+    """Sum of squares they (n, k) take from what is left (n,)."""
+    return float(np.sum((waves @ solved(waves.T @ waves, waves.T @ left)) ** 2))

@@ -48,8 +48,8 @@ def builds_up(runs: Sequence[Recording]) -> bool:
 
 def _way(run: Recording) -> tuple[float, int] | None:
     """Over which way [rad] friction builds up, JUMP where it jumps, and reversals it was read at; None of a run that
-    does not turn back, or has no torque."""
-    if run.locked or not {"theta_m", "tau_m", "t"} <= run.has:
+    does not turn back, or in which a torque was not measured."""
+    if run.locked or not {"theta_m", "tau_m", "tau_l", "t"} <= run.has:
         return None
     parts = [(piece, at) for piece in run.pieces if (at := reversals(piece)).size]
     count = sum(at.size for _, at in parts)

@@ -48,7 +48,7 @@ def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     return [
         f"No shaft torque: it was taken from a load inertia of {inertia:.3g} kg·m² and the weight as declared. "
         "Stiffness and the motor's torque balance are in proportion to them; friction of the load counts as the "
-        "motor's, and a torque sensor's own errors cannot be seen."
+        "motor's, a torque sensor's own errors cannot be seen, and where the motor turns back nothing is compared."
     ]
 
 

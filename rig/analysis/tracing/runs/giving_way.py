@@ -14,9 +14,7 @@ import numpy as np
 from rig.analysis.tracing.runs.recording import Recording
 
 RUNS: Final = 2  # lock tests
-ALIKE: Final = (
-    0.25  # how far the compliance of one may be from that of all, relative: play gives way to any torque alike
-)
+ALIKE: Final = 0.25  # relative, of one compliance from that of all: play gives way to any torque alike
 LEFT: Final = 0.5  # of what goes with the torque, RMS, beside it in all tests, counts of the encoder included
 
 
