@@ -48,8 +48,13 @@ def verify(folder: Path) -> list[Finding]:
     return findings
 
 
+def _is_foreign(about: Mapping[str, Any]) -> bool:
+    """Not of our recorder: read in from a file, be it of the twin's samples."""
+    return about.get("backend") == "imported" or "import" in about
+
+
 def _status(about: Mapping[str, Any]) -> Iterator[Finding]:
-    if is_closed(about) or about.get("backend") == "imported" or "status" not in about:
+    if is_closed(about) or _is_foreign(about) or "status" not in about:
         return
     if is_being_made(about):
         yield Finding("warning", "status", f"process {about['process']['pid']} is still making this run")
@@ -113,7 +118,7 @@ def _gaps(run: Run) -> Iterator[Finding]:
     if _every_tick_has_its_row(run):
         late = ~told  # nothing is gone: the machine woke late, less than the one period that the loop flags
     late |= ~told & (dt[gaps] < LOST * period)
-    unexplained = "warning" if run.manifest.get("backend") == "imported" else "error"  # no loop of ours, no promise
+    unexplained = "warning" if _is_foreign(run.manifest) else "error"  # no loop of ours, no promise
     for level, found, why in (
         ("warning", gaps[told], "flagged by the loop"),
         ("warning", gaps[late], "a tick came late, no row is gone"),
@@ -147,7 +152,7 @@ def _flags(run: Run) -> Iterator[Finding]:
 
 def _backend(run: Run) -> Iterator[Finding]:
     """Simulated and measured rows never mix, and the manifest says which they are."""
-    if not run.has("flags") or not run.rows or run.manifest.get("backend") in (None, "imported"):
+    if not run.has("flags") or not run.rows or run.manifest.get("backend") is None or _is_foreign(run.manifest):
         return
     simulated = int(np.count_nonzero(run.flags & int(Flag.SIMULATED)))
     if simulated != (run.rows if run.simulated else 0):

@@ -38,6 +38,7 @@ class Converted:
 
     channels: dict[str, Channel]
     notes: list[str]
+    simulated: bool = False  # the file says that its samples are the twin's
     utc: datetime | None = None
     time: dict[str, float] = field(default_factory=dict)
 
@@ -52,7 +53,7 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
     Raises UsageError, with row and number, where a column cannot be meant.
     """
     rows = refuse.same_length(table.columns, file)
-    result = Converted({}, list(table.notes))
+    result = Converted({}, list(table.notes), simulated=table.simulated)
     keep = np.ones(rows, dtype=bool)
     if clock := mapping.channels.get("t"):
         keep = _time(result, table, clock, file)

@@ -27,11 +27,16 @@ TORQUE = {"tau_m": 300.0, "tau_l": 20_000.0, "tau_ask": 300.0, "tau_applied": 30
 BALANCE = 100.0  # tau_l over N·tau_m, both rms, of a turning gear: a lossless one has 1
 STIFFNESS = (50.0, 5e6)  # N·m/rad: half the softest (size 5) to several times the stiffest (size 100)
 CLEAR = 0.9  # correlation of torque and wind-up from which their slope is a stiffness
+RATE = 0.1  # share by which a speed channel may differ from what its angle does: filters and lags of a drive
 RATIO = 0.003  # share by which the measured ratio may differ once the angles span much
 WIND_UP = np.radians(0.3)  # rad of load angle that torsion and errors may add over the span: 18 arcmin were measured
 HINTS = ((57.2958, "180/π: one angle is in deg, the other in rad"), (6.28319, "2π: one is in turns, the other in rad"),
          (360.0, "360: one is in deg, the other in turns"), (4.0, "4: counts of one are taken before quadrature"),
          (60.0, "60: one is in arcmin, the other in deg"), (1000.0, "1000: a prefix is missing"))  # fmt: skip
+
+RATES = ((9.5493, "30/π: one is in rpm, the other in rad/s"), (57.2958, "180/π: one is in deg/s, the other in rad/s"),
+         (6.0, "6: one is in rpm, the other in deg/s"), (6.28319, "2π: one is in turns/s, the other in rad/s"),
+         (60.0, "60: one is a minute's, the other a second's"))  # fmt: skip
 
 
 def check(run: Converted, mapping: Mapping, file: str) -> None:
@@ -41,7 +46,7 @@ def check(run: Converted, mapping: Mapping, file: str) -> None:
         "period": _period,
         "angle": _angle,
         "ratio": _ratio,
-        "speed": _speed,
+        "speed": lambda *of: _speed(*of) or _rate(*of),
         "torque": _torque,
         "stiffness": _stiffness,
     }
@@ -107,6 +112,26 @@ def _speed(run: Converted, mapping: Mapping) -> str:
                 f"expected below {SPEED:g} rpm (a unit of angle or time, counts_per_turn, or a wrap)"
             )
     return ""
+
+
+def _rate(run: Converted, mapping: Mapping) -> str:
+    """omega_m against what theta_m does in time, by least squares: right unit, right sign, the right shaft."""
+    t, theta, omega = (run.values(name) for name in ("t", "theta_m", "omega_m"))
+    if t is None or theta is None or omega is None or np.ptp(theta) < 2 * np.pi:
+        return ""
+    window = min(WINDOW, len(t) - 1)
+    seen = (theta[window:] - theta[:-window]) / (t[window:] - t[:-window])
+    told = np.convolve(omega, np.full(window, 1 / window), "valid")[: len(seen)]
+    known = np.isfinite(told)
+    slope = float(told[known] @ seen[known] / max(seen[known] @ seen[known], 1e-300)) if known.any() else 1.0
+    if abs(slope - 1) <= RATE:
+        return ""
+    said = f"omega_m is {slope:.4g} times what theta_m does in time; expected 1 ({_unit(mapping, 'omega_m')})"
+    factor = max(abs(slope), 1 / max(abs(slope), 1e-300))
+    words = (*RATES, (mapping.gear["ratio"], "gear.ratio: it is the other shaft's"))
+    hint = next((f": about {word}" for f, word in words if abs(factor / f - 1) < RATE / 2), "")
+    sign = -mapping.channels["omega_m"].sign
+    return said + hint + (f"; set channels.omega_m.sign = {sign}" if slope < 0 else "")
 
 
 def _ratio(run: Converted, mapping: Mapping) -> str:

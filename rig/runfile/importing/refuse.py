@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rig.core.errors import UsageError
 from rig.core.units import TURN
 from rig.runfile.importing.channel import ChannelMap
-from rig.runfile.importing.units import UNITS
+from rig.runfile.importing.units import UNITS, known
 from rig.runfile.importing.unwrap import wrapped_at
 
 Array = npt.NDArray[Any]
@@ -45,6 +45,8 @@ def not_numbers(raw: Array, column: str, file: str) -> UsageError:
             hint = ""
             if isinstance(cell, str) and cell.count(",") == 1 and cell.replace(",", "").strip(" +-").isdigit():
                 hint = '; set [csv] decimal = ","'
+            elif row == 0 and isinstance(cell, str) and known(cell):
+                hint = ", a unit; set [csv] units_row = true"
             return UsageError(f"{file}: column '{column}' is not numbers: row {row + 1} holds {cell!r}{hint}")
     return UsageError(f"{file}: column '{column}' holds {raw.dtype}; expected numbers")
 

@@ -24,6 +24,7 @@ class Table(NamedTuple):
     units: dict[str, str]  # as the file states them
     started: datetime | None = None  # when t = 0 was, where the file states it
     notes: tuple[str, ...] = ()  # what the reader noticed and let pass
+    simulated: bool = False  # the file says so: it is the export of a run on the twin
 
 
 Reader = Callable[[Path, Sequence[str], Dialect], Table]

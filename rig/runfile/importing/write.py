@@ -42,10 +42,15 @@ def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, softwa
     return folder
 
 
+def backend(run: Converted) -> str:
+    """Simulated samples stay simulated, however many programs they went through."""
+    return "sim" if run.simulated else "imported"
+
+
 def manifest_of(run: Converted, mapping: Mapping, source: Path, software: Dict[str, Any] | None) -> dict[str, Any]:
     """What the manifest says of an imported run, without status and files."""
     about: dict[str, Any] = {
-        "backend": "imported",
+        "backend": backend(run),
         "gear": mapping.gear,
         "declared": mapping.declared,
         "conditions": mapping.conditions,
@@ -74,7 +79,7 @@ def table_of(run: Converted) -> pa.Table:
         values, unit, meaning = run.channels[name]
         fields.append(pa.field(name, pa.from_numpy_dtype(values.dtype), metadata={"unit": unit, "meaning": meaning}))
         columns.append(pa.array(values, from_pandas=True))  # from_pandas: NaN is null
-    about = {"schema": manifests.SCHEMA, "backend": "imported", "simulated": "false"}
+    about = {"schema": manifests.SCHEMA, "backend": backend(run), "simulated": str(run.simulated).lower()}
     return pa.table(columns, schema=pa.schema(fields, metadata=about))
 
 

@@ -79,6 +79,34 @@ def test_a_motor_faster_than_any(foreign: Foreign) -> None:
     assert "expected below 20000 rpm" in said
 
 
+@pytest.mark.parametrize(
+    ("unit", "factor", "sign", "hint"),
+    [
+        ("rad/s", 30 / np.pi, 1, "about 30/π: one is in rpm, the other in rad/s"),
+        ("rpm", 6.0, 1, "about 6: one is in rpm, the other in deg/s"),
+        ("rad/s", 1 / 50, 1, "gear.ratio: it is the other shaft's"),
+        ("rad/s", 1.0, -1, "set channels.omega_m.sign = -1"),
+    ],
+)
+def test_a_speed_that_is_not_what_the_angle_does_is_told_with_its_factor(
+    foreign: Foreign, unit: str, factor: float, sign: int, hint: str
+) -> None:
+    run = truth()
+    in_unit = np.gradient(run["theta_m"], run["t"]) * (30 / np.pi if unit == "rpm" else 1.0)
+    data = columns() | {"speed": sign * factor * in_unit}
+    said = foreign.refused(foreign.file(data), MAPPING + f'[channels.omega_m]\ncolumn = "speed"\nunit = "{unit}"\n')
+    assert "omega_m is " in said
+    assert "times what theta_m does in time; expected 1" in said
+    assert hint in said
+
+
+def test_a_speed_that_agrees_with_the_angle_is_taken(foreign: Foreign) -> None:
+    run = truth()
+    data = columns() | {"speed": np.gradient(run["theta_m"], run["t"]) * 30 / np.pi}
+    mapping = MAPPING + '[channels.omega_m]\ncolumn = "speed"\nunit = "rpm"\n'
+    assert foreign.imported(foreign.file(data), mapping).has("omega_m")
+
+
 def test_an_angle_beyond_what_a_float_resolves(foreign: Foreign) -> None:
     data = with_column("load", lambda load: load * 1e12)
     assert "theta_l reaches 2.535e+12 rad; expected below 1e+09 rad" in foreign.refused(foreign.file(data))

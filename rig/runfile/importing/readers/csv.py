@@ -13,6 +13,7 @@ from rig.runfile.importing.readers.parquet import to_numpy
 from rig.runfile.importing.table import Table, locate
 
 CHUNK = 1 << 20  # bytes
+SIMULATED = "SIMULATED"  # the column `hdrig export` adds to a run of the twin
 LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
 
 
@@ -48,6 +49,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         {name: to_numpy(table[full]) for name, full in found.items()},
         {name: stated[full] for name, full in found.items() if stated.get(full)},
         notes=() if ends_a_line(path) else ("the last line has no line end: the file may be cut short in it",),
+        simulated=SIMULATED in names,
     )
 
 

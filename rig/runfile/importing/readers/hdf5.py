@@ -24,7 +24,8 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         found = locate(offered, wanted, path.name)
         values = {name: offered[full][0]() for name, full in found.items()}
         units = {name: offered[full][1] for name, full in found.items() if offered[full][1]}
-    return Table(values, units)
+        simulated = bool(np.any(file.attrs.get("simulated", False)))  # as `hdrig export` writes it
+    return Table(values, units, simulated=simulated)
 
 
 def columns(file: Any, h5py: Any) -> Iterator[tuple[str, tuple[Callable[[], Array], str]]]:

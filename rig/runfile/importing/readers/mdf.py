@@ -26,9 +26,11 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
             signals = {name: file.get(group=at[full][0], index=at[full][1]) for name, full in found.items()}
             columns = {name: _values(signal) for name, signal in signals.items()}
             started = file.header.start_time
+            titles = [getattr(group.channel_group, "acq_name", "") for group in file.groups]
     except MdfException as error:
         raise ValueError(str(error)) from None
-    return Table(columns, {name: s.unit for name, s in signals.items() if s.unit}, started)
+    units = {name: s.unit for name, s in signals.items() if s.unit}
+    return Table(columns, units, started, simulated="SIMULATED" in titles)  # as `hdrig export` names the group
 
 
 def _channels(file: Any) -> list[tuple[str, tuple[int, int]]]:

@@ -21,8 +21,10 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         found = locate(schema.names, wanted, path.name)
         table = file.read(columns=list(found.values()))
         columns = {name: to_numpy(table[full]) for name, full in found.items()}
+    simulated = (schema.metadata or {}).get(b"simulated") == b"true"  # a run folder's own samples say it
     units = {name: (schema.field(full).metadata or {}).get(b"unit", b"") for name, full in found.items()}
-    return Table(columns, {name: unit.decode("utf-8", "replace") for name, unit in units.items() if unit})
+    stated = {name: unit.decode("utf-8", "replace") for name, unit in units.items() if unit}
+    return Table(columns, stated, simulated=simulated)
 
 
 def to_numpy(column: Any) -> Array:

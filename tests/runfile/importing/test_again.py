@@ -1,0 +1,68 @@
+"""What `hdrig export` wrote and `hdrig import` reads again: simulated samples are never read in as measured ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rig.report.words import origin
+from rig.runfile.export import export
+from rig.runfile.finalise import finalise
+from rig.runfile.importing import import_file
+from rig.runfile.run import Run
+from rig.runfile.verify import verify
+from tests.runfile.rows import new_folder, write_journal
+
+from .conftest import Foreign
+
+MAPPING = """
+schema = "hdrig.import/1"
+procedure = "kinematic_error"
+[csv]
+units_row = true
+[gear]
+ratio = 50
+[accept]
+ratio = "made-up rows"
+speed = "made-up rows"
+torque = "made-up rows"
+stiffness = "made-up rows"
+[channels.t]
+column = "t"
+unit = "s"
+[channels.theta_m]
+column = "theta_m"
+unit = "rad"
+[channels.theta_l]
+column = "theta_m"
+scale = 0.02
+unit = "rad"
+"""
+
+
+def exported(folder: Path, kind: str, backend: str) -> Path:
+    made = new_folder(folder, backend=backend, started_utc="2026-11-20T01:47:00+00:00")
+    write_journal(made, 0, 300, close=True)
+    finalise(made, "completed", "end")
+    return made / "samples.parquet" if kind == "parquet" else export(Run.open(made), kind)
+
+
+@pytest.mark.parametrize("kind", ["csv", "hdf5", "mdf4", "parquet"])
+@pytest.mark.parametrize(("backend", "again"), [("sim", "sim"), ("can", "imported")])
+def test_an_export_read_again_is_as_simulated_as_the_run_was(
+    foreign: Foreign, tmp_path: Path, kind: str, backend: str, again: str
+) -> None:
+    file = exported(tmp_path / "first", kind, backend)
+    mapping = MAPPING.replace('column = "t"', 'column = "time"') if kind == "mdf4" else MAPPING
+    run = Run.open(import_file(file, foreign.mapping(mapping), foreign.out))
+    assert run.manifest["backend"] == again
+    assert run.simulated is (backend == "sim")
+    assert (origin(run.manifest["backend"]).mark == "SIMULATED") is (backend == "sim")
+    assert not [f for f in verify(run.path) if f.level == "error"]
+
+
+def test_a_row_of_units_that_was_not_announced_is_told_with_the_key_to_set(foreign: Foreign, tmp_path: Path) -> None:
+    file = exported(tmp_path / "first", "csv", "can")
+    said = foreign.refused(file, MAPPING.replace("[csv]\nunits_row = true\n", ""))
+    assert "row 1 holds 's', a unit; set [csv] units_row = true" in said
