@@ -109,8 +109,9 @@ def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
 
 
 def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
-    """All runs of the campaign, and those that identification can read. Raises DataError when none, or two gears."""
-    from rig.analysis.identify.recording import recording
+    """All runs of the campaign, and those that identification can read. Raises DataError when none, or two
+    gears, or another gear ratio than declared."""
+    from rig.analysis.identify.recording import recording, refuse_another_ratio
     from rig.runfile.run import Run
 
     runs = []
@@ -131,6 +132,7 @@ def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
     found = [r for one in runs if (r := recording(one)) is not None]
     if not found:
         raise DataError("no run here has time and both angles: nothing to identify from")
+    refuse_another_ratio(found)
     return runs, found
 
 

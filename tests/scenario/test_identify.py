@@ -106,6 +106,18 @@ def test_runs_of_two_gears_are_refused(shared: Path, tmp_path: Path, capsys: pyt
     assert "2 gear ratios (50.0, 51.0)" in capsys.readouterr().err
 
 
+def test_a_ratio_that_the_encoders_contradict_is_refused(
+    shared: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(shared / "cases" / "open-1" / "speed_400rpm_1", tmp_path / "run")
+    manifest = tmp_path / "run" / "manifest.json"
+    manifest.chmod(0o644)
+    manifest.write_text(manifest.read_text().replace('"ratio": 50', '"ratio": 51'))
+    assert main(["identify", str(tmp_path)]) == 6
+    said = capsys.readouterr().err
+    assert "times as far as the load, the declared gear.ratio is 51" in said
+
+
 @pytest.mark.slow
 def test_a_lock_run_alone_is_not_enough_for_a_gear_file(shared: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """open-1 declares inertias and stiffness: without those nothing would stand in for them."""

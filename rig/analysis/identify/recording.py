@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -10,8 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.analysis.motion.angle import is_another_ratio, measured_ratio
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.core.errors import DataError
 from rig.core.numbers import number
 from rig.core.units import TURN
 
@@ -112,6 +115,20 @@ def recording(source: Source) -> Recording | None:
         locked=bool(conditions.get("output_locked")),
         source=source,
     )
+
+
+def refuse_another_ratio(runs: Sequence[Recording]) -> None:
+    """Raises DataError when most of `runs` that turn show another ratio than the one declared."""
+    free = [run for run in runs if not run.locked and np.ptp(run.theta_m) > 0]
+    shown = {run.name: measured_ratio(run.theta_m, run.theta_l) for run in free}
+    odd = [r for r in free if is_another_ratio(r.ratio / shown[r.name], float(np.ptp(r.theta_m)) / r.ratio)]
+    if 2 * len(odd) > len(free):
+        first = odd[0]
+        raise DataError(
+            f"in {len(odd)} of {len(free)} runs that turn (here {first.name}) the motor goes {shown[first.name]:.4g} "
+            f"times as far as the load, the declared gear.ratio is {first.ratio:g}: another gear, or an angle in "
+            "another unit than rad"
+        )
 
 
 def _torque(motion: Motion, source: Source, name: str) -> Array | None:

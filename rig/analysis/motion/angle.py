@@ -8,6 +8,10 @@ from rig.analysis.findings.result import Array
 from rig.core.rows import room, stretches
 from rig.core.units import TURN
 
+ALONG = 0.05  # how far θ_l may be from θ_m/N over any run: kinematic error and wind-up take a hundredth of it
+RATIO = 0.01  # the same where θ_l misses by more than wind-up can
+WIND_UP = 0.03  # rad at the output: 200 N·m on the softest of the paper's kind of gear
+
 
 def unwrap(values: Array, period: float) -> Array:
     """Undo the wrap of a counter or an angle of `period` (unit of `values`), shape (n,).
@@ -45,3 +49,9 @@ def measured_ratio(theta_m: Array, theta_l: Array) -> float:
     y = theta_m - theta_m.mean()
     cross = float(x @ y)
     return float(y @ y) / cross if cross else float("inf")
+
+
+def is_another_ratio(slope: float, travel: float) -> bool:
+    """Is Δθ_l/(Δθ_m/N) = `slope` more than kinematic error and wind-up make over `travel` [rad] of the load?"""
+    off = abs(slope - 1)
+    return off >= RATIO and (off >= ALONG or off * travel >= WIND_UP)

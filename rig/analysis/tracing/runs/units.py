@@ -12,14 +12,13 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.motion.angle import is_another_ratio
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.units import RPM
 
 DEGREES: Final = 180 / np.pi
-ALONG: Final = 0.05  # how far θ_l may be from θ_m/N over any run: kinematic error and wind-up take a hundredth of it
-RATIO: Final = 0.01  # the same where θ_l misses by more than wind-up can
-WIND_UP: Final = 0.03  # rad at the output: 200 N·m on the softest of the paper's kind of gear
+ALIKE: Final = 0.01  # how far a slope may be from that of degrees
 STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts are 5e-3 off
 SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
 UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
@@ -61,9 +60,8 @@ def _slope(run: Recording) -> float | None:
 
 def _ratio(run: Recording) -> str | None:
     slope = _slope(run)
-    off = 0.0 if slope is None else abs(slope - 1)
     travel = max(float(np.ptp(p.theta_m)) for p in run.pieces) / run.ratio
-    if slope is None or off < RATIO or (off < ALONG and off * travel < WIND_UP):
+    if slope is None or not is_another_ratio(slope, travel):
         return None
     return f"θ_l goes {slope:.4g} of θ_m/{run.ratio:g}, expected 1: {_reason(run.ratio, slope)}"
 
@@ -71,7 +69,7 @@ def _ratio(run: Recording) -> str | None:
 def _reason(ratio: float, slope: float) -> str:
     """What would make θ_l go `slope` of θ_m/`ratio`."""
     for factor, words in ((DEGREES, "θ_l seems to be in degrees"), (1 / DEGREES, "θ_m seems to be in degrees")):
-        if abs(slope / factor - 1) < RATIO:
+        if abs(slope / factor - 1) < ALIKE:
             return f"{words}, expected rad"
     if abs(slope) < 1e-6:
         return "θ_l does not move"
