@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from rig.analysis.tracing.looks import second_looks
 from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.searched import searched
-from rig.analysis.tracing.second_looks import second_looks
 from rig.analysis.tracing.workers import give_back, one_heap
 
 

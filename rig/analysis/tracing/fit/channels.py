@@ -163,7 +163,7 @@ def _derived(run: Recording, channel: str) -> bool:
 
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
-    make = {"A": _held if run.unwound else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
+    make = {"A": _held if run.look.held_load else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])

@@ -231,7 +231,8 @@ def unmasked_columns(run: Recording, term: Term, kept: Collection[str]) -> dict[
     """Columns of `term` in the channels `kept`, pieces joined, all rows (n, k)."""
     acts = acting(run, term)
     made = [
-        footprint(act, piece, run.smoother, run.knows, run.unwound) for act, piece in zip(acts, run.pieces, strict=True)
+        footprint(act, piece, run.smoother, run.knows, run.look.held_load)
+        for act, piece in zip(acts, run.pieces, strict=True)
     ]
     if len(made) == 1:
         return {c: made[0][c] for c in kept if c in made[0]}

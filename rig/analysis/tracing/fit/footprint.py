@@ -69,17 +69,17 @@ FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
 
 
 def footprint(
-    ports: Mapping[Port, Array], s: Signals, f: Smoother, has: frozenset[str], unwound: bool = False
+    ports: Mapping[Port, Array], s: Signals, f: Smoother, has: frozenset[str], held_load: bool = False
 ) -> dict[str, Array]:
     """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`; in A those of
-    the load angle alone where it is looked at `unwound`, by itself."""
+    the load angle alone where `held_load` says so."""
     out: dict[str, Array] = {}
     for port, columns in ports.items():
         for first in FOOTPRINTS[port](columns, s):
             for channel, column, order in _passed_on(first, s, has):
                 made = f(column, order)
                 out[channel] = out[channel] + made if channel in out else made
-    if unwound and "A" in out:
+    if held_load and "A" in out:
         out["A"] = f(-ports[Port.READS_THETA_L]) if Port.READS_THETA_L in ports else np.zeros_like(out["A"])
     return out | ({"R": out["M"]} if "M" in out else {})
 

@@ -28,7 +28,7 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
     sliding = smooth(settled(piece).astype(float)) > 1 - 1e-9
     if channel == "R":
         signed = smooth((piece.way != 0).astype(float)) > 1 - 1e-9
-        return np.asarray(inside & ~sliding & (signed | run.closely))
+        return np.asarray(inside & ~sliding & (signed | run.look.reversals))
     if channel == "A":
         known = inside & _angle_known(piece, run)
         torque_known = run.locked or "tau_l" in run.knows

@@ -75,7 +75,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         by_run |= _never_compared(eq, e, channel, among, found)
         local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
-    if eq.runs[0].homed and (scatter_of_zeros := about_a_line(solution)) is not None:
+    if eq.runs[0].look.zeros and (scatter_of_zeros := about_a_line(solution)) is not None:
         local["A"] = scatter_of_zeros
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}

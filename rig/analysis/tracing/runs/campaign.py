@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
@@ -34,6 +35,12 @@ class Campaign:
     simulated: bool
     notes: tuple[str, ...]
     left_out: tuple[str, ...] = ()  # folders with samples or a manifest that are none of the runs
+
+
+def looking(campaign: Campaign, looks: Sequence[Look]) -> Campaign:
+    """The same runs, each looked at as said."""
+    runs = tuple(replace(run, look=look) for run, look in zip(campaign.runs, looks, strict=True))
+    return replace(campaign, runs=runs)
 
 
 def folders_of_runs(folder: Path) -> list[Path]:

@@ -99,7 +99,7 @@ def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
 
 
 def _held_output(runs: Sequence[Recording]) -> list[str]:
-    if not any(run.unwound for run in runs):
+    if not any(run.look.held_load for run in runs):
         return []
     return ["In lock tests the load angle follows the torque, and was compared by itself there. A housing that moves "
             "under the encoder and a lock that gives way look the same in it: a dial gauge on each tells them apart, "

@@ -13,6 +13,7 @@ from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated
 from rig.analysis.tracing.runs.holes import without_holes
+from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet, smallest_step
 from rig.analysis.tracing.runs.sliding import direction
@@ -53,9 +54,7 @@ class Recording(Once):
     step_m: float = 0.0  # rad, the smallest change of the motor angle in the file; 0 where there is none
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
-    closely: bool = False  # whether the rows around a reversal are looked at in which friction has no sure sign
-    homed: bool = False  # whether its zeros are those of all others, but for what its speed makes of them
-    unwound: bool = False  # of a locked one: whether its load angle is looked at by itself, not the wind-up
+    look: Look = field(default_factory=Look)  # what of it is looked at
 
     @property
     def knows(self) -> frozenset[str]:

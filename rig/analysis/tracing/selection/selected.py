@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.search import Found, polished, reduced
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import backward_elimination, instead_of_the_spring, unresolved
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
@@ -38,6 +39,11 @@ class Selected:
     def names(self) -> set[str]:
         """Effects that stand."""
         return {term.name for term in self.solution.design.terms}
+
+    @property
+    def fitted_runs(self) -> list[Recording]:
+        """Those the fit has seen."""
+        return [self.p.eq.runs[i] for i in self.p.split.fitted]
 
     @property
     def loud(self) -> bool:

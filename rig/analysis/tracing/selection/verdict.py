@@ -158,7 +158,7 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
     sentence = lacks(names, before, after)
     if all(name in p.own.made and not p.own.made[name].keys() & p.held_out.floors.keys() for name in names):
         sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
-    elif p.eq.runs[0].homed and after > QUIETER * before:
+    elif p.eq.runs[0].look.zeros and after > QUIETER * before:
         sentence = f"The model lacks {in_words(names)}: the zeros of runs lie on one line over their speed."
     if rivals:
         sentence = f"{sentence} These data fit as well with {', '.join(rivals)}."

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.second_looks import _adds
+from rig.analysis.tracing.looks.reversals import _adds
 from rig.analysis.tracing.selection.score import HeldOutScore
 
 BUILT = HeldOutScore("presliding_friction", 1.0, 14.4, 0.8, 1.0, ((0, "R"),))

@@ -1,0 +1,27 @@
+"""Second looks at a campaign, each at what the first leaves out, where something outside of the equations asks for it.
+
+They only add: the first selection stands unless the look names what it was for, beside all that had a name but for
+what lay in its shadow. To add one: a file here with its question (`wanted`) and its look (`taken`), a line in LOOKS, a
+field in runs/look.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.looks import held_load, reversals, zeros
+from rig.analysis.tracing.runs.campaign import Campaign
+from rig.analysis.tracing.selection.selected import Selected
+
+LOOKS = (reversals, held_load, zeros)
+
+
+def second_looks(
+    selected: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]
+) -> tuple[Selected, Found]:
+    """What stands after all of them, in their order."""
+    for look in LOOKS:
+        if look.wanted(selected):
+            selected, found = look.taken(selected, found, campaign, hold_out)
+    return selected, found

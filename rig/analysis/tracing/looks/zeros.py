@@ -1,0 +1,31 @@
+"""At the zeros of runs: where one zero would do for all, what shifts it with speed is a reading that comes late."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.floor.homed import about_a_line
+from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.campaign import Campaign, looking
+from rig.analysis.tracing.searched import searched
+from rig.analysis.tracing.selection.selected import Selected
+from rig.model.effects.channel_time_skew import ChannelTimeSkew
+
+LATE: Final = ChannelTimeSkew.name
+
+
+def wanted(selected: Selected) -> bool:
+    """Whether the zeros lie about a line over speed, and no channel is called late."""
+    return LATE not in selected.names and about_a_line(selected.solution) is not None
+
+
+def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
+    """The same where what shifts a run's zero is no zero of its own. It counts where it names a reading that comes late
+    and nothing else more, and explains everything."""
+    looks = [replace(run.look, zeros=True) for run in so_far.p.campaign.runs]
+    other, ranked = searched(prepare(looking(campaign, looks), hold_out))
+    late = not other.loud and other.names == {LATE, *so_far.names}
+    return (other, ranked) if late else (so_far, found)

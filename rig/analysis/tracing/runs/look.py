@@ -1,0 +1,14 @@
+"""What of a run is looked at beyond what the first look takes in; one field a second look."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Look:
+    """The first look has none of them."""
+
+    reversals: bool = False  # the rows around a reversal too, in which friction has no sure sign
+    held_load: bool = False  # of a locked one: its load angle by itself, not the wind-up
+    zeros: bool = False  # its zeros are those of all others, but for what its speed makes of them
