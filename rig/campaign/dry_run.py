@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rig.bench import Bench
 from rig.campaign.changes import ByHand, Deed, Measure, deeds
 from rig.campaign.planner import Campaign
-from rig.campaign.preview import stored_energy
+from rig.campaign.preview import margin, stored_energy
 from rig.campaign.steps import Item
 from rig.campaign.swing import resonance_speed
 from rig.campaign.unseen import unseen
@@ -167,7 +167,7 @@ def asked_of(bench: Bench, found: Sequence[Figures]) -> list[tuple[str, float, f
 
 
 def _margin(what: str, asked: float, limit: float, unit: str) -> str:
-    return f"{what:11s} at most {asked:.1f} of {limit:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
+    return f"{what:11s} at most {asked:.1f} of {limit:g} {unit}, {margin(asked / limit)}"
 
 
 def _time(seconds: float) -> str:

@@ -27,12 +27,16 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
         if what == "torque" and asked <= limit:
             lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
             continue
-        lines.append(
-            f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, margin {100 * (1 - asked / limit):.0f} %"
-        )
+        lines.append(f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, {margin(asked / limit)}")
     what, left = tightest(bench, procedure)
-    lines.append(f"tightest    {what}: {100 * left:.0f} % of its limit left")
+    said = f"{100 * left:.0f} % of its limit left" if left >= 0 else margin(1 - left)
+    lines.append(f"tightest    {what}: {said}")
     return [*lines, *procedure.remarks(bench.setting(lambda text: None))]
+
+
+def margin(share: float) -> str:
+    """What is left of a limit of which `share` is asked for, in words; beyond it how many times the limit that is."""
+    return f"margin {100 * (1 - share):.0f} %" if share <= 1 else f"{share:.3g} times the limit"
 
 
 def shaft_torque(bench: Bench, procedure: Procedure) -> float:

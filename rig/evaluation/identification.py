@@ -33,7 +33,7 @@ class Identification:
     predictions: Sequence[Prediction]  # θ̃ at speed as recorded and as the gear file gives it
     coasts: Sequence[Coasting]
     used: int  # runs the fit could read
-    of: int  # completed runs there were
+    of: int  # runs there were, completed or not
     simulated: bool
 
     @property
@@ -76,7 +76,7 @@ def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
         predictions=predictions(recordings, file.gear(), terms),
         coasts=coasts(runs, found, say),
         used=len(recordings),
-        of=len(runs),
+        of=len(folders),
         simulated=file.simulated,
     )
 

@@ -140,6 +140,8 @@ def _checks_said(result: Result) -> str:
     if failed == 0:
         return f"All {total} conditions were met." if total > 1 else "The condition was met."
     were = f"{failed} of {total} conditions {'was' if failed == 1 else 'were'} not met"
+    if total == 1:
+        were = "The condition was not met"
     if result.rejected:
         return f"{were}: the run is rejected and its figures do not count."
     return f"{were}: read the figures with that in mind."

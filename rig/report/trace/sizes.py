@@ -10,6 +10,7 @@ from rig.report.numbers import ABSENT, estimate, fixed, plain
 
 MILLI = {"N·m": "mN·m", "N·m·s/rad": "mN·m·s/rad", "kg·m²": "g·m²", "s": "ms"}
 FINE = 0.01  # rad; smaller angles are errors, which people read in arcsec, larger ones phases
+WILD = 1e6  # half an interval over the value or one SI unit, from which a fit has not seen the parameter at all
 SMALL = 0.1  # below it the prefix saves the reader from counting zeros
 
 
@@ -23,7 +24,9 @@ def three(value: float | None) -> str:
 
 
 def said(p: Parameter) -> str:
-    """Value with 95 % interval and unit."""
+    """Value with 95 % interval and unit, in words where the fit has none."""
+    if (p.ci95[1] - p.ci95[0]) / 2 > WILD * max(abs(p.value), 1.0):
+        return "not determined"
     if p.unit == "rad" and 0 < abs(p.value) < FINE:
         return estimate(p.value / ARCSEC, (p.ci95[0] / ARCSEC, p.ci95[1] / ARCSEC), "arcsec")
     if p.unit in MILLI and 0 < max(abs(p.value), (p.ci95[1] - p.ci95[0]) / 2) < SMALL:

@@ -14,6 +14,8 @@ from rig.analysis.tracing.outcome.result import Candidate, Errors, Status, Verdi
 from rig.analysis.tracing.runs.cannot import highest_order, together
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.model.effect import Parameter, parameter
+from rig.report.numbers import SPACE
+from rig.report.trace.sizes import said as sized
 
 RPM = np.pi / 30
 
@@ -51,6 +53,18 @@ def test_at_two_speeds_every_parameter_is_given_as_fitted() -> None:
     assert not_told(BASELINE, [run(9.6), run(300.0)]) == []
 
 
+def test_what_is_left_open_is_said_with_its_interval_or_without_a_number_where_that_is_noise() -> None:
+    wide, wild = parameter("K", 8890.0, 17640.0, "N·m/rad"), parameter("B_sp", 9.61, 230.0, "N·m·s/rad")
+    (said,) = not_told((wide, wild), [run(9.6), run(300.0)])
+    assert "K (8890 N·m/rad, 95 % -8750 to 26500)" in said
+    assert "B_sp (not even its order of magnitude)" in said
+
+
+@pytest.mark.parametrize(("half", "words"), [(54e15, "not determined"), (3.0, "0.1 ± 3.0 N·m/rad")])
+def test_the_page_shows_no_interval_beyond_reason(half: float, words: str) -> None:
+    assert sized(parameter("K", 0.1, half, "N·m/rad")).replace(SPACE, " ") == words
+
+
 def test_at_one_speed_constant_friction_and_drag_may_each_be_all_of_it() -> None:
     found = named(honest(BASELINE, [run(300.0), run(310.0), run(0.0, locked=True)]))
     omega = 305.0 * RPM
@@ -75,7 +89,7 @@ def test_orders_beyond_the_rows_of_the_slowest_run_are_not_given() -> None:
 def test_what_may_be_zero_or_below_is_said_not_to_be_determined() -> None:
     odd = (*BASELINE[:1], parameter("B_sp", -5933.0, 5278.0, "N·m·s/rad"), parameter("J_l", 0.7, 7.0, "kg·m²"))
     (said,) = not_told(odd, [run(9.6)])
-    assert "B_sp (-5.93e+03 N·m·s/rad, 95 % -1.12e+04 to -655), J_l (0.7 kg·m², 95 % -6.3 to 7.7)" in said
+    assert "B_sp (-5930 N·m·s/rad, 95 % -11200 to -655), J_l (0.7 kg·m², 95 % -6.3 to 7.7)" in said
     assert "K (" not in said
 
 

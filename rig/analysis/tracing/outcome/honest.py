@@ -18,6 +18,7 @@ from rig.model.effect import Parameter
 ORDER: Final = "theta_p_order_"
 POSITIVE: Final = ("K", "J_m", "B_m", "tau_c", "J_l", "B_l", "tau_cl", "B_sp")
 """What no gear has less than none of."""
+NOISE: Final = 30.0  # width of an interval over its value, from which the value says nothing
 
 
 def honest(found: Sequence[Parameter], runs: Sequence[Recording]) -> tuple[Parameter, ...]:
@@ -49,8 +50,16 @@ def left_open(found: Sequence[Parameter]) -> tuple[Parameter, ...]:
 
 
 def in_words(found: Sequence[Parameter]) -> str:
-    """Each with its value and interval."""
-    return ", ".join(f"{p.name} ({p.value:.3g} {p.unit}, 95 % {p.ci95[0]:.3g} to {p.ci95[1]:.3g})" for p in found)
+    """Each with its value and interval; without numbers where they would be nothing but noise."""
+    return ", ".join(f"{p.name} ({_said(p)})" for p in found)
+
+
+def _said(p: Parameter) -> str:
+    low, high = p.ci95
+    if not high - low < NOISE * abs(p.value):
+        return "not even its order of magnitude"
+    value, least, most = (f"{float(f'{x:.3g}'):.10g}" for x in (p.value, low, high))
+    return f"{value} {p.unit}, 95 % {least} to {most}"
 
 
 def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]:

@@ -80,7 +80,7 @@ class Ripple:
         if self.per_load is not None:
             said.append(f"{1e3 * self.per_load:.3g} mN·m more per N·m of load")
         if self.per_speed_squared is not None:
-            said.append(f"{1e6 * self.per_speed_squared:.3g} µN·m more per (rad/s)²")
+            said.append(f"{1e3 * self.per_speed_squared:.3g} mN·m more per (rad/s)²")
         if self.lag is not None:
             late = f"{1e3 * self.lag[0]:.3g} ± {1e3 * self.lag[1]:.2g} ms after the angle"
             said.append(f"read {late} (or turned so by a resonance)")

@@ -114,8 +114,9 @@ def _one_load(runs: Sequence[Recording]) -> list[str]:
     low, high = (float(np.percentile(np.concatenate(torques), q)) for q in (1, 99))
     if high - low > ONE_LOAD:
         return []
-    return [f"The torque spans {high - low:.2g} N·m: stiffness, its loops and gaps, and what a load does to friction "
-            "and kinematic error are as good as unseen."]  # fmt: skip
+    spans = f"The torque through the gear spans {high - low:.2g} N·m"
+    return [f"{spans}: stiffness, its loops and gaps, and what a load does to "
+            "friction and kinematic error are as good as unseen."]  # fmt: skip
 
 
 def together(runs: Sequence[Recording]) -> tuple[tuple[str, ...], ...]:
