@@ -27,6 +27,8 @@ OF_DATA = (ArithmeticError, LookupError, MemoryError, RecursionError, ValueError
 DEFECTS = (AssertionError, AttributeError, NameError, TypeError)
 """What only a mistake of ours raises, for what a run holds is looked at before: said so, with the traceback."""
 
+WHOLE = 2.0  # turns of the motor, forth and back: less holds no whole one once the reversals are cut
+
 Part = Callable[[Findings, Source, Motion, Speed | None], None]
 """Imports what it analyses with when it is asked: a run is of one procedure, and a person waits."""
 
@@ -84,8 +86,13 @@ def _split(found: Findings, run: Source, motion: Motion, reference: Source | Non
 
 
 def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:
-    """A procedure with no analysis of its own: what its motion allows."""
+    """A procedure with no analysis of its own: what it found itself as it ran, else what its motion allows."""
     turns = float(np.ptp(motion.theta_m)) / TURN
+    if (said := str(run.manifest.get("finding") or "")) and turns < WHOLE:
+        found.sentence = said
+        found.exact("motor_travel", "Travel of the motor", turns, "turns", "Highest less lowest angle of the motor.")
+        found.cannot.append("It is a check: what it found it said itself, when it ran, and nothing is computed again.")
+        return
     found.cannot.append(
         f"There is no analysis for {run.manifest.get('label') or run.procedure} by itself: these figures are what any "
         "run of this motion gives."

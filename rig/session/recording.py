@@ -6,6 +6,7 @@ import contextlib
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rig.bench import Bench
 from rig.control.setpoints import setpoints_of
@@ -80,15 +81,17 @@ class Recording:
 
     def _close(self, recorder: Recorder, folder: Path, ending: Ending, rows: int) -> str:
         """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""
+        facts: dict[str, Any] = {"exit": int(ending.exit)}
         if ending.finding is not None:
-            self.log.event("finding", str(getattr(ending.finding, "sentence", ending.finding)))
+            facts["finding"] = str(getattr(ending.finding, "sentence", ending.finding))
+            self.log.event("finding", facts["finding"])
         try:
             # what the recorder could not write is in the ring: closing the run tries again
             with contextlib.suppress(RecorderError):
                 recorder.close()
             self.log.close()  # its hash is taken next: nothing may be added after
-            summary, code = self.timing.summary(), int(ending.exit)
-            closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, exit=code)
+            summary = self.timing.summary()
+            closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, **facts)
         except HdrigError as error:
             return f"{error}; hdrig recover {folder} tries again"
         return f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""

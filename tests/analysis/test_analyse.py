@@ -91,3 +91,13 @@ def test_too_few_rows_a_turn_is_said_and_not_fitted() -> None:
     result = analyse(run)
     assert any("too few" in s for s in result.cannot)
     assert "coefficients" not in result.tables
+
+
+def test_a_check_is_told_by_what_it_found_and_not_called_inconclusive_for_its_short_way() -> None:
+    run = at_speed(rpm=15.0, seconds=4.0)
+    there_and_back = {name: np.concatenate([x, x[::-1]]) for name, x in run.columns.items() if name != "t"}
+    t = np.arange(2 * run.columns["t"].size) * 1e-3
+    about = {"procedure": "other", "label": "sign-and-scale", "gear": {"ratio": 50}}
+    result = analyse(MadeRun({"t": t, **there_and_back}, about | {"finding": "ratio 50.003 (declared 50)"}))
+    assert (result.verdict, result.sentence) == (Verdict.MEASURED, "ratio 50.003 (declared 50)")
+    assert analyse(MadeRun({"t": t, **there_and_back}, about)).verdict is Verdict.INCONCLUSIVE
