@@ -13,7 +13,7 @@ def ending_in_a_sentence(act: Callable[[], int]) -> int:
     try:
         return act()
     except HdrigError as error:
-        print(f"hdrig: {error}", file=sys.stderr)
+        print(f"hdrig: {'; '.join([str(error), *getattr(error, '__notes__', [])])}", file=sys.stderr)
         return int(error.exit)
     except KeyboardInterrupt:
         print("hdrig: interrupted", file=sys.stderr)

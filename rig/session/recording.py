@@ -60,6 +60,7 @@ class Recording:
             ending = loop.run(procedure, setting)
         except HdrigError as error:
             ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
+            error.add_note(f"what was recorded is in {folder}")
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
