@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from rig.commands.targets import refuse_unwritable
@@ -43,10 +44,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prints the run folder."""
+    """Prints the run folder; on stderr, so that a script gets the folder alone, what was found on the way."""
     from rig.process.software import software
     from rig.runfile.importing import import_file
+    from rig.runfile.manifest import read
 
     refuse_unwritable(args.out)
-    print(import_file(args.file, args.map, args.out, software()))
+    folder = import_file(args.file, args.map, args.out, software())
+    about = read(folder)
+    simulated = "SIMULATED " if about["backend"] == "sim" else ""
+    over = f", {about['duration']:.4g} s" if about.get("duration") else ""
+    print(f"{simulated}{args.file.name}: {about['rows']} rows{over}", file=sys.stderr)
+    for note in about.get("notes", ()):
+        print(f"  {note}", file=sys.stderr)
+    print(folder)
     return 0
