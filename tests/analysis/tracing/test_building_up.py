@@ -6,11 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.runs import building_up
-from rig.analysis.tracing.runs.building_up import JUMP, builds_up
+from rig.analysis.tracing.runs.building_up import WAYS, builds_up
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import trace
 from tests.blind.cases import Request
@@ -34,17 +35,26 @@ def test_friction_that_jumps_builds_up_over_no_way(shared: Path) -> None:
     assert not builds_up(read_campaign(shared / "cases" / "open-1").runs)
 
 
+def left(*over: float) -> np.ndarray[Any, Any]:
+    """Squares that a jump and each of the ways leave; the first ways as given, RMS, the others as much as the jump."""
+    return np.square([1.0, *over, *[1.0] * (len(WAYS) - len(over))])
+
+
 @pytest.mark.parametrize(
-    ("ways", "shown"),
+    ("runs", "shown"),
     [
-        ([2e-3, 2e-3, 2.5e-3, JUMP], True),  # a large load hides it
-        ([2e-3, JUMP, JUMP], False),
-        ([2e-3, 2e-3, 7e-3, 7e-3], False),  # no way that all have
+        ([left(0.7, 0.4, 0.7)] * 3 + [left(1.0, 0.9, 1.0)], True),  # noise, or a large load, hides it in one
+        ([left(0.7, 0.4, 0.7), *[left(1.0, 0.97, 1.0)] * 3], False),
+        ([left(0.4, 0.9, 1.5), left(1.5, 0.9, 0.4)], False),  # no way that all have
+        ([left(*np.linspace(1.0, 0.3, len(WAYS)))] * 3, False),  # longer than the longest: the equations see it
+        ([left(0.7, 0.4, 0.7) * 0.01, left() * 100.0], False),  # what is left where nothing is lost counts as little
         ([], False),
     ],
 )
-def test_most_runs_have_to_show_one_way(monkeypatch: pytest.MonkeyPatch, ways: list[float], shown: bool) -> None:
-    told = iter([(way, 2) for way in ways])
-    monkeypatch.setattr(building_up, "_way", lambda run: next(told))
-    runs: list[Any] = [None] * len(ways)
-    assert builds_up(runs) is shown
+def test_all_runs_together_have_to_show_one_way(
+    monkeypatch: pytest.MonkeyPatch, runs: list[np.ndarray[Any, Any]], shown: bool
+) -> None:
+    told = iter([(squares, 2) for squares in runs])
+    monkeypatch.setattr(building_up, "_at_reversals", lambda run: next(told))
+    some: list[Any] = [None] * len(runs)
+    assert builds_up(some) is shown
