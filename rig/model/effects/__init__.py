@@ -1,6 +1,6 @@
 """The library of effects the paper's model lacks, one per file; a file bears the effect's name.
 
-How to write one: subclass `Effect` (rig/model/effect.py), `name` as the file, and say
+How to write one: subclass `Effect` (rig/model/effect/effect.py), `name` as the file, and say
 
 - `shapes(reach)`: the few values of each nonlinear parameter that together leave no gap between them (neighbours should
   share about 90 % of what they explain; the refit finds the exact value). An order or frequency to be scanned is a

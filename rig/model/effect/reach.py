@@ -1,0 +1,28 @@
+"""What a campaign covers, which says what of an effect it can show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+MEASURED: Final = frozenset({"t", "theta_m", "theta_l", "tau_m", "tau_l"})
+"""What a full campaign measures."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What a campaign covers, from which an effect chooses the shapes worth trying. SI."""
+
+    ratio: float
+    fastest: float  # rad/s of the motor
+    slowest: float  # rad/s of the motor, while it turns
+    torque: float  # N·m, largest |T|
+    duration: float  # s, first to last sample of the campaign
+    rate: float  # Hz of the samples
+    band: float  # Hz up to which the equations are compared
+    load_turns: float  # most output turns in one run
+    counts_m: float  # encoder counts per turn; 0 when not said
+    counts_l: float
+    has: frozenset[str] = MEASURED  # channels that any run measured
+    lines_m: tuple[int, ...] = ()  # line counts that the residual shows, whatever is said of the encoders
+    lines_l: tuple[int, ...] = ()
