@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from rig.config.bench_file import BenchFile, load_text, read_bench
+from rig.config.bench_file import BenchFile, read_bench
+from rig.config.text_file import load_text
 from rig.config.together import check_keys, check_together
 from rig.control.filter import SpeedFilter
 from rig.core.clock import Clock, WallClock

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from rig.bench import read
-from rig.config.bench_file import HandSection
+from rig.config.sections import HandSection
 from rig.core.errors import NotReady
 from rig.core.operator import (
     Change,

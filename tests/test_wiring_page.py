@@ -7,15 +7,14 @@ import re
 import pytest
 
 from rig.bench import BENCHES, ROLES, device_class
-from rig.config.bench_file import (
-    BenchFile,
+from rig.config.bench_file import BenchFile, read_bench
+from rig.config.sections import (
     BusSection,
     ConsoleSection,
     ControlSection,
     DeviceSection,
     LimitsSection,
     LoopSection,
-    read_bench,
 )
 
 PAGE = (BENCHES / "WIRING.md").read_text(encoding="utf-8")

@@ -12,7 +12,9 @@ from typing import Annotated, Any, Literal
 import tomlkit
 from pydantic import Field, ValidationError
 
-from rig.config.bench_file import Strict, load_text, sentence
+from rig.config.quantities import Strict
+from rig.config.sentence import sentence
+from rig.config.text_file import load_text
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rig.campaign.planner import Campaign
-from rig.config.bench_file import TwinSection
+from rig.config.twin import TwinSection
 from rig.procedures.kinematic_error import KinematicError
 
 LOADS = 4  # from as many on a law of the load is fitted: fewer are hung for other reasons

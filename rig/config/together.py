@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from rig.config.bench_file import BenchFile, DeviceSection
+from rig.config.bench_file import BenchFile
+from rig.config.sections import DeviceSection
 from rig.core.errors import UsageError
 
 

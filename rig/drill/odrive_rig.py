@@ -6,7 +6,8 @@ import struct
 from typing import Any, ClassVar, final
 
 from rig.bench import BENCHES, Bench, override
-from rig.config.bench_file import load_text, read_bench
+from rig.config.bench_file import read_bench
+from rig.config.text_file import load_text
 from rig.drill.rig import MOTOR_CONSTANT, STALE, DrillRig
 from sim.wire.bus import Bus
 from sim.wire.faults.of_bus import BusFaults

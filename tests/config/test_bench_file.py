@@ -1,6 +1,5 @@
 """Configuration is read strictly: the sentence names file, key, value with unit, and what was expected."""
 
-import os
 import re
 from pathlib import Path
 
@@ -9,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rig
-from rig.config.bench_file import BenchFile, load_text, read_bench
+from rig.config.bench_file import BenchFile, read_bench
 from rig.core.errors import UsageError
 
 TEXT = (Path(rig.__file__).parent / "benches" / "twin.toml").read_text(encoding="utf-8")
@@ -67,24 +66,6 @@ def test_any_text_is_read_or_refused_with_a_sentence(text: str) -> None:
         assert isinstance(read_bench(text, "bench.toml"), BenchFile)
     except UsageError as error:
         assert str(error).startswith("bench.toml")
-
-
-def test_a_file_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="No such file"):
-        load_text(tmp_path / "absent.toml")
-    (tmp_path / "latin.toml").write_bytes(b"name = '\xe9'")
-    with pytest.raises(UsageError, match="not UTF-8"):
-        load_text(tmp_path / "latin.toml")
-
-
-@pytest.mark.parametrize("name", ["/dev/zero", "/", "pipe", "huge.toml", "a\x00b.toml", "\ud800.toml", "a" * 5000])
-def test_what_never_ends_or_is_no_file_is_not_read_as_a_bench(tmp_path: Path, name: str) -> None:
-    os.mkfifo(tmp_path / "pipe")  # nobody ever writes: reading it would wait for ever
-    with open(tmp_path / "huge.toml", "wb") as sparse:
-        sparse.truncate(2**30)
-    with pytest.raises(UsageError) as caught:
-        load_text(tmp_path / name)
-    assert len(str(caught.value).encode()) < 400 + len(str(tmp_path))
 
 
 def test_a_bench_without_a_console_table_stops_a_run_whose_page_is_lost() -> None:

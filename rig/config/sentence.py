@@ -1,0 +1,50 @@
+"""What pydantic refuses as one sentence: key, value, what was expected, the nearest valid key."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ValidationError
+
+from rig.core.nearest import nearest
+
+
+def sentence(error: ValidationError, model: type[BaseModel]) -> str:
+    """The first complaint of pydantic as one sentence: key, value, what was expected, nearest valid key."""
+    found = error.errors(include_url=False)
+    first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])  # a typo also shows as a missing key
+    path = [str(p) for p in first["loc"]]
+    key = ".".join(path) or "the file"
+    match first["type"]:
+        case "extra_forbidden":
+            return f"unknown key '{key}'; {nearest(path[-1], _keys_beside(model, path))}"
+        case "missing":
+            unit = _unit_note(model, path).strip()
+            return f"'{key}' is missing" + (f"; expected a number in {unit}" if unit else "")
+        case "value_error":
+            return f"{'.'.join(path)}: {first['ctx']['error']}" if path else str(first["ctx"]["error"])
+        case _:
+            expected = first["msg"].removeprefix("Input should be ")
+            shown = repr(first["input"])
+            shown = shown if len(shown) <= 60 else shown[:57] + "..."
+            return f"{key} = {shown}{_unit_note(model, path)}: expected {expected}"
+
+
+def _model_at(model: type[BaseModel], path: list[str]) -> type[BaseModel]:
+    """The model that holds the last key of `path`."""
+    for part in path[:-1]:
+        field = model.model_fields.get(part)
+        options = getattr(field.annotation, "__args__", (field.annotation,)) if field else ()
+        inner = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
+        if not inner:
+            break
+        model = inner[0]
+    return model
+
+
+def _keys_beside(model: type[BaseModel], path: list[str]) -> list[str]:
+    return [f.alias or name for name, f in _model_at(model, path).model_fields.items()]
+
+
+def _unit_note(model: type[BaseModel], path: list[str]) -> str:
+    field = _model_at(model, path).model_fields.get(path[-1]) if path else None
+    unit = (field.json_schema_extra or {}).get("unit") if field else None  # type: ignore[union-attr]
+    return f" {unit}" if unit and unit != "1" else ""
