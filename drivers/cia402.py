@@ -12,9 +12,11 @@ import struct
 from typing import ClassVar
 
 from drivers import watchdog402
+from drivers.emergencies import emergency_text
 from drivers.limits402 import set_limits
+from drivers.mapping import Mapped
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
-from drivers.node import Mapped, Node, emergency_text
+from drivers.node import Node
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import DISABLE, ENABLE, OPERATES, RESET, SHUTDOWN, SWITCH_ON, speed_unit, state_of
 from drivers.scales402 import compare_scales
@@ -78,7 +80,7 @@ class Cia402(Drive):
         self.node.open()
         identity = self.node.identify(PROFILE)
         self.node.pause()
-        self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
+        self.node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
         compare_scales(self.node, self.place)
         self._configure()
         self.node.start()
@@ -91,7 +93,7 @@ class Cia402(Drive):
 
     def _configure(self) -> None:
         for told in (*STATUS[1:], *MOTION):
-            if self.node.lacks(told.at):  # small nodes take it into a PDO all the same, and tell zeros
+            if self.node.sdo.lacks(told.at):  # small nodes take it into a PDO all the same, and tell zeros
                 raise NotReady(f"{self.node.who} does not tell its {TELLS[told.at]} ({told.at:04X}h)")
         self._inputs.arrange((STATUS, MOTION), optional=SHOWN)
         self.node.produce_heartbeat()
@@ -104,7 +106,7 @@ class Cia402(Drive):
         """Targets of `mode` in RPDO 1, and in 6060h. The node is pre-operational."""
         target = TARGETS[mode]
         if mode is Mode.VELOCITY:
-            code = self.node.read_uint(0x60A9, default=0)
+            code = self.node.sdo.read_uint(0x60A9, default=0)
             unit = speed_unit(code, self.place.counts_per_turn)
             if unit is None:
                 raise NotReady(f"{self.node.who} tells speeds in a unit not known here (60A9h = {code:08X}h)")
@@ -149,7 +151,7 @@ class Cia402(Drive):
             raise NotReady("the drive is not connected")
         if mode is not self.mode:
             self._change(mode)
-        self._scale.position = self._direction * self.node.read_int(0x6064) * self._step
+        self._scale.position = self._direction * self.node.sdo.read_int(0x6064) * self._step
         self._walk(SHUTDOWN, "ready to switch on")
         self._walk(SWITCH_ON, "switched on")
         rest_all(self.node)
@@ -191,7 +193,7 @@ class Cia402(Drive):
     def _walk(self, controlword: int, wanted: str) -> None:
         self._hold(controlword)
         until = self.bus.clock.now() + STEP_PATIENCE
-        while (state := state_of(self.node.read_uint(0x6041))) != wanted:
+        while (state := state_of(self.node.sdo.read_uint(0x6041))) != wanted:
             if state.startswith("fault"):
                 raise NotReady(f"{self.node.who} is in {state}: {self._error()}")
             if self.bus.clock.now() > until:
@@ -199,7 +201,7 @@ class Cia402(Drive):
             self._hold(controlword)
 
     def _error(self) -> str:
-        code = self.node.read_uint(0x603F, default=0)
+        code = self.node.sdo.read_uint(0x603F, default=0)
         return self.node.emergency or f"error {code:04X}h, {emergency_text(code)}"
 
     # ---- in a run ----
@@ -296,8 +298,8 @@ class Cia402(Drive):
             return False
         with contextlib.suppress(NotReady):
             self.node.pause()  # one that is stopped answers nothing
-            self.node.put(0x6040, 0, struct.pack("<H", DISABLE))
-            return not self.node.read_uint(0x6041) & OPERATES
+            self.node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
+            return not self.node.sdo.read_uint(0x6041) & OPERATES
         return False
 
     def reset_fault(self) -> None:
@@ -310,7 +312,7 @@ class Cia402(Drive):
         for word in (DISABLE, RESET, DISABLE):
             self._hold(word)
             self.bus.wait(0.01, lambda: False)
-        state = state_of(self.node.read_uint(0x6041))
+        state = state_of(self.node.sdo.read_uint(0x6041))
         if state.startswith("fault"):
             raise NotReady(f"{self.node.who} stays in {state} after a reset: {self._error()}")
         self.node.revive()

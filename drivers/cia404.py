@@ -6,7 +6,8 @@ import math
 import struct
 from typing import ClassVar
 
-from drivers.node import Mapped, Node
+from drivers.mapping import Mapped
+from drivers.node import Node
 from drivers.on_sync import OnSync
 from drivers.pdo import Inputs
 from drivers.wiring import Place, Wiring
@@ -49,17 +50,17 @@ class Cia404(OnSync, TorqueSensor):
         self.node.open()
         identity = self.node.identify(PROFILE)
         self.node.pause()
-        unit = self.node.read_uint(0x6131, 1, default=0)
+        unit = self.node.sdo.read_uint(0x6131, 1, default=0)
         prefix = 1.0 if unit == self.place.options.get("unit_code") else prefix_of(unit)
         if prefix is None:
             raise NotReady(
                 f"{self.node.who} measures in a unit that is no torque (6131h = {unit:08X}h), expected N·m, 00560000h; "
                 f"where its manual says that this is N·m: {self.place.where}.unit_code = 0x{unit:08X}"
             )
-        whole = self.node.read(WHOLE.at, WHOLE.sub, b"") != b""
-        if not whole and self.node.read(REAL.at, REAL.sub, b"") == b"":  # some take it into a PDO, and tell zeros
+        whole = self.node.sdo.read(WHOLE.at, WHOLE.sub, b"") != b""
+        if not whole and self.node.sdo.read(REAL.at, REAL.sub, b"") == b"":  # some take it into a PDO, and tell zeros
             raise NotReady(f"{self.node.who} tells its torque neither as 9130h:1 nor as 6130h:1")
-        digits = self.node.read_uint(0x6132, 1) if whole else 0
+        digits = self.node.sdo.read_uint(0x6132, 1) if whole else 0
         self._scale = prefix * 10.0**-digits
         self._inputs.arrange(((WHOLE if whole else REAL,),))
         self.node.produce_heartbeat()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from drivers.node import Mapped, Node
+from drivers.mapping import Mapped
+from drivers.node import Node
 from drivers.on_sync import OnSync
 from drivers.pdo import Inputs
 from drivers.unwrap import Unwrapped
@@ -44,7 +45,7 @@ class Cia406(OnSync, Encoder):
         """Identify, compare the scale, map 6004h on SYNC, start. Raises NotReady."""
         self.node.open()
         identity = self.node.identify(PROFILE)
-        if self.node.lacks(0x6004):
+        if self.node.sdo.lacks(0x6004):
             raise NotReady(f"{self.node.who} does not tell its position (6004h)")
         self.node.pause()
         per_turn, modulus = self._scale()
@@ -64,10 +65,10 @@ class Cia406(OnSync, Encoder):
 
     def _scale(self) -> tuple[int, int]:
         """Counts per turn, and at how many the position wraps."""
-        if self.node.read_uint(0x6000, default=0) & SCALING:
-            return self.node.read_uint(0x6001), self.node.read_uint(0x6002, default=0) or WHOLE
-        per_turn = self.node.read_uint(0x6501)
-        return per_turn, per_turn * max(self.node.read_uint(0x6502, default=1), 1)
+        if self.node.sdo.read_uint(0x6000, default=0) & SCALING:
+            return self.node.sdo.read_uint(0x6001), self.node.sdo.read_uint(0x6002, default=0) or WHOLE
+        per_turn = self.node.sdo.read_uint(0x6501)
+        return per_turn, per_turn * max(self.node.sdo.read_uint(0x6502, default=1), 1)
 
     def read(self) -> AngleReading:
         """The newest position; never waits. A jump is marked as a new epoch; `trouble` says what else is wrong."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 import struct
 
-from drivers.node import Node, Refused
+from drivers.node import Node
+from drivers.sdo import Refused
 from drivers.targets402 import PERMILLE
 from drivers.wiring import Place
 from rig.core.units import TURN
@@ -44,7 +45,7 @@ def _limit_lag(node: Node, place: Place) -> None:
 def _prefer(node: Node, index: int, value: bytes, otherwise: str) -> bool:
     """Write an object; one that insists on another value is remarked on. False when it is not there."""
     try:
-        return node.write_if_there(index, 0, value)
+        return node.sdo.write_if_there(index, 0, value)
     except Refused as why:
         node.remarks.append(f"{why}: {otherwise}")
         return True

@@ -9,8 +9,10 @@ from __future__ import annotations
 import contextlib
 import struct
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from drivers.node import Mapped, Node, Refused
+from drivers.node import Node
+from drivers.sdo import Refused
 
 INVALID = 1 << 31  # of a PDO's identifier: not in use
 EXTENDED = 1 << 29  # 29 bits long
@@ -19,22 +21,31 @@ EVENTS = (254, 255)  # transmission types: when its maker says so
 BESIDE = ((3, "inhibit time"), (5, "event timer"), (6, "SYNC start value"))  # sub-indices
 
 
+class Mapped(NamedTuple):
+    """One object in a PDO."""
+
+    at: int  # index
+    sub: int
+    bits: int
+    form: str = ""  # of its number, as struct writes it
+
+
 def map_pdo(node: Node, communication: int, identifier: int, kind: int, objects: Sequence[Mapped]) -> None:
     """Set up one PDO. `communication` 1400h… or 1800h…, `kind` its transmission type. Raises NotReady, naming what is
     refused.
     """
     mapping = communication + 0x200
-    identifier |= node.read_uint(communication, 1, default=0) & KEPT
-    node.put(communication, 1, struct.pack("<I", identifier | INVALID))
-    node.write(communication, 2, bytes((kind,)))
+    identifier |= node.sdo.read_uint(communication, 1, default=0) & KEPT
+    node.sdo.put(communication, 1, struct.pack("<I", identifier | INVALID))
+    node.sdo.write(communication, 2, bytes((kind,)))
     if communication >= 0x1800:
         quieten(node, communication)
-    node.put(mapping, 0, b"\0")  # many drives refuse entries while the number is not zero
+    node.sdo.put(mapping, 0, b"\0")  # many drives refuse entries while the number is not zero
     for place, (index, sub, bits, _) in enumerate(objects, 1):
-        node.write(mapping, place, struct.pack("<I", index << 16 | sub << 8 | bits))
-    node.write(mapping, 0, bytes((len(objects),)))
-    node.put(communication, 1, struct.pack("<I", identifier))
-    told = node.read_uint(communication, 1)
+        node.sdo.write(mapping, place, struct.pack("<I", index << 16 | sub << 8 | bits))
+    node.sdo.write(mapping, 0, bytes((len(objects),)))
+    node.sdo.put(communication, 1, struct.pack("<I", identifier))
+    told = node.sdo.read_uint(communication, 1)
     if told & ~KEPT != identifier & ~KEPT:
         raise Refused(f"{node.who}: wrote {identifier:08X}h to {communication:04X}h:1, it reads back {told:08X}h")
 
@@ -42,9 +53,9 @@ def map_pdo(node: Node, communication: int, identifier: int, kind: int, objects:
 def quieten(node: Node, communication: int) -> None:
     """A TPDO that follows SYNC sends for no other reason. What will not be switched off is remarked on."""
     for sub, name in BESIDE:
-        if node.read_uint(communication, sub, default=0):
+        if node.sdo.read_uint(communication, sub, default=0):
             try:
-                node.write(communication, sub, bytes(1 if sub == 6 else 2))
+                node.sdo.write(communication, sub, bytes(1 if sub == 6 else 2))
             except Refused as why:
                 node.remarks.append(f"{why}: its {name} stays, and frames come that no SYNC has asked for")
 
@@ -55,14 +66,14 @@ def keep_sending(node: Node, communication: int, period: float) -> None:
     Nothing where its maker set a timer that is as fast. A node that takes none is found out when it falls silent.
     """
     wanted = max(round(period * 1000), 1)  # ms
-    if not 0 < node.read_uint(communication, 5, default=0) <= wanted:
+    if not 0 < node.sdo.read_uint(communication, 5, default=0) <= wanted:
         with contextlib.suppress(Refused):
-            node.write(communication, 5, struct.pack("<H", wanted))
+            node.sdo.write(communication, 5, struct.pack("<H", wanted))
 
 
 def switch_off_pdo(node: Node, communication: int) -> None:
     """A PDO not wanted on the bus; nothing when the node has none such. Raises NotReady."""
-    present = node.read(communication, 1, b"")
+    present = node.sdo.read(communication, 1, b"")
     if present and not int.from_bytes(present, "little") & INVALID:
         with contextlib.suppress(Refused):  # then it is sent: unread, and told by the load of the bus
-            node.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))
+            node.sdo.put(communication, 1, struct.pack("<I", int.from_bytes(present, "little") | INVALID))

@@ -1,27 +1,14 @@
-"""What every CANopen node shares: identity, configuration verified by read-back, PDOs, heartbeat and emergencies.
-
-SDO is canopen's, but in the caller's thread: its queue of answers takes frames from the bus itself, so that no receive
-thread is needed, before a run or in it.
-"""
+"""What every CANopen node shares: identity, heartbeat, NMT states, emergencies, what is wrong with it."""
 
 from __future__ import annotations
 
-import contextlib
-import logging
-import math
-import queue
 import struct
-from typing import Any, NamedTuple
-
-import can
-import canopen
-from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from drivers.bus import HEARTBEAT, Bus, Frame
+from drivers.emergencies import emergency_text
+from drivers.sdo import Refused, Sdo
 from rig.core.devices import Identity
 from rig.core.errors import NotReady
-
-logging.getLogger("canopen").setLevel(logging.CRITICAL)  # it logs what we say in sentences
 
 NODES = range(1, 128)
 START, PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
@@ -33,43 +20,6 @@ PATIENCE = 3.5  # heartbeats that may stay away
 TRIES = 5  # questions of 0.3 s each before a node is not there: some take a second to boot
 TWICE = 5  # answers more than there were SYNCs that are no accident
 OWED = 200  # answers at most that a node held up may give all at once, later
-NO_OBJECT = 0x06020000  # abort code
-UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
-MISSING = object()
-
-
-class Refused(NotReady):
-    """The node answered, with no. Other ways may lead there."""
-
-
-class Mapped(NamedTuple):
-    """One object in a PDO."""
-
-    at: int  # index
-    sub: int
-    bits: int
-    form: str = ""  # of its number, as struct writes it
-
-
-class _Answers(queue.Queue[bytes]):
-    """SDO answers, fetched from the bus by whoever waits for them."""
-
-    def __init__(self, bus: Bus) -> None:
-        super().__init__()
-        self._bus = bus
-
-    def empty(self) -> bool:
-        """Asked before each request: what came too late for the last one is thrown away."""
-        self._bus.drain()
-        while self.qsize():
-            super().get(block=False)
-        return True
-
-    def get(self, block: bool = True, timeout: float | None = None) -> bytes:
-        """The next answer. Raises queue.Empty."""
-        if not self._bus.wait(timeout or 0.0, lambda: self.qsize() > 0):
-            raise queue.Empty
-        return super().get(block=False)
 
 
 class Node:
@@ -79,13 +29,13 @@ class Node:
         self.bus = bus
         self.number = number
         self.who = f"{who} (node {number} on CAN bus '{bus.name}')"
+        self.sdo = Sdo(bus, number, self.who)
         self.remarks: list[str] = []  # what a person should know of it, one sentence each
         self.emergency = ""  # the first one since `forget`, in words
         self.rebooted = False  # since `forget`
         self.beats = True  # it sends heartbeats
         self.state: int | None = None  # NMT state it last told
         self.heard = float("-inf")  # s on the loop's clock, last heartbeat
-        self._sdo: Any = None
         self._number = 0  # of the frame seen last
         self._syncs = 0  # sent until then
         self._excess = 0  # answers more than SYNCs; below 0: those it still owes
@@ -95,19 +45,9 @@ class Node:
         if self.number not in NODES:
             raise NotReady(f"{self.who}: CANopen has nodes 1 to {NODES[-1]}")
         self.bus.open()
-        network = canopen.Network()
-        network.bus = self.bus.raw
-        remote = canopen.RemoteNode(self.number, canopen.ObjectDictionary())  # type: ignore[no-untyped-call]
-        remote.associate_network(network)
-        self._sdo = remote.sdo
-        self._sdo.responses = _Answers(self.bus)
-        self.bus.listeners[0x580 + self.number] = self._on_answer
+        self.sdo.open()
         self.bus.listeners[0x080 + self.number] = self._on_emergency
         self.bus.listeners[HEARTBEAT + self.number] = self._on_heartbeat
-
-    def patience(self, seconds: float) -> None:
-        """How long an answer may take from now on; canopen's own 0.3 s until then."""
-        self._sdo.RESPONSE_TIMEOUT = seconds
 
     def forget(self) -> None:
         """Emergencies, reboots and doubled answers so far are no longer news."""
@@ -122,11 +62,11 @@ class Node:
     def identify(self, profile: int) -> Identity:
         """Device type, name, serial number and version. Raises NotReady when it is no `profile` device."""
         self._await()
-        kind = self.read_uint(0x1000) & 0xFFFF
+        kind = self.sdo.read_uint(0x1000) & 0xFFFF
         if kind != profile:
             raise NotReady(f"{self.who} says it is a CiA {kind} device (1000h), expected CiA {profile}")
-        name, version = self.text(0x1008), self.text(0x100A)
-        vendor, product, revision, serial = (self.read_uint(0x1018, sub, default=0) for sub in (1, 2, 3, 4))
+        name, version = self.sdo.text(0x1008), self.sdo.text(0x100A)
+        vendor, product, revision, serial = (self.sdo.read_uint(0x1018, sub, default=0) for sub in (1, 2, 3, 4))
         model = name or f"vendor {vendor:#x} product {product:#x}"
         return Identity(model, str(serial or ""), version or f"{revision:#x}")
 
@@ -135,89 +75,17 @@ class Node:
         said = ""
         for _ in range(TRIES):
             try:
-                self.read(0x1000, 0, b"")
+                self.sdo.read(0x1000, 0, b"")
             except NotReady as why:
                 said = str(why)
                 continue
             return
         raise NotReady(f"{said}; `hdrig devices` asks every node")
 
-    def read(self, index: int, sub: int = 0, default: Any = MISSING) -> bytes:
-        """An object's bytes; `default` where the node will not tell, whatever code it says so with: nodes do not agree
-        on what "no such object" is. Raises NotReady.
-        """
-        try:
-            return bytes(self._sdo.upload(index, sub))
-        except SdoAbortedError as why:
-            if why.code not in UNSURE and default is not MISSING:
-                return default  # type: ignore[no-any-return]
-            raise Refused(f"{self.who} refused to read {index:04X}h:{sub}: {why}") from None
-        except (SdoCommunicationError, can.CanError) as why:
-            told = f"{self.who} does not answer (reading {index:04X}h:{sub}: {why})"
-            raise NotReady(told + self.bus.silence(-math.inf)) from None
-
-    def lacks(self, index: int) -> bool:
-        """The node says, by the standard's own code, that there is no such object. Raises NotReady: it is silent."""
-        try:
-            self._sdo.upload(index, 0)
-        except SdoAbortedError as why:
-            return bool(why.code == NO_OBJECT)
-        except (SdoCommunicationError, can.CanError) as why:
-            raise NotReady(f"{self.who} does not answer (reading {index:04X}h: {why})") from None
-        return False
-
-    def read_uint(self, index: int, sub: int = 0, default: int | None = None) -> int:
-        """An unsigned number, whatever its size. Raises NotReady."""
-        raw = self.read(index, sub, MISSING if default is None else default.to_bytes(8, "little"))
-        return int.from_bytes(raw, "little")
-
-    def read_int(self, index: int, sub: int = 0) -> int:
-        """A signed number. Raises NotReady."""
-        return int.from_bytes(self.read(index, sub), "little", signed=True)
-
-    def text(self, index: int) -> str:
-        """A string, "" when there is none."""
-        return self.read(index, 0, b"").decode(errors="replace").strip("\0 ")
-
-    def write(self, index: int, sub: int, value: bytes) -> None:
-        """Write an object and read it back. Raises NotReady when refused, or when it reads back differently."""
-        self.put(index, sub, value)
-        back = self.read(index, sub)
-        if back[: len(value)] != value:
-            raise Refused(
-                f"{self.who}: wrote {value[::-1].hex()}h to {index:04X}h:{sub}, it reads back {back[::-1].hex()}h"
-            )
-
-    def write_if_there(self, index: int, sub: int, value: bytes) -> bool:
-        """As `write`; False when the node has no such object. Raises NotReady."""
-        try:
-            self._sdo.upload(index, sub)
-        except SdoAbortedError as why:
-            if why.code not in UNSURE:
-                return False
-        except (SdoCommunicationError, can.CanError):
-            pass  # said by the write
-        self.write(index, sub, value)
-        return True
-
-    def restore(self, index: int, sub: int, value: bytes) -> None:
-        """Put back what was there, if the node lets us. Never raises."""
-        with contextlib.suppress(NotReady):
-            self.put(index, sub, value)
-
-    def put(self, index: int, sub: int, value: bytes) -> None:
-        """Write an object that is not to be read back. Raises NotReady."""
-        try:
-            self._sdo.download(index, sub, value)
-        except SdoAbortedError as why:
-            raise Refused(f"{self.who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
-        except (SdoCommunicationError, can.CanError) as why:
-            raise NotReady(f"{self.who} does not answer (writing {index:04X}h:{sub}: {why})") from None
-
     def produce_heartbeat(self) -> None:
         """Have the node tell that it lives. One that cannot is told by the age of its PDOs alone. Raises NotReady."""
         try:
-            self.write(0x1017, 0, struct.pack("<H", PRODUCE))
+            self.sdo.write(0x1017, 0, struct.pack("<H", PRODUCE))
         except Refused as why:
             self.beats = False
             self.remarks.append(f"{self.who} has no heartbeat ({why}): only the age of its PDOs shows that it lives")
@@ -225,7 +93,7 @@ class Node:
     def start(self) -> None:
         """Operational, confirmed by its heartbeat; an error it shows is remarked on. Raises NotReady."""
         self._nmt(START, OPERATIONAL)
-        if register := self.read_uint(0x1001, default=0):
+        if register := self.sdo.read_uint(0x1001, default=0):
             told = f", {self.emergency.rpartition(': ')[2]}" if self.emergency else ""
             self.remarks.append(
                 f"{self.who} shows an error, 1001h = {register:02X}h{told}: look at it before you trust it"
@@ -279,10 +147,6 @@ class Node:
             return f"{self.who} is {told}, expected operational"
         return ""
 
-    def _on_answer(self, data: bytes, t: float) -> None:
-        if len(data) == 8:  # every SDO answer has; canopen breaks on others
-            self._sdo.responses.put(data)
-
     def _on_heartbeat(self, data: bytes, t: float) -> None:
         if len(data) != 1:
             return
@@ -293,37 +157,3 @@ class Node:
         code = int.from_bytes(data[:2], "little") if len(data) >= 2 else 0
         if code and not self.emergency:
             self.emergency = f"{self.who}: emergency {code:04X}h, {emergency_text(code)}"
-
-
-EMERGENCIES = {
-    0x1000: "generic error",
-    0x2000: "current",
-    0x3000: "voltage",
-    0x4000: "temperature",
-    0x5000: "device hardware",
-    0x6000: "device software",
-    0x7000: "additional modules",
-    0x8000: "monitoring",
-    0x8100: "communication",
-    0x8110: "CAN overrun, frames lost",
-    0x8120: "CAN in error-passive mode",
-    0x8130: "heartbeat or life guarding of this host was missed",
-    0x8140: "recovered from bus-off",
-    0x8200: "protocol error",
-    0x8210: "PDO not processed, wrong length",
-    0x8250: "RPDO timeout: the commands stayed away",
-    0x8400: "speed control",
-    0x8500: "position control",
-    0x8600: "position control",
-    0x8611: "following error",
-    0x9000: "external error",
-    0xFF00: "device specific",
-}
-
-
-def emergency_text(code: int) -> str:
-    """What an error code means, by the finest class the standard names      [cia301, 7.2.7]"""
-    for mask in (0xFFFF, 0xFFF0, 0xFF00, 0xF000):
-        if code & mask in EMERGENCIES:
-            return EMERGENCIES[code & mask]
-    return "a code of the maker's"

@@ -13,8 +13,9 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from drivers.bus import Frame
-from drivers.mapping import EVENTS, EXTENDED, INVALID, keep_sending, map_pdo, switch_off_pdo
-from drivers.node import Mapped, Node, Refused
+from drivers.mapping import EVENTS, EXTENDED, INVALID, Mapped, keep_sending, map_pdo, switch_off_pdo
+from drivers.node import Node
+from drivers.sdo import Refused
 from drivers.silence import missing
 from rig.core.clock import NEVER
 from rig.core.errors import NotReady
@@ -52,23 +53,23 @@ def layout(identifier: int, mapped: Sequence[Mapped], wanted: Sequence[Mapped]) 
 def present(node: Node, first: int) -> Iterator[tuple[int, int, int, list[Mapped]]]:
     """(communication object, identifier, transmission type, mapped objects) of the node's PDOs that are switched on."""
     for communication in range(first, first + MOST):
-        identifier = node.read_uint(communication, 1, default=INVALID)
+        identifier = node.sdo.read_uint(communication, 1, default=INVALID)
         if identifier & (INVALID | EXTENDED):
             continue
-        count = node.read_uint(communication + 0x200, 0, default=0)
-        entries = [node.read_uint(communication + 0x200, n + 1, default=0) for n in range(min(count, 64))]
+        count = node.sdo.read_uint(communication + 0x200, 0, default=0)
+        entries = [node.sdo.read_uint(communication + 0x200, n + 1, default=0) for n in range(min(count, 64))]
         mapped = [Mapped(e >> 16, e >> 8 & 0xFF, e & 0xFF) for e in entries]
-        yield communication, identifier & 0x7FF, node.read_uint(communication, 2, default=AT_ONCE), mapped
+        yield communication, identifier & 0x7FF, node.sdo.read_uint(communication, 2, default=AT_ONCE), mapped
 
 
 def ours(node: Node, communication: int, identifier: int, kind: int, objects: Sequence[Mapped]) -> None:
     """One PDO as we want it; as it was when the node refuses. Raises Refused, NotReady."""
-    before = node.read(communication, 1, b"")
+    before = node.sdo.read(communication, 1, b"")
     try:
         map_pdo(node, communication, identifier, kind, objects)
     except Refused:
         if before:
-            node.restore(communication, 1, before)
+            node.sdo.restore(communication, 1, before)
         raise
 
 
@@ -118,7 +119,7 @@ class Inputs:
         if kind == EACH_SYNC:
             return LATCHED
         try:
-            self.node.write(communication, 2, bytes((EACH_SYNC,)))
+            self.node.sdo.write(communication, 2, bytes((EACH_SYNC,)))
         except Refused as why:
             if kind not in EVENTS:
                 how = "only after a change" if kind == AFTER_CHANGE else "on another count of SYNCs"

@@ -16,22 +16,22 @@ TOLERANCE = 0.02  # what differs by more is another scale, not rounding
 def compare_scales(node: Node, place: Place) -> None:
     """Read 6076h, 6075h, 608Fh, 60A8h and 6091h, as far as they are there. Raises NotReady with both numbers."""
     _torque(node, place)
-    increments, turns = (node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
+    increments, turns = (node.sdo.read_uint(0x608F, sub, default=0) for sub in (1, 2))
     if increments > 1 and turns and abs(increments / turns - place.counts_per_turn) > 0.5:
         raise NotReady(
             f"{node.who} counts {increments / turns:g} per turn (608Fh), motor.counts_per_turn in the bench file is "
             f"{place.counts_per_turn}"
         )
-    unit = node.read_uint(0x60A8, default=0)
+    unit = node.sdo.read_uint(0x60A8, default=0)
     if not counts_position(unit):
         raise NotReady(f"{node.who} tells positions in another unit (60A8h = {unit:08X}h), expected increments")
-    motor, shaft = (node.read_uint(0x6091, sub, default=1) for sub in (1, 2))
+    motor, shaft = (node.sdo.read_uint(0x6091, sub, default=1) for sub in (1, 2))
     if motor != shaft:
         raise NotReady(f"{node.who} has a gear of {motor}:{shaft} of its own (6091h), expected 1:1")
 
 
 def _torque(node: Node, place: Place) -> None:
-    told, trusted = node.read_uint(0x6076, default=0), place.torque_rated
+    told, trusted = node.sdo.read_uint(0x6076, default=0), place.torque_rated
     if not told:
         node.remarks.append(f"{node.who} tells no rated torque (6076h): {trusted:g} N·m is trusted")
         return
@@ -42,7 +42,7 @@ def _torque(node: Node, place: Place) -> None:
             f"{trusted:g} N·m: every torque would be off by a factor of {rated / trusted:.4g}"
             + _other_step(trusted / told, place)
         )
-    current = 1e-3 * node.read_uint(0x6075, default=0)  # A
+    current = 1e-3 * node.sdo.read_uint(0x6075, default=0)  # A
     declared = place.options.get("torque_constant")
     if current and declared and abs(rated / current / declared - 1) > TOLERANCE:
         raise NotReady(

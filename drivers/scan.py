@@ -55,14 +55,14 @@ def scan(bus: Bus) -> list[Found]:
     for number in NODES:
         node = Node(bus, number, "node")
         node.open()
-        node.patience(PATIENCE)
+        node.sdo.patience(PATIENCE)
         try:
-            kind = node.read_uint(0x1000)
+            kind = node.sdo.read_uint(0x1000)
         except NotReady:
             if bus.dead:
                 raise NotReady(bus.dead) from None
             continue
-        node.patience(10 * PATIENCE)
+        node.sdo.patience(10 * PATIENCE)
         profile = kind & 0xFFFF
         found.append(Found(number, profile, node.identify(profile), plate_of(node, profile)))
     return found
@@ -89,15 +89,15 @@ def plate_of(node: Node, profile: int) -> dict[str, float]:
     where what it says of its current shows that 6076h is not in mN·m.
     """
     if profile == 402:
-        told, current = (node.read_uint(index, default=0) for index in (0x6076, 0x6075))  # mN·m, mA
+        told, current = (node.sdo.read_uint(index, default=0) for index in (0x6076, 0x6075))  # mN·m, mA
         micro = current > 0 and told / current > STRONGEST
-        increments, turns = (node.read_uint(0x608F, sub, default=0) for sub in (1, 2))
+        increments, turns = (node.sdo.read_uint(0x608F, sub, default=0) for sub in (1, 2))
         counts = increments / turns if increments > 1 and turns else 0.0
         plate = {"torque_rated": told * (MICRO if micro else MILLI), "counts_per_turn": counts}
         return plate | ({"rated_step": MICRO} if micro else {})
     if profile == 406:
-        scaled = node.read_uint(0x6000, default=0) & 1 << 2
-        return {"counts_per_turn": float(node.read_uint(0x6001 if scaled else 0x6501, default=0))}
+        scaled = node.sdo.read_uint(0x6000, default=0) & 1 << 2
+        return {"counts_per_turn": float(node.sdo.read_uint(0x6001 if scaled else 0x6501, default=0))}
     return {}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from drivers.node import Mapped
+from drivers.mapping import Mapped
 from drivers.profile402 import signed32
 from drivers.wiring import Place
 from rig.core.sample import Mode

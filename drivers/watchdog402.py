@@ -8,7 +8,8 @@ from __future__ import annotations
 import contextlib
 import struct
 
-from drivers.node import Node, Refused
+from drivers.node import Node
+from drivers.sdo import Refused
 
 NOTHING = 0  # of 6007h: a lost connection is nothing to the drive
 NO_CHANGE = 1  # of 1029h:1: a lost connection changes nothing in the node
@@ -21,10 +22,10 @@ def arm(node: Node, limit: int) -> str:
         return ""
     host = node.bus.host_node
     with contextlib.suppress(Refused):
-        if host and node.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
+        if host and node.sdo.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
             return f"{HEARTBEAT}, {limit} ms, set and read back"
     with contextlib.suppress(Refused):
-        if node.write_if_there(0x1400, 5, struct.pack("<H", limit)):
+        if node.sdo.write_if_there(0x1400, 5, struct.pack("<H", limit)):
             return f"RPDO timeout of the drive, {limit} ms, set and read back"
     return ""
 
@@ -32,14 +33,14 @@ def arm(node: Node, limit: int) -> str:
 def disarm(node: Node, guarded: str) -> None:
     """Between runs nobody talks to the drive, and that is no fault. Raises NotReady."""
     if guarded.startswith(HEARTBEAT):
-        node.put(0x1016, 1, struct.pack("<I", 0))
+        node.sdo.put(0x1016, 1, struct.pack("<I", 0))
     elif guarded:
-        node.put(0x1400, 5, struct.pack("<H", 0))
+        node.sdo.put(0x1400, 5, struct.pack("<H", 0))
 
 
 def _stops_when_alone(node: Node) -> bool:
     """Whether a lost connection, once noticed, stops the drive, as far as it says."""
-    reaction = node.read(0x6007, 0, b"")
+    reaction = node.sdo.read(0x6007, 0, b"")
     if reaction:
         return int.from_bytes(reaction[:2], "little") != NOTHING
-    return node.read_uint(0x1029, 1, default=0) != NO_CHANGE
+    return node.sdo.read_uint(0x1029, 1, default=0) != NO_CHANGE

@@ -237,10 +237,10 @@ def test_canopen_s_own_node_is_read_and_mapped_as_it_stands():
     try:
         node = Node(host, NODE, "encoder")
         node.open()
-        node.patience(2.0)  # s: a busy machine
+        node.sdo.patience(2.0)  # s: a busy machine
         assert node.identify(406).model == "vendor 0x0 product 0x0"
-        assert node.read_uint(0x6501) == 4096
-        assert node.text(0x1008) == ""
+        assert node.sdo.read_uint(0x6501) == 4096
+        assert node.sdo.text(0x1008) == ""
         with pytest.raises(NotReady, match=r"refused 1800h:1 .*in the PDOs it sends of its own there is no 6004h"):
             Inputs(node).arrange((POSITION,))
     finally:

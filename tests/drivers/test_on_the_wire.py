@@ -118,7 +118,7 @@ def test_a_unit_that_is_no_torque_is_refused():
 def test_a_mode_that_is_not_confirmed_energises_nothing():
     w = connected()
     w.twin.drive.mode_stuck = True
-    w.instruments.drive.node.put(0x6060, 0, struct.pack("<b", 8))  # somebody else's tool
+    w.instruments.drive.node.sdo.put(0x6060, 0, struct.pack("<b", 8))  # somebody else's tool
     w.twin.drive.mode = 8
     with pytest.raises(NotReady, match="6061h is 8, expected 10"):
         w.instruments.drive.enable()
