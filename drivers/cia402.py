@@ -1,8 +1,7 @@
 """CiA 402 servo drive over CANopen: cyclic synchronous torque, the host closing the loop, or velocity or position
 [cia402]
 
-Its state machine is walked here, one transition at a time. canopen's own helper is not used: its `reset_from_fault`
-goes on to OPERATION ENABLED. Commands are sent at once (RPDO type 255), readings are latched on SYNC.
+Commands are sent at once (RPDO type 255), readings are latched on SYNC.
 """
 
 from __future__ import annotations
@@ -12,15 +11,15 @@ import struct
 from typing import ClassVar
 
 from drivers import watchdog402
-from drivers.emergencies import emergency_text
 from drivers.limits402 import set_limits
 from drivers.mapping import Mapped
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
 from drivers.node import Node
 from drivers.pdo import Inputs, Outputs
-from drivers.profile402 import DISABLE, ENABLE, OPERATES, RESET, SHUTDOWN, SWITCH_ON, speed_unit, state_of
+from drivers.profile402 import DISABLE, ENABLE, SHUTDOWN, SWITCH_ON, speed_unit, state_of
 from drivers.scales402 import compare_scales
 from drivers.silence import UNANSWERED
+from drivers.states402 import confirmed_off, error_of, reset, walk
 from drivers.targets402 import PERMILLE, TARGETS, Scale
 from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
@@ -35,8 +34,6 @@ PROFILE = 402
 VOLTAGE = 1 << 4  # of the statusword: high voltage is applied to the power stage
 WATCHDOG = 0.1  # s, where the bench file says none
 LONGER = 1.5  # times what the guard allows: the host stops first and says why
-STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
-CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
 STATUS = (Mapped(0x6041, 0, 16, "H"), Mapped(0x6061, 0, 8, "b"), Mapped(0x6077, 0, 16, "h"))
 SHOWN = STATUS[1:2]
 TELLS = {0x6061: "mode", 0x6077: "torque", 0x6064: "position"}
@@ -88,7 +85,7 @@ class Cia402(Drive):
         self.node.forget()
         self._first_reading()
         if self.trouble:  # in fault already: with its code in words
-            self.trouble = f"{self.trouble}: {self._error()}"
+            self.trouble = f"{self.trouble}: {error_of(self.node)}"
         return identity
 
     def _configure(self) -> None:
@@ -152,13 +149,13 @@ class Cia402(Drive):
         if mode is not self.mode:
             self._change(mode)
         self._scale.position = self._direction * self.node.sdo.read_int(0x6064) * self._step
-        self._walk(SHUTDOWN, "ready to switch on")
-        self._walk(SWITCH_ON, "switched on")
+        walk(self.node, self._hold, SHUTDOWN, "ready to switch on")
+        walk(self.node, self._hold, SWITCH_ON, "switched on")
         rest_all(self.node)
         if not (confirmed := shows(self.node, mode)) and shown(self.node) != UNDECIDED:
             raise self._other_mode()
         self._arm()
-        self._walk(ENABLE, "operation enabled")
+        walk(self.node, self._hold, ENABLE, "operation enabled")
         if not confirmed and not shows(self.node, mode):
             raise self._other_mode()
         self._angle.forget()
@@ -189,20 +186,6 @@ class Cia402(Drive):
     def _hold(self, controlword: int) -> bool:
         """A controlword with nothing asked for: no torque, rest, the angle it has."""
         return self._command(controlword, self._scale.rest(self.mode))
-
-    def _walk(self, controlword: int, wanted: str) -> None:
-        self._hold(controlword)
-        until = self.bus.clock.now() + STEP_PATIENCE
-        while (state := state_of(self.node.sdo.read_uint(0x6041))) != wanted:
-            if state.startswith("fault"):
-                raise NotReady(f"{self.node.who} is in {state}: {self._error()}")
-            if self.bus.clock.now() > until:
-                raise NotReady(f"{self.node.who} stays in '{state}', expected '{wanted}' within {STEP_PATIENCE:g} s")
-            self._hold(controlword)
-
-    def _error(self) -> str:
-        code = self.node.sdo.read_uint(0x603F, default=0)
-        return self.node.emergency or f"error {code:04X}h, {emergency_text(code)}"
 
     # ---- in a run ----
 
@@ -272,35 +255,12 @@ class Cia402(Drive):
         self.cut()
         if not self._connected:
             return False
-        off = self._confirmed_off()
+        off = confirmed_off(self.node, self._inputs, self._hold)
         with contextlib.suppress(
             NotReady
         ):  # who cannot be disarmed trips by its watchdog: it is without torque already
             self._disarm()
         return off
-
-    def _confirmed_off(self) -> bool:
-        """By the statusword after a SYNC: SDO answers may be late, or somebody else's."""
-        until = self.bus.clock.now() + CONFIRM
-        while self.bus.clock.now() < until and not self.bus.dead:
-            with contextlib.suppress(NotReady):
-                self._inputs.first(CONFIRM / 10)
-            if not is_never(self._inputs.take()) and not int(self._inputs.values[0]) & OPERATES:
-                return True
-            self._hold(DISABLE)
-        return self._off_by_sdo()
-
-    def _off_by_sdo(self) -> bool:
-        """Who lives and is not operational takes no PDOs: it has rebooted, or somebody else has stopped it, enabled as
-        it may be.
-        """
-        if self.bus.dead or not (self.node.rebooted or self.node.aside(self.bus.clock.now())):
-            return False
-        with contextlib.suppress(NotReady):
-            self.node.pause()  # one that is stopped answers nothing
-            self.node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
-            return not self.node.sdo.read_uint(0x6041) & OPERATES
-        return False
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
@@ -309,12 +269,7 @@ class Cia402(Drive):
         if self.node.aside(self.bus.clock.now()):
             self.node.revive()
             self.node.start()
-        for word in (DISABLE, RESET, DISABLE):
-            self._hold(word)
-            self.bus.wait(0.01, lambda: False)
-        state = state_of(self.node.sdo.read_uint(0x6041))
-        if state.startswith("fault"):
-            raise NotReady(f"{self.node.who} stays in {state} after a reset: {self._error()}")
+        reset(self.node, self._hold)
         self.node.revive()
         self._inputs.wrong = ""
         self.trouble = ""
