@@ -83,21 +83,23 @@ def first_bench(
     for role in SECTIONS:
         bench["devices"].pop(role, None)
     for (role, kind), node in found.items():
-        device = tomlkit.table()
-        device.update({"type": kind, "bus": "rig", "node": node.number})
-        device.comment(" ".join(part for part in node.identity if part))
-        bench["devices"][role] = device
-        plate = dict(node.plate)
-        if step := plate.pop("rated_step", 0.0):
-            device["rated_step"] = step
-        for key, told in plate.items():
-            quantity = bench[SECTIONS[role]][key]
-            if told:
-                quantity.update(
-                    {
-                        "value": told if key == "torque_rated" else round(told),
-                        "from": "measured",
-                        "note": "told by the device",
-                    }
-                )
+        _add_device(bench, role, kind, node)
     return tomlkit.dumps(bench)
+
+
+def _add_device(bench: Any, role: str, kind: str, node: Found) -> None:
+    """Where it is in [devices], and what it told of itself in the section of its numbers."""
+    import tomlkit
+
+    device = tomlkit.table()
+    device.update({"type": kind, "bus": "rig", "node": node.number})
+    device.comment(" ".join(part for part in node.identity if part))
+    bench["devices"][role] = device
+    plate = dict(node.plate)
+    if step := plate.pop("rated_step", 0.0):
+        device["rated_step"] = step
+    for key, told in plate.items():
+        quantity = bench[SECTIONS[role]][key]
+        if told:
+            value = told if key == "torque_rated" else round(told)
+            quantity.update({"value": value, "from": "measured", "note": "told by the device"})

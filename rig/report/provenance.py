@@ -11,6 +11,21 @@ from rig.report.numbers import duration, quantity
 from rig.report.rows import Row, flat, measured, show, table, utc
 from rig.report.words import humanise, kind, origin, status
 
+TOLD = {
+    "duration",
+    "uid",
+    "procedure",
+    "status",
+    "exit_reason",
+    "started_utc",
+    "ended_utc",
+    "backend",
+    "encoders",
+    "software",
+    "schema",
+}
+APART = {"files", "conditions", "declared", "verdict"}  # shown in tables of their own
+
 
 def software(manifest: Mapping[str, Any]) -> str:
     """Version, commit, and whether the tree was clean; "" when the manifest does not say."""
@@ -43,31 +58,22 @@ def provenance(manifest: Mapping[str, Any], folder: str) -> list[Row]:
         Row("Software", software(manifest) or "unknown"),
         Row("Schema", show(manifest.get("schema"))),
     ]
-    told = {
-        "duration",
-        "uid",
-        "procedure",
-        "status",
-        "exit_reason",
-        "started_utc",
-        "ended_utc",
-        "backend",
-        "encoders",
-        "software",
-        "schema",
-    }
-    apart = {"files", "conditions", "declared", "verdict"}  # shown in tables of their own
-    rest = {k: v for k, v in manifest.items() if k not in told | apart | {"gear"}}
+    return known + _rest(manifest)
+
+
+def _rest(manifest: Mapping[str, Any]) -> list[Row]:
+    """Every key that no row above and no table of its own has shown."""
+    rest = {k: v for k, v in manifest.items() if k not in TOLD | APART | {"gear"}}
     known_software = ("version", "commit", "dirty")
     rest |= {f"software.{k}": v for k, v in table(manifest.get("software")).items() if k not in known_software}
-    rest |= {f"gear.{k}": v for k, v in gear.items() if k not in ("serial", "ratio", "output")}
+    rest |= {f"gear.{k}": v for k, v in table(manifest.get("gear")).items() if k not in ("serial", "ratio", "output")}
     proof = dict(table(rest.get("proof")))
     difference, error = number(proof.get("shaft_torque_difference")), number(proof.get("shaft_torque_error"))
     apart_rows = []
     if math.isfinite(difference) and math.isfinite(error):  # one row: the error stands behind the difference
         rest["proof"] = {k: v for k, v in proof.items() if k not in ("shaft_torque_difference", "shaft_torque_error")}
         apart_rows = [Row("proof.shaft_torque_difference", quantity(difference, 2 * error, "N·m"))]
-    return known + apart_rows + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
+    return apart_rows + [Row(name if "." in name else humanise(name), value) for name, value in flat(rest)]
 
 
 def _length(manifest: Mapping[str, Any]) -> list[Row]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rig.analysis.across_runs.assembly_band import AssemblyRun, Cell, Repeat, cells, repeat
-from rig.analysis.across_runs.load_law import LoadRun, down_less_up, load_law
+from rig.analysis.across_runs.load_law import LoadLaw, LoadRun, down_less_up, load_law
 from rig.analysis.findings.collected import Findings, conclude
 from rig.analysis.findings.intervals import Ranged
 from rig.analysis.findings.result import Array, Estimate, Result
@@ -120,7 +120,7 @@ def load_sweep(runs: Sequence[AssemblyRun], ways: Sequence[LoadRun]) -> Result:
 
     `ways` are the same runs with their way.
     """
-    found, law, apart = Findings(curves=_points(runs)), load_law(ways), down_less_up(ways)
+    found, apart = Findings(curves=_points(runs)), down_less_up(ways)
     every = cells(runs, None)
     least, most = min(every, key=lambda c: abs(c.load)), max(every, key=lambda c: abs(c.load))
     _add(
@@ -134,21 +134,7 @@ def load_sweep(runs: Sequence[AssemblyRun], ways: Sequence[LoadRun]) -> Result:
     if most.load != least.load:
         how = "Mean over the runs with the largest load."
         _add(found, "peak_to_peak_loaded", f"Peak to peak under {most.load:g} N·m", most.peak_to_peak, "arcsec", how)
-    told = "P(T) = P_∞ + (P_0 − P_∞)·exp(−|T|/T_c) by least squares over all runs, profile intervals."
-    if law is None:
-        found.cannot.append("The law of the load: it takes five runs at four loads or more.")
-    elif not law.falls:
-        found.cannot.append(
-            f"The law of the load: the load makes no difference that is told from none; the runs scatter by "
-            f"{law.rms:.2g} arcsec."
-        )
-    else:
-        for name, label, value, unit in (
-            ("load_law_P_0", "P_0, without load", law.P_0, "arcsec"),
-            ("load_law_P_inf", "P_∞, under a heavy load", law.P_inf, "arcsec"),
-            ("load_law_T_c", "T_c, load over which it falls", law.T_c, "N·m"),
-        ):
-            _add(found, name, label, value, unit, told)
+    _add_law(found, load_law(ways))
     if apart is not None:
         how = "Mean over the loads that were run both ways: hysteresis of the load."
         _add(found, "down_less_up", "Down less up", apart, "arcsec", how)
@@ -158,6 +144,22 @@ def load_sweep(runs: Sequence[AssemblyRun], ways: Sequence[LoadRun]) -> Result:
         f"{most.peak_to_peak.value:.1f} arcsec under {most.load:g} N·m."
     )
     return conclude(found, "load_sweep", {})
+
+
+def _add_law(found: Findings, law: LoadLaw | None) -> None:
+    if law is None:
+        found.cannot.append("The law of the load: it takes five runs at four loads or more.")
+        return
+    if not law.falls:
+        found.cannot.append(
+            f"The law of the load: the load makes no difference that is told from none; the runs scatter by "
+            f"{law.rms:.2g} arcsec."
+        )
+        return
+    how = "P(T) = P_∞ + (P_0 − P_∞)·exp(−|T|/T_c) by least squares over all runs, profile intervals."
+    _add(found, "load_law_P_0", "P_0, without load", law.P_0, "arcsec", how)
+    _add(found, "load_law_P_inf", "P_∞, under a heavy load", law.P_inf, "arcsec", how)
+    _add(found, "load_law_T_c", "T_c, load over which it falls", law.T_c, "N·m", how)
 
 
 def _add(found: Findings, name: str, label: str, value: Ranged, unit: str, how: str) -> None:

@@ -121,6 +121,19 @@ def _scatter(side: list[StrokeResult]) -> float:
     return sum(float(np.mean(np.sum((s.curves - f - mean) ** 2, axis=0))) for s, f in zip(side, flat, strict=True))
 
 
+def _pooled(deviations: Array, dof: int, rho: float) -> tuple[Array, int]:
+    """Variance (2k,) of the coefficients of one revolution by `deviations` (revolutions, 2k), and with how many degrees
+    of freedom it is known; NaN where there are none.
+    """
+    if dof <= 0:
+        return np.full(deviations.shape[1], np.nan), dof
+    variance = np.sum(deviations**2, axis=0) / dof * inflation(rho)
+    if dof >= FEW:
+        return variance, dof
+    # noise has no favourite angle: a_n and b_n scatter alike, and two together are known better
+    return np.tile(variance.reshape(2, -1).mean(axis=0), 2), 2 * dof
+
+
 def combine(strokes: list[StrokeResult], added: Array) -> Profile:
     """Average the revolutions of all `strokes`, each direction by itself, then both with equal weight.
 
@@ -141,14 +154,8 @@ def combine(strokes: list[StrokeResult], added: Array) -> Profile:
     share = sum(1.0 / n for n in counts) / len(used) ** 2  # variance of the even part in units of one revolution's
     dof = sum(counts) - len(used)
     rho = neighbour_correlation(deviations)
-    if dof > 0:
-        floor = scatter / dof * share
-        variance = np.sum(np.concatenate(deviations) ** 2, axis=0) / dof * inflation(rho)
-        if dof < FEW:  # noise has no favourite angle: a_n and b_n scatter alike, and two together are known better
-            variance = np.tile(variance.reshape(2, -1).mean(axis=0), 2)
-            dof *= 2
-    else:
-        variance, floor = np.full(means[0].size, np.nan), float("nan")
+    floor = scatter / dof * share if dof > 0 else float("nan")
+    variance, dof = _pooled(np.concatenate(deviations), dof, rho)
     small = added <= SMALL
     even = np.mean(means, axis=0) * np.tile(np.where(small, 1.0 - added, 1.0), 2)
     odd = 0.5 * (means[0] - means[1]) if len(used) == 2 else None

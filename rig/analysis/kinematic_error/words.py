@@ -23,6 +23,21 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
     what = "Kinematic error" if pure or not np.isfinite(ke.speed_rpm) else f"θ̃ at {ke.speed_rpm:.4g} rpm"
     parts = "even part of both directions" if p.odd_cosine is not None else "one direction only"
     basis = f"{p.forward} forward and {p.reverse} reverse revolutions, {parts}"
+    _add_peak_to_peak(found, ke, pure, what, basis)
+    _add_amplitudes(found, ke, what, basis)
+    how = "Whole motor turns used; half a turn is cut at each reversal and where the run began or ended at rest."
+    found.exact("revolutions_forward", "Revolutions forward", p.forward, "1", how)
+    found.exact("revolutions_reverse", "Revolutions reverse", p.reverse, "1", how)
+    how = "Single rows less trend and series of their own revolution: quantisation, noise, orders above the last."
+    found.exact("residual_rms", "Residual of the series, rms", p.residual_rms, "arcsec", how)
+    if np.isfinite(ke.speed_rpm):
+        speeds = np.abs(np.concatenate([s.speed_rpm for s in ke.strokes]))
+        half = Z95 * float(speeds.std()) / np.sqrt(speeds.size)
+        found.figure("mean_speed", "Mean motor speed", ke.speed_rpm, "rpm", half, "Mean over the revolutions used.")
+
+
+def _add_peak_to_peak(found: Findings, ke: KinematicError, pure: bool, what: str, basis: str) -> None:
+    p = ke.profile
     value, (low, high) = p.peak_to_peak()
     how = f"Peak to peak of the {p.terms}-order series over {basis}"
     if np.isfinite(low):
@@ -41,6 +56,11 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
             parts_of(p, (high - low) / 2, p.system_half),
         )
     )  # fmt: skip
+
+
+def _add_amplitudes(found: Findings, ke: KinematicError, what: str, basis: str) -> None:
+    """The table of coefficients, and a figure for each order that is resolved and shown, for order 2 always."""
+    p = ke.profile
     found.tables["coefficients"] = rows = coefficients(p, ke.u_zero)
     for row in rows:
         n, resolved = int(row["order"]), float(row["C_lo"]) > 0
@@ -54,15 +74,6 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
             found.estimates.append(
                 Estimate(f"fourier_amplitude_{n}", label, float(row["C_arcsec"]), "arcsec", ci95, how, made_of)
             )
-    how = "Whole motor turns used; half a turn is cut at each reversal and where the run began or ended at rest."
-    found.exact("revolutions_forward", "Revolutions forward", p.forward, "1", how)
-    found.exact("revolutions_reverse", "Revolutions reverse", p.reverse, "1", how)
-    how = "Single rows less trend and series of their own revolution: quantisation, noise, orders above the last."
-    found.exact("residual_rms", "Residual of the series, rms", p.residual_rms, "arcsec", how)
-    if np.isfinite(ke.speed_rpm):
-        speeds = np.abs(np.concatenate([s.speed_rpm for s in ke.strokes]))
-        half = Z95 * float(speeds.std()) / np.sqrt(speeds.size)
-        found.figure("mean_speed", "Mean motor speed", ke.speed_rpm, "rpm", half, "Mean over the revolutions used.")
 
 
 def parts_of(p: Profile, half: float, system: float) -> tuple[Part, ...]:

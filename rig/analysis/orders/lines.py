@@ -169,9 +169,7 @@ def find_lines(
         rest = _clean(centred, rest, np.asarray(found))[0]
     most += len(found)
     while len(found) < most:
-        power = np.abs(np.fft.rfft(rest * window, 4 * n))[: fine.size] ** 2
-        noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)
-        ratio = power / np.maximum(noise, 1e-300)
+        ratio = _above_noise(rest * window, fine.size)
         ratio[fine < max(slowest, 1.5 / span)] = 0.0  # slower than that is trend
         for order in found:  # what is left this close is the same line, not quite steady
             ratio[np.abs(fine - order) < 1.5 / span] = 0.0
@@ -184,6 +182,14 @@ def find_lines(
         found.append(order + float(np.clip(shift[0], -0.1 / span, 0.1 / span)))
     lines = fit_lines(theta, y, found) if found else []
     return sorted((line for line in lines if line.resolved), key=lambda line: -line.amplitude)
+
+
+def _above_noise(values: Array, orders: int) -> Array:
+    """Periodogram of `values` at the first `orders` quarters of a cycle per span, over its local mean."""
+    power = np.abs(np.fft.rfft(values, 4 * values.size))[:orders] ** 2
+    noise = np.repeat(_local_median(power[::4]), 4)[: power.size] / np.log(2.0)
+    ratio: Array = power / np.maximum(noise, 1e-300)
+    return ratio
 
 
 def _clean(turns: Array, values: Array, orders: Array) -> tuple[Array, Array]:

@@ -153,14 +153,19 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
         found.cannot.append("No usable time column: drift and fixed frequencies cannot be had.")
     else:
         found.tables["lines_at_rest"] = lines
-    found.sentence = "Noise at rest (rms): " + ", ".join(said) + "."
+    found.sentence = "Noise at rest (rms): " + ", ".join(said) + "." + _shaking(lines)
+
+
+def _shaking(lines: list[dict[str, float | str]]) -> str:
+    """The line that stands out most, where there is one that shakes the rig."""
     strong = [row for row in lines if float(row["share"]) >= SHAKES]
-    if strong:
-        row = max(strong, key=lambda r: float(r["amplitude"]) / max(float(r["u"]), 1e-300))
-        found.sentence += (
-            f" Something shakes at {float(row['frequency_hz']):.3f} Hz: {row['channel']} with an amplitude of "
-            f"{float(row['amplitude']):.3g} {row['unit']}."
-        )
+    if not strong:
+        return ""
+    row = max(strong, key=lambda r: float(r["amplitude"]) / max(float(r["u"]), 1e-300))
+    return (
+        f" Something shakes at {float(row['frequency_hz']):.3f} Hz: {row['channel']} with an amplitude of "
+        f"{float(row['amplitude']):.3g} {row['unit']}."
+    )
 
 
 def _below(count: float, unit: str) -> str:

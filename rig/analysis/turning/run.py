@@ -6,7 +6,7 @@ import numpy as np
 
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
-from rig.analysis.findings.result import Check
+from rig.analysis.findings.result import Check, Estimate
 from rig.analysis.kinematic_error import words
 from rig.analysis.kinematic_error.measure import (
     SAME_RATIO,
@@ -22,6 +22,7 @@ from rig.analysis.motion.strokes import Stroke, find_strokes
 from rig.analysis.orders.revolutions import ROWS_PER_TERM
 from rig.analysis.sensors.latch_skew_words import add_skew_error
 from rig.analysis.smoothness import words as smooth
+from rig.analysis.smoothness.measure import Smoothness
 from rig.analysis.smoothness.measure import smoothness as smoothness_of
 from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
@@ -51,22 +52,33 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
-    smoothness = smoothness_of(motion, strokes, reference, speed) if slow else None
-    if smoothness is not None:
-        found.checks += smooth.checks(smoothness)
-        if not smoothness.passed:
-            found.reject(smooth.sentence(smoothness))
-    elif slow:
-        found.cannot.append(
-            "No usable time column: whether the motor stuck or hunted cannot be told; orders are unaffected."
-        )
+    evenness = _judge_smoothness(found, smoothness_of(motion, strokes, reference, speed)) if slow else ()
     if motion.theta_l is None:
         found.cannot.append(NO_LOAD)
         add_speed_figures(found, motion, strokes)
-        if smoothness is not None:
-            found.estimates += smooth.estimates(smoothness)
+        found.estimates += evenness
         found.sentence = found.sentence or "The motor turned, the load angle is missing."
         return
+    _with_load(found, run, motion, strokes, slow, evenness)
+
+
+def _judge_smoothness(found: Findings, smoothness: Smoothness | None) -> tuple[Estimate, ...]:
+    """The checks on how evenly the motor turned, by which a run may be rejected. Gives the figures of it."""
+    if smoothness is None:
+        found.cannot.append(
+            "No usable time column: whether the motor stuck or hunted cannot be told; orders are unaffected."
+        )
+        return ()
+    found.checks += smooth.checks(smoothness)
+    if not smoothness.passed:
+        found.reject(smooth.sentence(smoothness))
+    return smooth.estimates(smoothness)
+
+
+def _with_load(
+    found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool, evenness: tuple[Estimate, ...]
+) -> None:
+    """What both angles tell: kinematic error, orders, torsion; nothing where they contradict the declared ratio."""
     wrong = angles_disagree(motion)
     agree = f"The encoders turn {turns_per_turn(motion):.5g} to 1, declared {motion.ratio:g}: within {SAME_RATIO:.0%}."
     found.checks.append(Check("ratio", not wrong, wrong or agree))
@@ -78,8 +90,7 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
     add_orders(found, motion, max(main, key=lambda s: s.revolutions))
     if not slow:
         add_speed_figures(found, motion, strokes)
-    if smoothness is not None:
-        found.estimates += smooth.estimates(smoothness)
+    found.estimates += evenness
     tau_l = motion.pick(run.column("tau_l"))
     if not add_torsion(found, motion, tau_l) and regime_of(run.procedure) is Regime.OTHER:  # the others keep their load
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"

@@ -85,10 +85,28 @@ def _line(x: Array, y: Array) -> float:
     return float(x @ (y - y.mean())) / float(x @ x)
 
 
+def _half_width(tau: Array, angle: Array) -> float:
+    """Half the 95 % interval of that slope, by a jackknife over the twelfths."""
+    edges = np.linspace(0, tau.size, BLOCKS + 1).astype(int)
+    left = [_line(np.delete(tau, s), np.delete(angle, s)) for s in map(slice, edges[:-1], edges[1:])]
+    return t95(BLOCKS - 1) * float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((np.array(left) - np.mean(left)) ** 2)))
+
+
 def output_harmonics(theta_l: Array, count: int = LOAD_HARMONICS) -> Array:
     """Constant, cos kθ_l and sin kθ_l, k = 1..count: (n, 1 + 2·count)."""
     angle = np.multiply.outer(theta_l, np.arange(1, count + 1))
     return np.concatenate((np.ones((theta_l.size, 1)), np.cos(angle), np.sin(angle)), axis=1)
+
+
+def _beside_harmonics(tau: Array, angle: Array, theta_l: Array) -> tuple[float, float, Array]:
+    """The slope with the output harmonics free beside it, the variance inflation by them, and what is left (n,)."""
+    base = output_harmonics(theta_l)
+    design = np.column_stack((tau, base))
+    scale = np.sqrt(np.mean(design**2, axis=0))
+    c: Array = np.linalg.lstsq(design / scale, angle, rcond=1e-10)[0] / scale
+    alone = tau - base @ np.linalg.lstsq(base, tau, rcond=1e-10)[0]
+    inflation = float(np.var(tau)) / max(float(np.var(alone)), 1e-300)
+    return float(c[0]), inflation, angle - design @ c
 
 
 def torsion(motion: Motion, tau_l: Array, orders: list[float]) -> Torsion | None:
@@ -111,26 +129,16 @@ def torsion(motion: Motion, tau_l: Array, orders: list[float]) -> Torsion | None
     theta_m, theta_l, tau = motion.theta_m[steady], motion.theta_l[steady], tau_l[steady]
     angle = error[steady.start - sweep.start : steady.stop - sweep.start]
     angle = angle - angle.mean()
-    slope = _line(tau, angle)
-    edges = np.linspace(0, n, BLOCKS + 1).astype(int)
-    left = [_line(np.delete(tau, s), np.delete(angle, s)) for s in map(slice, edges[:-1], edges[1:])]
-    half = t95(BLOCKS - 1) * float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((np.array(left) - np.mean(left)) ** 2)))
+    slope, half = _line(tau, angle), _half_width(tau, angle)
     low, high = slope - half, slope + half
 
-    base = output_harmonics(theta_l)
-    design = np.column_stack((tau, base))
-    scale = np.sqrt(np.mean(design**2, axis=0))
-    c: Array = np.linalg.lstsq(design / scale, angle, rcond=1e-10)[0] / scale
-    rest = angle - design @ c
-    alone = tau - base @ np.linalg.lstsq(base, tau, rcond=1e-10)[0]
-    inflation = float(np.var(tau)) / max(float(np.var(alone)), 1e-300)
-
+    beside, inflation, rest = _beside_harmonics(tau, angle, theta_l)
     # each order by itself: neighbours closer than the span resolves would trade amplitude in a joint fit
     lines = [fit_lines(theta_m, rest, [order])[0] for order in orders]
     return Torsion(
         stiffness=1.0 / slope,
         interval=(1.0 / high, 1.0 / low) if low * high > 0 else (float("nan"), float("nan")),
-        stiffness_beside=1.0 / float(c[0]),
+        stiffness_beside=1.0 / beside,
         inflation=inflation,
         span=float(np.ptp(error)),
         remainder=float(np.std(rest)),

@@ -36,20 +36,7 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
     label = "Remainder after torsion and output harmonics, rms"
     how = f"rms of θ̃ after torque and {LOAD_HARMONICS} harmonics of the output angle, steady speed."
     found.exact("torsion_remainder_rms", label, r.remainder / ARCMIN, "arcmin", how)
-    found.tables["torsion_lines"] = [_row(line) for line in r.lines]
-    for line in r.lines:
-        if line.resolved and line.order != round(line.order):
-            label = f"Line at order {line.order:.4f} (2 − 2/{motion.ratio:g} of the motor turn)"
-            if line.order > 2:
-                label = label.replace("−", "+")
-            # by itself: fitted together with order 2 the two share their amplitude, being hardly more than 1/span apart
-            how = (
-                f"Fitted by itself to what torque and output harmonics leave; {r.turns:.0f} turns tell orders "
-                f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
-            )
-            unit, scale = ("arcsec", 1 / ARCSEC) if line.amplitude / ARCMIN < 1.0 else ("arcmin", 1 / ARCMIN)
-            half = Z95 * line.u * scale
-            found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * scale, unit, half, how)
+    _add_lines(found, r, motion.ratio)
     _doubts(found, r)
     every = max(r.torque.size // DRAWN, 1)
     ends = np.array([r.torque.min(), r.torque.max()])
@@ -60,6 +47,24 @@ def add_torsion(found: Findings, motion: Motion, tau_l: Array | None) -> bool:
         torsion__fit_angle=(ends - r.torque.mean()) / r.stiffness / ARCMIN,
     )
     return True
+
+
+def _add_lines(found: Findings, r: Torsion, ratio: float) -> None:
+    """The table of lines, and a figure for each that is resolved and at no whole order."""
+    found.tables["torsion_lines"] = [_row(line) for line in r.lines]
+    for line in r.lines:
+        if line.resolved and line.order != round(line.order):
+            label = f"Line at order {line.order:.4f} (2 − 2/{ratio:g} of the motor turn)"
+            if line.order > 2:
+                label = label.replace("−", "+")
+            # by itself: fitted together with order 2 the two share their amplitude, being hardly more than 1/span apart
+            how = (
+                f"Fitted by itself to what torque and output harmonics leave; {r.turns:.0f} turns tell orders "
+                f"{line.resolution:.3f} apart, order 2 is {abs(line.order - 2):.3f} away."
+            )
+            unit, scale = ("arcsec", 1 / ARCSEC) if line.amplitude / ARCMIN < 1.0 else ("arcmin", 1 / ARCMIN)
+            half = Z95 * line.u * scale
+            found.figure(f"line_order_{line.order:.4f}", label, line.amplitude * scale, unit, half, how)
 
 
 def _doubts(found: Findings, r: Torsion) -> None:
