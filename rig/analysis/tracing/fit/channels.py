@@ -141,10 +141,18 @@ def rows(run: Recording, channel: str) -> Rows:
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
     shared, z = shared_columns(run, channel, at), z[keep]
+    own = _gain(run)[keep] if channel == "M" and run.locked and "tau_l" in run.has else np.zeros((len(z), 0))
     if shared.all():  # most runs: theirs is the bulk of what a trace holds, and is copied no more than it must
-        return Rows(y[keep], z, at, keep, theta_m[keep], np.zeros((len(z), 0)))
+        return Rows(y[keep], z, at, keep, theta_m[keep], own)
     places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
-    return Rows(y[keep], z[:, shared], places, keep, theta_m[keep], z[:, ~shared])
+    return Rows(y[keep], z[:, shared], places, keep, theta_m[keep], np.hstack([z[:, ~shared], own]))
+
+
+def _gain(run: Recording) -> Array:
+    """T of a lock test, pieces joined, all rows (n, 1). A torque sensor's gain is good to some tenths of a per cent, a
+    motor's torque constant to less, and both drift: at such torques that is several floors of M, and what of it lies
+    along T is each test's own. Left to all it would go into θ̃_p′, which stands before T there."""
+    return joined([run.smoother(piece.tau_l) for piece in run.pieces])[:, None]
 
 
 def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDArray[np.bool_]:
