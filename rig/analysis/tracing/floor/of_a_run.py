@@ -22,7 +22,7 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
     motor sticks and jumps, its encoder's rounding at least, which repeats share. And no less than all of its kind come
     to: one pair tells little.
     """
-    alone = float(np.hypot(_compared(measured, eq, key), _gain(measured, eq, key)))
+    alone = float(np.hypot(_compared(measured, eq, key), gain_of(measured, eq, key) * _swing(eq, key[0])))
     return max(alone, float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
 
 
@@ -53,15 +53,21 @@ def leniency(measured: Measured, eq: Equations, key: Key) -> float:
     return float(np.clip(limit / MISSING, 1.0, LENIENT))
 
 
-def _gain(measured: Measured, eq: Equations, key: Key) -> float:
-    """What a torque sensor's gain, never twice quite the same, does to A [rad] where the torque swings further than in
-    all runs of its kind that were compared."""
+def floor_beside_gain(measured: Measured, eq: Equations, key: Key) -> float:
+    """The same without what a torque sensor's gain may do."""
+    return max(_compared(measured, eq, key), float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
+
+
+def gain_of(measured: Measured, eq: Equations, key: Key) -> float:
+    """What a torque sensor's gain, never twice quite the same, does to A, rad per N·m, where the torque swings further
+    than in all runs of its kind that were compared."""
     run, channel = key
     if channel != "A" or key in measured.by_run or "tau_l" not in eq.runs[run].has:
         return 0.0
     like = [i for i, c in measured.by_run if c == channel and eq.runs[i].said == eq.runs[run].said]
     shown = max((_swing(eq, i) for i in like), default=0.0)
-    return GAIN * float(np.sqrt(max(_swing(eq, run) ** 2 - shown**2, 0.0))) / eq.runs[run].pieces[0].gear.K
+    unseen = float(np.sqrt(max(1.0 - (shown / max(_swing(eq, run), 1e-9)) ** 2, 0.0)))
+    return GAIN * unseen / eq.runs[run].pieces[0].gear.K
 
 
 def _swing(eq: Equations, run: int) -> float:

@@ -14,12 +14,13 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.units import TURN
-from rig.model.effect import Signals
+from rig.model.effect import Array, Signals
 
 LEVELS = 4  # of one procedure: with so many, a whole one in the middle can be spared
 KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
 SPARED = 3  # one stretch of so many is held out
 FORTH_AND_BACK = 2  # strokes
+TURNED_BACK = 0.7  # of a stroke: what is left of it goes with the next, so that both ways are tested
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 HELD_PART = "part held out"
 TOLD = 8  # names of runs in a sentence
@@ -183,12 +184,20 @@ def _head_and_tail(run: Recording) -> Parts | None:
     return (piece.part(slice(0, cut)),), (piece.part(slice(cut, None)), *run.pieces[1:])
 
 
+def _both_ways(theta: Array, stroke: slice) -> int:
+    """Where the part held out begins whose last stroke would be all of it, and so run one way only: in the stroke
+    before, with a turn of the motor or more left of that; where it is shorter, after it."""
+    cut = stroke.start + int(TURNED_BACK * (stroke.stop - stroke.start))
+    return cut if float(abs(theta[stroke.stop - 1] - theta[cut])) >= TURN else int(stroke.stop)
+
+
 def _cut(run: Recording) -> int | None:
     theta = run.pieces[0].theta_m
     wish = int(KEPT * theta.size)
     parts = strokes(theta)
     if len(parts) >= 2:
         edges = np.array([p.stop for p in parts[:-1]])
-        return int(edges[np.argmin(np.abs(edges - wish))])
+        cut = int(edges[np.argmin(np.abs(edges - wish))])
+        return _both_ways(theta, parts[-2]) if cut == edges[-1] and len(parts) > FORTH_AND_BACK else cut
     turn = int(2 * np.pi / max(1e-9, float(np.mean(np.abs(np.diff(theta))))))
     return turn * (wish // turn) if theta.size > 2 * turn and turn > 0 and wish >= turn else None

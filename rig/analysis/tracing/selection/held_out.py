@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.noise import Measured
-from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
+from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED
 from rig.model.effect import Array
 
@@ -24,10 +24,19 @@ class HeldOut:
     floors: dict[Key, float]
     seen: dict[Key, float]  # floors of the fitted blocks
     lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
+    gains: dict[Key, float]  # what a torque sensor's gain may do along T in a lock test, rad per N·m
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
-        """Of a solution on the held-out design `d`."""
-        return {key: d.residual(key, s.x) for key in d.y}
+        """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T."""
+        return {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
+
+    def _beside_gain(self, key: Key, e: Array, d: Design) -> Array:
+        if key not in self.gains:
+            return e
+        baseline = d.parts[key][0]
+        torque = baseline.z.whole()[:, list(baseline.at).index(INDEX["compliance"])]
+        slope = float(torque @ e) / max(float(torque @ torque), 1e-300)
+        return np.asarray(e - np.clip(slope, -self.gains[key], self.gains[key]) * torque)
 
     def excess(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> tuple[float, int]:
         """Sum of squares over squared floors, and rows."""
@@ -64,7 +73,9 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
     lenient = {key: leniency(measured, eq, key) for key in held}
-    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient)
+    gains = {key: g for key in held if eq.runs[key[0]].locked and (g := gain_of(measured, eq, key)) > 0}
+    floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}
+    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient, gains)
 
 
 def unseen(s: Solution, at: HeldOut) -> Design:
