@@ -44,5 +44,14 @@ def amplitudes(fit: Fit, unit: str) -> tuple[Parameter, ...]:
 
 def below_the_first(fit: Fit) -> bool:
     """Whether every overtone is smaller than the wave it is one of."""
+    return _below(fit, 1)
+
+
+def below_the_first_two(fit: Fit) -> bool:
+    """Whether every overtone is smaller than what comes once or twice a turn."""
+    return _below(fit, 2)
+
+
+def _below(fit: Fit, count: int) -> bool:
     sizes = np.hypot(fit.coefficients[::2], fit.coefficients[1::2])
-    return bool(sizes[1:].max(initial=0.0) < LEAST * sizes[0])
+    return bool(sizes[count:].max(initial=0.0) < LEAST * sizes[:count].max())

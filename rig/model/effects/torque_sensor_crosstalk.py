@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
 from rig.model.gloss import waved
-from rig.model.output_orders import amplitudes, below_the_first, once_or_twice, waves
+from rig.model.output_orders import amplitudes, below_the_first_two, once_or_twice, waves
 
 
 class TorqueSensorCrosstalk(Effect):
@@ -44,4 +44,5 @@ class TorqueSensorCrosstalk(Effect):
     def plausible(self, fit: Fit) -> bool:
         """No larger than what winds the gear up by LARGEST: sensors have tenths of a per cent of crosstalk, and what
         is much larger and turns with the output is its weight. Overtones are smaller than the wave."""
-        return bool(np.hypot(*fit.coefficients[:2]) < self.LARGEST * fit.known.K) and below_the_first(fit)
+        sizes = np.hypot(fit.coefficients[::2], fit.coefficients[1::2])
+        return bool(sizes[:2].max() < self.LARGEST * fit.known.K) and below_the_first_two(fit)

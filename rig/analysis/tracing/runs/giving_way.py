@@ -14,18 +14,20 @@ import numpy as np
 from rig.analysis.tracing.runs.recording import Recording
 
 RUNS: Final = 2  # lock tests
+LOCK: Final = 1e-7  # rad/(N·m): housings give ten times as much; what gives less is as likely the lock itself
 ALIKE: Final = 0.25  # relative, of one compliance from that of all: play gives way to any torque alike
 LEFT: Final = 0.5  # of what goes with the torque, RMS, beside it in all tests, counts of the encoder included
 
 
 def gives_way(runs: Sequence[Recording]) -> bool:
-    """Whether in every lock test the load angle goes with the torque, by as much for each N·m."""
+    """Whether in every lock test the load angle goes with the torque, by as much for each N·m, and more than a lock
+    gives way."""
     tests = [_of_a_test(run) for run in runs if run.locked and run.has >= {"theta_l", "tau_l"}]
     if len(tests) < RUNS:
         return False
     compliance, with_torque, beside = np.array(tests).T
     usual = float(np.median(compliance))
-    alike = usual > 0 and bool(np.all(np.abs(compliance - usual) < ALIKE * usual))
+    alike = usual > LOCK and bool(np.all(np.abs(compliance - usual) < ALIKE * usual))
     return alike and float(np.sum(beside)) < LEFT**2 * float(np.sum(with_torque))
 
 
