@@ -61,7 +61,10 @@ def loose(tau: Array) -> Array:
         ([lock_test(pressed), lock_test(pressed, 20.0)], True),
         ([lock_test(pressed)], False),  # one test, nothing to hold it against
         ([lock_test(still), lock_test(still, 20.0)], False),
-        ([lock_test(lambda tau: 0.3 * pressed(tau)), lock_test(lambda tau: 0.3 * pressed(tau), 20.0)], False),  # the lock
+        (
+            [lock_test(lambda tau: 0.3 * pressed(tau)), lock_test(lambda tau: 0.3 * pressed(tau), 20.0)],
+            False,
+        ),  # the lock
         ([lock_test(loose), lock_test(loose, 20.0)], False),
         ([lock_test(pressed), lock_test(still, 20.0)], False),
         ([lock_test(lambda tau: -pressed(tau)), lock_test(lambda tau: -pressed(tau), 20.0)], False),  # a wrong sign

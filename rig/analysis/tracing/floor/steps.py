@@ -27,6 +27,7 @@ AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
+FEWER = 0.5  # of the smallest of a few jumps that are certain, another may be: two counts beside three, and noise
 MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
 
 
@@ -60,11 +61,12 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     sure = [abs(size) for key in keys for _, size in jumps(e[key], onward[key], STEP, (0.0, np.inf))]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
+    least = ONE * usual if len(sure) >= MANY else FEWER * min(sure, default=0.0)
     rows: dict[int, tuple[int, ...]] = {}
     sizes: dict[int, tuple[float, ...]] = {}
     for key in keys if sure else []:
         where = onward[key] if len(sure) < MANY else onward[key] | _for_good(e[key], usual)
-        again = (e[key], where, STEP_AGAIN, (ONE * usual, max(1.35 * usual, 1.1 * max(sure))))
+        again = (e[key], where, STEP_AGAIN, (least, max(1.35 * usual, 1.1 * max(sure))))
         found = jumps(*again) or jumps(*again, window=FAR)
         if len(sure) >= MANY:
             found = among(e[key], onward[key], found, usual)
