@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.holdout import _stretches, split
+from rig.analysis.tracing.runs.holdout import _head_and_tail, _stretches, split
 from tests.analysis.tracing.test_few_channels import reduced
 
 
@@ -52,6 +52,30 @@ def test_of_one_stroke_forth_and_back_both_ways_are_fitted_and_tested(turns: flo
     for part in (fitted, tested):
         assert {piece.way for piece in part} == {1.0, -1.0}  # type: ignore[attr-defined]
     assert sum(len(piece.theta_m) for piece in (*fitted, *tested)) > 0.98 * 24_000
+
+
+def triangle(turns: float) -> np.ndarray:
+    """Up, down to as much below, and back to where it began: the slow run of the paper, once."""
+    quarter = np.linspace(0.0, 2 * np.pi * turns, 3000)
+    return np.concatenate([quarter, quarter[::-1], -quarter, -quarter[::-1]])
+
+
+def ways(theta: np.ndarray) -> set[float]:
+    return set(np.sign(np.diff(theta)[np.diff(theta) != 0]))
+
+
+def test_of_three_strokes_the_part_held_out_runs_both_ways() -> None:
+    whole: Any = SimpleNamespace(pieces=(Piece(triangle(4.0)),))
+    fitted, tested = _head_and_tail(whole) or ((), ())
+    for (piece,) in (fitted, tested):
+        assert ways(piece.theta_m) == {1.0, -1.0}
+    assert 0.3 < len(tested[0].theta_m) / 12_000 < 0.45
+
+
+def test_strokes_of_less_than_a_turn_are_held_out_whole() -> None:
+    whole: Any = SimpleNamespace(pieces=(Piece(triangle(0.3)),))
+    _, tested = _head_and_tail(whole) or ((), ())
+    assert ways(tested[0].theta_m) == {1.0}
 
 
 def held(runs: list[Any]) -> set[tuple[float, float]]:

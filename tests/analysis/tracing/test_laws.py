@@ -259,6 +259,15 @@ def test_a_steeper_fall_goes_faster_beyond_its_torque_and_slower_below() -> None
     assert (even[heavy] / value[heavy]).mean() > (steep[heavy] / value[heavy]).mean()
 
 
+@pytest.mark.parametrize(("sizes", "may"), [((0.35, 0.42, 0.0, 0.08), True), ((0.1, 0.1, 0.2, 0.0), False)])
+def test_a_torque_sensor_may_feel_bending_more_strongly_twice_an_output_turn_and_not_thrice(
+    sizes: tuple[float, ...], may: bool
+) -> None:
+    c = np.array([x for size in (*sizes, 0.0) for x in (size, 0.0)])
+    fit = Fit(c, (1.0, 5.0), 1e-6 * np.eye(c.size), KNOWN, N)
+    assert TorqueSensorCrosstalk().plausible(fit) is may
+
+
 def test_a_flattened_weight_has_a_third_wave_smaller_than_half_of_the_first() -> None:
     effect, turn = GravityUnbalance(), np.linspace(0.0, 2 * np.pi, 500)
     s = dataclasses.replace(motion(n=500), theta_l=turn)

@@ -86,6 +86,24 @@ def test_jumps_that_stand_in_each_others_windows_are_told_apart(rng: np.random.G
     assert all(min(abs(row - true) for true in rows) <= EDGE for row in found)
 
 
+def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count, e = 6e-6, {(i, "A"): 4e-6 * rng.standard_normal(4000) for i in range(3)}
+    e[0, "A"][2500:] += 3 * count
+    wander = 5e-6 * np.sin(np.arange(4000) / 250)
+    e[1, "A"] += wander
+    e[1, "A"][1500:] += 2 * count
+    monkeypatch.setattr(steps, "_onward", lambda eq, key: np.ones(4000, dtype=bool))
+    monkeypatch.setattr(steps, "_of_the_torque", lambda *of: False)
+    monkeypatch.setattr(steps, "_lasts", lambda *of: True)
+    monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
+    eq: Any = None
+    found = steps.find_steps(eq, e)
+    assert {run: len(rows) for run, rows in found.rows.items()} == {0: 1, 1: 1}
+    assert found.rows[1][0] == pytest.approx(1500, abs=4)
+
+
 def test_a_line_stands_out_of_its_surroundings_at_its_frequency(rng: np.random.Generator) -> None:
     t = np.arange(5000) * 0.008
     grid = np.arange(1.0, 55.0, 0.02)

@@ -1,0 +1,83 @@
+"""Gains of a torque sensor and of a motor drift: under the torques of a lock test that is no effect."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit.channels import INDEX, rows
+from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.selection.held_out import HeldOut
+from rig.runfile.run import Run
+
+
+def of(shared: Path, name: str) -> Recording:
+    found = record(Run.open(shared / "cases" / "open-1" / name), 0.0)
+    assert found is not None
+    return found
+
+
+@pytest.mark.slow
+def test_what_the_motor_torque_of_a_lock_test_leaves_along_the_shaft_torque_is_its_own(shared: Path) -> None:
+    locked, free = of(shared, "lock_60_1"), of(shared, "load_20nm_1")
+    own = rows(locked, "M").own
+    torque = np.concatenate([locked.smoother(p.tau_l) for p in locked.pieces])[rows(locked, "M").keep]
+    np.testing.assert_allclose(own[:, 0], torque)
+    assert rows(free, "M").own.shape[1] == rows(locked, "A").own.shape[1] == 0
+
+
+@pytest.mark.slow
+def test_a_motor_whose_torque_constant_is_off_in_lock_tests_leaves_the_kinematic_error_as_it_is(shared: Path) -> None:
+    campaign = read_campaign(shared / "cases" / "open-1")
+
+    def orders(runs: tuple[Recording, ...]) -> Any:
+        p = prepare(replace(campaign, runs=runs), ())
+        x = fit(design(p.eq, (), p.split.fitted)).x
+        return x[[INDEX[f"{c}{n}"] for n in range(1, 7) for c in "ab"]]
+
+    def weaker(run: Recording) -> Recording:
+        if not run.locked:
+            return run
+        return replace(run, pieces=tuple(replace(p, tau_m=0.99 * p.tau_m) for p in run.pieces))
+
+    np.testing.assert_allclose(orders(tuple(map(weaker, campaign.runs))), orders(campaign.runs), atol=3e-7)
+
+
+@pytest.mark.parametrize(("share", "left"), [(0.5, 0.0), (3.0, 2.0), (-3.0, -2.0)])
+def test_of_what_is_left_along_the_torque_of_a_lock_test_a_gains_tolerance_is_taken_off(
+    share: float, left: float
+) -> None:
+    torque, gain = np.linspace(-60.0, 60.0, 601), 1e-7
+    loop = 4e-6 * np.sign(np.cos(np.arange(601)))
+    loop -= torque * (torque @ loop) / (torque @ torque)
+    part = SimplePart(torque)
+    d: Any = Designed({(0, "A"): loop + share * gain * torque}, {(0, "A"): (part,)})
+    at = HeldOut((0,), {(0, "A"): 4e-6}, {}, {(0, "A"): 1.0}, {(0, "A"): gain})
+    solution: Any = type("S", (), {"x": np.zeros(1)})
+    e = at.residuals(solution, d)[0, "A"]
+    np.testing.assert_allclose(e, loop + left * gain * torque, atol=1e-15)
+
+
+class SimplePart:
+    """As much of a design's part as is asked."""
+
+    def __init__(self, torque: np.ndarray[Any, Any]) -> None:
+        self.at = np.array([INDEX["compliance"]])
+        self.z: Any = type("Z", (), {"whole": lambda _: torque[:, None]})()
+
+
+class Designed:
+    """As much of a design as is asked."""
+
+    def __init__(self, y: dict[Any, Any], parts: dict[Any, Any]) -> None:
+        self.y, self.parts = y, parts
+
+    def residual(self, key: Any, x: Any) -> Any:
+        return self.y[key]
