@@ -11,11 +11,13 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import INDEX, rows
 from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.runfile.run import Run
+from tests.analysis.tracing.spiked import Columns, spiked
 
 
 def of(shared: Path, name: str) -> Recording:
@@ -81,3 +83,20 @@ class Designed:
 
     def residual(self, key: Any, x: Any) -> Any:
         return self.y[key]
+
+
+SOME = ("slow_ke_1", "slow_ke_2", "load_5nm_1", "load_5nm_2", "load_20nm_1", "load_20nm_2", "load_40nm_1",
+        "load_40nm_2", "speed_200rpm_1", "speed_200rpm_2", "speed_400rpm_1", "speed_minus200rpm_1")  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_torque_constant_that_is_off_is_a_gain_and_no_missing_effect(shared: Path, tmp_path: Path) -> None:
+    def weaker(c: Columns, began: float) -> Columns:
+        return {"tau_m": 0.96 * c["tau_m"]}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", weaker, SOME)
+    assert (found.verdict.status, found.verdict.effects) == (Status.NOTHING, ())
+    gain = next(p for p in found.baseline if p.name == "gain")
+    assert gain.value == pytest.approx(-0.04, abs=2e-3)
+    assert gain.ci95[0] < -0.04 < gain.ci95[1]
+    assert any("differ by a gain" in said for said in found.cannot)

@@ -7,6 +7,8 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
     R        M where the motor has just turned back, or soon will: friction that builds up over milliradians
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
+Where it is looked for (runs/look.py) M has g·T/N too: the share by which the motor's torque reads more than the sensor.
+
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
 tenth of a millisecond stands above the noise of L. The torque sensor's zero z wanders from run to run, and c_0 may: how
 far is read from repeats. B_ml shows in
@@ -82,6 +84,7 @@ BASELINE: Final = (
     "tau_cl",
     "tau_l0",
     "lag",
+    "gain",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
@@ -173,6 +176,8 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     """Response (n,), baseline columns (n, b) and their places, all rows."""
     make = {"A": _held if run.look.held_load else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
+    if run.look.gain and channel in "MR" and "tau_l" in run.has:
+        made = [(y, z | {"gain": run.smoother(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):

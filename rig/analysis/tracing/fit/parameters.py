@@ -24,6 +24,7 @@ PLAIN = {
     "B_l": "N·m·s/rad",
     "tau_cl": "N·m",
     "lag": "s",
+    "gain": "1",
 }
 
 ROUNDS = 4  # each leaves a fiftieth of what the one before left

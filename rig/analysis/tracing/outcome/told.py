@@ -21,12 +21,13 @@ PARAMETERS: Final = {  # symbol, what it is
     "B_l": ("B_l", "viscous friction, load side"),
     "tau_cl": ("τ_cl", "constant friction, load side"),
     "tau_l0": ("z", "zero of the torque sensor"),
+    "gain": ("g", "share by which the motor torque reads more than the torque sensor"),
     "lag": ("t_r", "delay of the torque sensor's reading"),  # δ is the skew of a channel
 }
 
 EQUATIONS: Final = {  # what is fitted in which equation alone, as long as every sensor is there
     "kinematic error": ("K", "B_sp"),
-    "motor torque": ("J_m", "B_m", "tau_c", "tau_0"),
+    "motor torque": ("J_m", "B_m", "tau_c", "tau_0", "gain"),
     "shaft torque": ("J_l", "B_l", "tau_cl", "tau_l0", "lag"),
 }
 SAME: Final = 1e-9  # relative: the digits that trace.json has

@@ -38,6 +38,7 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     moving = [run for run in runs if run.procedure != "standstill"]
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
     found += _held_output(moving)
+    found += _gain(moving)
     return tuple(found)
 
 
@@ -96,6 +97,13 @@ def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     speeds = [run.turning / RPM for run in runs if not run.locked]
     return [f"All runs turn at about {np.mean(speeds):.3g} rpm: constant friction, damping, falling friction and drag "
             "cannot be told apart, nor a real kinematic error from an encoder's."]  # fmt: skip
+
+
+def _gain(runs: Sequence[Recording]) -> list[str]:
+    if not any(run.look.gain for run in runs):
+        return []
+    return ["Motor torque and shaft torque differ by a gain, which was fitted beside the baseline: which of the two "
+            "reads wrongly these runs do not tell; a weight on a known lever does."]  # fmt: skip
 
 
 def _held_output(runs: Sequence[Recording]) -> list[str]:

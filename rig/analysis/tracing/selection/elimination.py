@@ -73,6 +73,11 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
     return [name for name in names if not _is_resolved(s, name, scales(s, name, words), covered)]
 
 
+def run_to_the_end(s: Solution, covered: Reach) -> list[str]:
+    """Effects with a term that the fit pushed to the end of its range: it fills in for a law that is not there."""
+    return list(dict.fromkeys(t.name for t in s.design.terms if t.effect.beyond(t.shape, covered)))
+
+
 def _is_resolved(s: Solution, name: str, found: Sequence[Parameter], covered: Reach) -> bool:
     """Whether one term of an effect at least has its scale, where it has one, and lies within what was excited."""
     terms = [term for term in s.design.terms if term.name == name]

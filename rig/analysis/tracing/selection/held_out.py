@@ -73,7 +73,10 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
     lenient = {key: leniency(measured, eq, key) for key in held}
-    wound = [key for key in held if eq.runs[key[0]].locked and not eq.runs[key[0]].look.held_load]
+    repeated = any(
+        eq.runs[i].locked for i, c in measured.by_run if c == "A"
+    )  # else the gain may be all there is to see
+    wound = [key for key in held if repeated and eq.runs[key[0]].locked and not eq.runs[key[0]].look.held_load]
     gains = {key: g for key in wound if (g := gain_of(measured, eq, key)) > 0}
     floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}
     return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient, gains)

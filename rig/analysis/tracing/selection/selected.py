@@ -14,7 +14,12 @@ from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
-from rig.analysis.tracing.selection.elimination import backward_elimination, instead_of_the_spring, unresolved
+from rig.analysis.tracing.selection.elimination import (
+    backward_elimination,
+    instead_of_the_spring,
+    run_to_the_end,
+    unresolved,
+)
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
@@ -62,7 +67,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
     p, solution = _own_kept(p, solution)
     solution, held, scores = backward_elimination(with_confounders(solution, runs, covered), p.held_out)
-    while vague := _not_told(solution, runs, covered):
+    while vague := _not_told(p, solution, held, runs, covered):
         # one at a time: without it another one's law may be plain
         candidates = [score for score in scores if score.name in vague]
         least = min(candidates, key=lambda score: min(score.share, 1.0) * score.size).name
@@ -78,9 +83,11 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
     return _without_insignificant(selected, runs, covered)
 
 
-def _not_told(s: Solution, runs: Sequence[int], covered: Reach) -> list[str]:
-    """Effects of whose law, or of which beside the spring, the data say nothing."""
-    return unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_spring(s)
+def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
+    """Effects of whose law, or of which beside the spring, the data say nothing; beside an unknown rest those too that
+    a law at the end of its range was needed for."""
+    vague = unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_spring(s)
+    return vague or (run_to_the_end(s, covered) if is_loud(p.held_out, s, held) else [])
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:

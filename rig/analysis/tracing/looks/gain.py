@@ -1,0 +1,46 @@
+"""At a gain of the motor torque: a torque constant is known to some per cent, and the torque sensor tells it better."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import INDEX
+from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.campaign import Campaign, looking
+from rig.analysis.tracing.searched import searched
+from rig.analysis.tracing.selection.selected import Selected
+from rig.core.quantiles import Z95
+
+LEAST: Final = 0.01  # less is a torque sensor's own drift, or a loss
+MOST: Final = 0.2  # more is another motor, or another unit
+SURE: Final = 5.0  # times half its 95 % interval
+TORQUES: Final = {"tau_m", "tau_l"}
+
+
+def wanted(selected: Selected) -> bool:
+    """Whether more is left than may be, and both torques were measured in a run that turns."""
+    both = any(run.has >= TORQUES and not run.locked for run in selected.fitted_runs)
+    return selected.loud and both
+
+
+def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
+    """All of it once more beside a gain. It counts where the gain is sure and one a torque constant may have, and
+    nothing is left: then what had a name stays, or less does, for a gain looks like a loss from one side."""
+    looks = [replace(run.look, gain=True) for run in so_far.p.campaign.runs]
+    other, ranked = searched(prepare(looking(campaign, looks), hold_out))
+    one_in_the_other = so_far.names <= other.names or other.names <= so_far.names
+    counts = _is_a_gain(other) and one_in_the_other and not other.loud
+    return (other, ranked) if counts else (so_far, found)
+
+
+def _is_a_gain(selected: Selected) -> bool:
+    s = selected.solution
+    at = INDEX["gain"]
+    half = Z95 * float(np.sqrt(max(covariance(s)[at, at], 0.0)))
+    return max(LEAST, SURE * half) < abs(s.value("gain")) < MOST
