@@ -10,6 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, looking
@@ -33,14 +34,17 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     """All of it once more beside a gain. It counts where the gain is sure and one a torque constant may have, and
     nothing is left: then what had a name stays, or less does, for a gain looks like a loss from one side."""
     looks = [replace(run.look, gain=True) for run in so_far.p.campaign.runs]
-    other, ranked = searched(prepare(looking(campaign, looks), hold_out))
+    p = prepare(looking(campaign, looks), hold_out)
+    named = so_far.solution.design.terms  # beside which the gain may be seen, or which stand in for it
+    if not any(_is_a_gain(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), named)):
+        return so_far, found
+    other, ranked = searched(p)
     one_in_the_other = so_far.names <= other.names or other.names <= so_far.names
-    counts = _is_a_gain(other) and one_in_the_other and not other.loud
+    counts = _is_a_gain(other.solution) and one_in_the_other and not other.loud
     return (other, ranked) if counts else (so_far, found)
 
 
-def _is_a_gain(selected: Selected) -> bool:
-    s = selected.solution
+def _is_a_gain(s: Solution) -> bool:
     at = INDEX["gain"]
     half = Z95 * float(np.sqrt(max(covariance(s)[at, at], 0.0)))
     return max(LEAST, SURE * half) < abs(s.value("gain")) < MOST
