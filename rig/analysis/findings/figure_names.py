@@ -95,8 +95,9 @@ STANDSTILL: Final = {
     **{f"drift_theta_{side}": "arcsec/min" for side in "ml"},
     **{f"drift_tau_{side}": "N·m/min" for side in "ml"},
 }
+CHECK: Final = {"motor_travel": "turns"}
 
-FIGURES: Final = {**TURNING, **FRICTION, **COAST_DOWN, **STIFFNESS, **STANDSTILL}
+FIGURES: Final = {**TURNING, **FRICTION, **COAST_DOWN, **STIFFNESS, **STANDSTILL, **CHECK}
 
 GIVEN_BY: Final = (
     (TURNING, kinds_of(Regime.SLOW, Regime.AT_SPEED)),
@@ -104,6 +105,7 @@ GIVEN_BY: Final = (
     (COAST_DOWN, ("coast_down",)),
     (STIFFNESS, kinds_of(Regime.LOCKED)),
     (STANDSTILL, kinds_of(Regime.AT_REST)),
+    (CHECK, ()),  # beside what a check found, never for its own sake
 )
 """Procedures that are run for the sake of these figures: without them such a run has failed its purpose."""
 

@@ -295,7 +295,9 @@ def test_a_lobe_once_a_turn_of_the_output_has_overtones_smaller_than_itself(effe
     assert effect.plausible(fit)
     told = {p.name: p.value for p in effect.parameters(fit)}
     assert told["order_1_amplitude"] > told["order_2_amplitude"] > told["order_3_amplitude"] > 0
-    assert not effect.plausible(dataclasses.replace(fit, coefficients=np.roll(c[:-1], 2)))
+    # a torque sensor may feel bending twice a turn; a third wave above it is no lobe to either
+    later = 2 if isinstance(effect, OutputOncePerRev) else 4
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=np.roll(c[:-1], later)))
 
 
 @pytest.mark.parametrize("side", [BUILDS_UP, LOAD_BUILDS_UP])

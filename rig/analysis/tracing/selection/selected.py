@@ -87,7 +87,8 @@ def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], cover
     """Effects of whose law, or of which beside the spring, the data say nothing; beside an unknown rest those too that
     a law at the end of its range was needed for."""
     vague = unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_spring(s)
-    return vague or (run_to_the_end(s, covered) if is_loud(p.held_out, s, held) else [])
+    ended = run_to_the_end(s, covered)
+    return vague or (ended if ended and is_loud(p.held_out, s, held) else [])
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
