@@ -15,6 +15,7 @@ from rig.core.regular import regular
 
 SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
+SIMULATED = "SIMULATED"  # how an export marks the twin's samples, by which an import knows them again
 ENDINGS = ("completed", "stopped", "tripped", "interrupted")
 
 LONGEST = 2**24  # bytes: of a thousand times what ours have, and still read within a second

@@ -120,12 +120,12 @@ def recording(source: Source) -> Recording | None:
 def refuse_another_ratio(runs: Sequence[Recording]) -> None:
     """Raises DataError when most of `runs` that turn show another ratio than the one declared."""
     free = [run for run in runs if not run.locked and np.ptp(run.theta_m) > 0]
-    shown = {run.name: measured_ratio(run.theta_m, run.theta_l) for run in free}
-    odd = [r for r in free if is_another_ratio(r.ratio / shown[r.name], float(np.ptp(r.theta_m)) / r.ratio)]
+    shown = [(run, measured_ratio(run.theta_m, run.theta_l)) for run in free]
+    odd = [(r, m) for r, m in shown if is_another_ratio(r.ratio / m, float(np.ptp(r.theta_m)) / r.ratio)]
     if 2 * len(odd) > len(free):
-        first = odd[0]
+        first, measured = odd[0]
         raise DataError(
-            f"in {len(odd)} of {len(free)} runs that turn (here {first.name}) the motor goes {shown[first.name]:.4g} "
+            f"in {len(odd)} of {len(free)} runs that turn (here {first.name}) the motor goes {measured:.4g} "
             f"times as far as the load, the declared gear.ratio is {first.ratio:g}: another gear, or an angle in "
             "another unit than rad"
         )

@@ -43,6 +43,6 @@ class TorqueSensorCrosstalk(Effect):
 
     def plausible(self, fit: Fit) -> bool:
         """No larger than what winds the gear up by LARGEST: sensors have tenths of a per cent of crosstalk, and what
-        is much larger and turns with the output is its weight. Overtones are smaller than the wave."""
+        is much larger and turns with the output is its weight. Overtones from the third on are smaller."""
         sizes = np.hypot(fit.coefficients[::2], fit.coefficients[1::2])
         return bool(sizes[:2].max() < self.LARGEST * fit.known.K) and below_the_first_two(fit)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
+from rig.runfile.manifest import SIMULATED
 from rig.runfile.run import Run
 
 
@@ -19,7 +20,7 @@ def write(run: Run, path: Path) -> None:
     names = list(run.channels)
     units = [run.unit(name) for name in names]
     if run.simulated:
-        names, units = [*names, "SIMULATED"], [*units, "every value of this file"]
+        names, units = [*names, SIMULATED], [*units, "every value of this file"]
     with open(path, "w", newline="", encoding="utf-8") as file:
         csv.writer(file, lineterminator="\n").writerows((names, units))
     with open(path, "ab") as file:
@@ -32,4 +33,4 @@ _PLAIN = arrow_csv.WriteOptions(include_header=False)
 
 def _marked(batch: pa.RecordBatch, simulated: bool) -> pa.Table:
     table = pa.Table.from_batches([batch])
-    return table.append_column("SIMULATED", pa.nulls(batch.num_rows, pa.int8())) if simulated else table
+    return table.append_column(SIMULATED, pa.nulls(batch.num_rows, pa.int8())) if simulated else table

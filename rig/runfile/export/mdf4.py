@@ -12,6 +12,7 @@ from asammdf import MDF, Signal
 
 from rig.core.errors import UsageError
 from rig.runfile.columns import Array
+from rig.runfile.manifest import SIMULATED
 from rig.runfile.run import Run
 
 VERSION = "4.10"  # what CANape, DIAdem and MDA of the last ten years read
@@ -30,7 +31,7 @@ def write(run: Run, path: Path) -> None:
         for number, (t, columns) in enumerate(_blocks(run, names)):
             if number == 0:
                 signals = [_signal(run, name, t, column) for name, column in zip(names, columns, strict=True)]
-                mdf.append(signals, acq_name="SIMULATED" if run.simulated else "rig", common_timebase=True)
+                mdf.append(signals, acq_name=SIMULATED if run.simulated else "rig", common_timebase=True)
             else:
                 mdf.extend(0, [(t, None), *columns])
         mdf.save(path, compression=COMPRESSION)

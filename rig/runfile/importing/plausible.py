@@ -46,7 +46,7 @@ def check(run: Converted, mapping: Mapping, file: str) -> None:
         "period": _period,
         "angle": _angle,
         "ratio": _ratio,
-        "speed": lambda *of: _speed(*of) or _rate(*of),
+        "speed": _speed,
         "torque": _torque,
         "stiffness": _stiffness,
     }
@@ -111,7 +111,7 @@ def _speed(run: Converted, mapping: Mapping) -> str:
                 f"{name} and t make a motor speed of {rpm.max():.4g} rpm over rows {row + 1} to {row + 1 + window}; "
                 f"expected below {SPEED:g} rpm (a unit of angle or time, counts_per_turn, or a wrap)"
             )
-    return ""
+    return _rate(run, mapping)
 
 
 def _rate(run: Converted, mapping: Mapping) -> str:
@@ -128,8 +128,9 @@ def _rate(run: Converted, mapping: Mapping) -> str:
         return ""
     said = f"omega_m is {slope:.4g} times what theta_m does in time; expected 1 ({_unit(mapping, 'omega_m')})"
     factor = max(abs(slope), 1 / max(abs(slope), 1e-300))
-    words = (*RATES, (mapping.gear["ratio"], "gear.ratio: it is the other shaft's"))
-    hint = next((f": about {word}" for f, word in words if abs(factor / f - 1) < RATE / 2), "")
+    known_factors = (*RATES, (mapping.gear["ratio"], "gear.ratio: it is the other shaft's"))
+    nearest, word = min(known_factors, key=lambda one: abs(np.log(factor / one[0])))  # 6 and 2π are 5 % apart
+    hint = f": about {word}" if abs(factor / nearest - 1) < RATE / 2 else ""
     sign = -mapping.channels["omega_m"].sign
     return said + hint + (f"; set channels.omega_m.sign = {sign}" if slope < 0 else "")
 

@@ -84,6 +84,8 @@ def test_a_motor_faster_than_any(foreign: Foreign) -> None:
     [
         ("rad/s", 30 / np.pi, 1, "about 30/π: one is in rpm, the other in rad/s"),
         ("rpm", 6.0, 1, "about 6: one is in rpm, the other in deg/s"),
+        ("rad/s", 0.5 / np.pi, 1, "about 2π: one is in turns/s"),
+        ("rad/s", 60.0, 1, "about 60: one is a minute's"),
         ("rad/s", 1 / 50, 1, "gear.ratio: it is the other shaft's"),
         ("rad/s", 1.0, -1, "set channels.omega_m.sign = -1"),
     ],

@@ -23,7 +23,7 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
     to: one pair tells little.
     """
     alone = float(np.hypot(_compared(measured, eq, key), gain_of(measured, eq, key) * _swing(eq, key[0])))
-    return max(alone, float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
+    return max(alone, _least(measured, eq, key))
 
 
 def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
@@ -54,8 +54,12 @@ def leniency(measured: Measured, eq: Equations, key: Key) -> float:
 
 
 def floor_beside_gain(measured: Measured, eq: Equations, key: Key) -> float:
-    """The same without what a torque sensor's gain may do."""
-    return max(_compared(measured, eq, key), float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key))))
+    """`floor_of` without what a torque sensor's gain may do."""
+    return max(_compared(measured, eq, key), _least(measured, eq, key))
+
+
+def _least(measured: Measured, eq: Equations, key: Key) -> float:
+    return float(np.hypot(_of_its_kind(measured, eq, key), _rounding(eq, key)))
 
 
 def gain_of(measured: Measured, eq: Equations, key: Key) -> float:

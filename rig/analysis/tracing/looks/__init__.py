@@ -1,7 +1,7 @@
 """Second looks at a campaign, each at what the first leaves out, where something outside of the equations asks for it.
 
-They only add: the first selection stands unless the look names what it was for, beside all that had a name but for
-what lay in its shadow. To add one: a file here with its question (`wanted`) and its look (`taken`), a line in LOOKS, a
+The first selection stands unless the look finds what it was for, beside all that had a name but for what stood in for
+it. To add one: a file here with its question (`wanted`) and its look (`taken`), a line in LOOKS, a
 field in runs/look.py.
 """
 

@@ -34,7 +34,7 @@ class HeldOut:
         if key not in self.gains:
             return e
         baseline = d.parts[key][0]
-        torque = baseline.z.whole()[:, list(baseline.at).index(INDEX["compliance"])]
+        torque = baseline.z.times((baseline.at == INDEX["compliance"]).astype(float))
         slope = float(torque @ e) / max(float(torque @ torque), 1e-300)
         return np.asarray(e - np.clip(slope, -self.gains[key], self.gains[key]) * torque)
 
@@ -73,9 +73,8 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
     lenient = {key: leniency(measured, eq, key) for key in held}
-    repeated = any(
-        eq.runs[i].locked for i, c in measured.by_run if c == "A"
-    )  # else the gain may be all there is to see
+    # without repeats of a lock test the gain may be all that its floor is known by
+    repeated = any(eq.runs[i].locked for i, c in measured.by_run if c == "A")
     wound = [key for key in held if repeated and eq.runs[key[0]].locked and not eq.runs[key[0]].look.held_load]
     gains = {key: g for key in wound if (g := gain_of(measured, eq, key)) > 0}
     floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}

@@ -11,9 +11,9 @@ from rig.core.errors import UsageError
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.readers.parquet import to_numpy
 from rig.runfile.importing.table import Table, locate
+from rig.runfile.manifest import SIMULATED
 
 CHUNK = 1 << 20  # bytes
-SIMULATED = "SIMULATED"  # the column `hdrig export` adds to a run of the twin
 LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
 
 

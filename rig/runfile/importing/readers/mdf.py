@@ -11,6 +11,7 @@ import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.table import Array, Table, locate
+from rig.runfile.manifest import SIMULATED
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
@@ -30,7 +31,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     except MdfException as error:
         raise ValueError(str(error)) from None
     units = {name: s.unit for name, s in signals.items() if s.unit}
-    return Table(columns, units, started, simulated="SIMULATED" in titles)  # as `hdrig export` names the group
+    return Table(columns, units, started, simulated=SIMULATED in titles)
 
 
 def _channels(file: Any) -> list[tuple[str, tuple[int, int]]]:
