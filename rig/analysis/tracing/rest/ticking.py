@@ -112,6 +112,8 @@ def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, S
     speeds = {key: eq.runs[key[0]].turning for key in e}
     heights = {key: _height(spectrum, hz) for key, spectrum in spectra.items()}
     plain = [speed for key, speed in speeds.items() if heights[key] > LINE]
+    if not plain:
+        return False
     usual = float(np.median(plain))
     others = [key for key, speed in speeds.items() if not usual / LINE_SPEEDS < speed < usual * LINE_SPEEDS]
     if sum(speed > LINE_FREE * min(plain) for speed in plain) >= FEWEST:
