@@ -110,8 +110,9 @@ def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
 
 def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
     """All runs of the campaign, and those that identification can read. Raises DataError when none, or two
-    gears, or another gear ratio than declared."""
+    gears, another gear ratio than declared, or two zeros of the motor's encoder."""
     from rig.analysis.identify.recording import recording, refuse_another_ratio
+    from rig.analysis.identify.zeros import refuse_other_zeros
     from rig.runfile.run import Run
 
     runs = []
@@ -133,6 +134,7 @@ def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
     if not found:
         raise DataError("no run here has time and both angles: nothing to identify from")
     refuse_another_ratio(found)
+    refuse_other_zeros(found)
     return runs, found
 
 

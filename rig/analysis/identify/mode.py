@@ -58,6 +58,8 @@ def add_mode(found: dict[str, Parameter], fits: Fits) -> None:
     if not {"J_m", "J_l", "K"} <= found.keys():
         return
     values = {name: found[name].value for name in PARTS}
+    if not min(values[name] for name in ("J_m", "J_l", "K")) > 0.0:  # within its interval, which holds nothing to swing
+        return
     ratio, halves = found["N"].value, np.array([_finite(found[name].half) for name in PARTS])
     best = np.array(free_mode(values, ratio))
     up = [free_mode({**values, name: values[name] + h}, ratio) for name, h in zip(PARTS, halves, strict=True)]

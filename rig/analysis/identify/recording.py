@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.analysis.kinematic_error.ratio import doubt
 from rig.analysis.motion.angle import is_another_ratio, measured_ratio
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.source import Motion, Source, motion_of
@@ -120,15 +121,21 @@ def recording(source: Source) -> Recording | None:
 def refuse_another_ratio(runs: Sequence[Recording]) -> None:
     """Raises DataError when most of `runs` that turn show another ratio than the one declared."""
     free = [run for run in runs if not run.locked and np.ptp(run.theta_m) > 0]
-    shown = [(run, measured_ratio(run.theta_m, run.theta_l)) for run in free]
-    odd = [(r, m) for r, m in shown if is_another_ratio(r.ratio / m, float(np.ptp(r.theta_m)) / r.ratio)]
+    odd = [(run.name, why) for run in free if (why := _another_ratio(run))]
     if 2 * len(odd) > len(free):
-        first, measured = odd[0]
-        raise DataError(
-            f"in {len(odd)} of {len(free)} runs that turn (here {first.name}) the motor goes {measured:.4g} "
-            f"times as far as the load, the declared gear.ratio is {first.ratio:g}: another gear, or an angle in "
-            "another unit than rad"
+        first, why = odd[0]
+        raise DataError(f"in {len(odd)} of {len(free)} runs that turn (here {first}): {why}")
+
+
+def _another_ratio(run: Recording) -> str:
+    measured = measured_ratio(run.theta_m, run.theta_l)
+    if is_another_ratio(run.ratio / measured, float(np.ptp(run.theta_m)) / run.ratio):
+        return (
+            f"the motor goes {measured:.4g} times as far as the load, the declared gear.ratio is {run.ratio:g}: "
+            "another gear, or an angle in another unit than rad"
         )
+    K = declared(run.source.declared, "K")
+    return doubt(run.motion, run.tau_l, K) if run.tau_l is not None and K is not None else ""
 
 
 def _torque(motion: Motion, source: Source, name: str) -> Array | None:

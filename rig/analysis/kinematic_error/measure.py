@@ -10,7 +10,6 @@ from rig.analysis.findings.result import Array
 from rig.analysis.kinematic_error.flexibility import added_share
 from rig.analysis.kinematic_error.profile import Profile, combine
 from rig.analysis.kinematic_error.trend import Trend, find_trend
-from rig.analysis.motion.angle import measured_ratio
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke
@@ -18,7 +17,6 @@ from rig.analysis.orders.revolutions import ROWS_PER_TERM, TERMS, StrokeResult, 
 from rig.core.units import RPM, TURN
 
 SAME_SPEED = 1.15  # strokes whose speeds differ by less are averaged together
-SAME_RATIO = 0.01  # relative: wind-up and kinematic error over a stroke of half an output turn are less
 
 
 @dataclass(frozen=True)
@@ -32,28 +30,6 @@ class KinematicError:
     added: Array  # (k,) share of each amplitude that inertia may have added; zeros when J_l or K is unknown
     added_known: bool
     u_zero: float  # rad, 1 σ of where the motor angle's zero is: one count wide; 0 when its counts are unknown
-
-
-def turns_per_turn(motion: Motion) -> float:
-    """Turns of the motor to one of the load, as both encoders say; nan without a load angle."""
-    if motion.theta_l is None:
-        return float("nan")
-    stride = max(motion.theta_m.size // 20000, 1)
-    return float(measured_ratio(motion.theta_m[::stride], motion.theta_l[::stride]))
-
-
-def angles_disagree(motion: Motion) -> str:
-    """Why θ̃ would be nonsense: the two angles do not belong to a gear of this ratio. Empty when they do."""
-    if motion.theta_l is None:
-        return ""
-    found = turns_per_turn(motion)
-    if abs(found / motion.ratio - 1.0) < SAME_RATIO:
-        return ""
-    if abs(found / motion.ratio + 1.0) < SAME_RATIO:
-        return "The load angle runs against the motor: flip the sign of one encoder, θ̃ is twice the motion until then."
-    return (
-        f"The encoders say {found:.5g} motor turns per load turn, the manifest says {motion.ratio:g}: θ̃ means nothing."
-    )
 
 
 def measure(run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> KinematicError | None:

@@ -12,7 +12,8 @@ import numpy as np
 
 from rig.analysis.analyse import analyse
 from rig.analysis.findings.result import Array, Result
-from rig.analysis.kinematic_error.measure import KinematicError, angles_disagree, groups_by_speed, measure
+from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
+from rig.analysis.kinematic_error.ratio import disagreement
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.strokes import Stroke, find_strokes
 from rig.analysis.motion.tame import Tame
@@ -101,7 +102,7 @@ def reading_of(run: Source, reference: Source | None = None) -> Reading:
             return bare
         tame = Tame(run)
         motion = motion_of(tame)
-        if motion is None or motion.theta_l is None or motion.theta_m.size < 16 or angles_disagree(motion):
+        if motion is None or motion.theta_l is None or motion.theta_m.size < 16 or disagreement(motion):
             return bare
         return _turning(bare, tame, motion)
 

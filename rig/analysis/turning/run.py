@@ -8,14 +8,9 @@ from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Check, Estimate
 from rig.analysis.kinematic_error import words
-from rig.analysis.kinematic_error.measure import (
-    SAME_RATIO,
-    KinematicError,
-    angles_disagree,
-    groups_by_speed,
-    measure,
-    turns_per_turn,
-)
+from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
+from rig.analysis.kinematic_error.ratio import disagreement, doubt, turns_per_turn
+from rig.analysis.motion.declared import declared
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.speed import Speed
 from rig.analysis.motion.strokes import Stroke, find_strokes
@@ -79,19 +74,23 @@ def _with_load(
     found: Findings, run: Source, motion: Motion, strokes: list[Stroke], slow: bool, evenness: tuple[Estimate, ...]
 ) -> None:
     """What both angles tell: kinematic error, orders, torsion; nothing where they contradict the declared ratio."""
-    wrong = angles_disagree(motion)
-    agree = f"The encoders turn {turns_per_turn(motion):.5g} to 1, declared {motion.ratio:g}: within {SAME_RATIO:.0%}."
-    found.checks.append(Check("ratio", not wrong, wrong or agree))
+    tau_l = motion.pick(run.column("tau_l"))
+    turns = turns_per_turn(motion)
+    wrong = disagreement(motion, turns)
+    doubtful = "" if wrong else doubt(motion, tau_l, declared(run.declared, "K"))
+    agree = f"The encoders turn {turns:.5g} to 1, declared {motion.ratio:g}."
+    found.checks.append(Check("ratio", not (wrong or doubtful), wrong or doubtful or agree))
     if wrong:
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
     main = _kinematic_error(found, run, motion, strokes, slow)
+    if doubtful:
+        found.inconclusive, found.sentence = found.inconclusive or doubtful, f"{doubtful} {found.sentence}"
     add_orders(found, motion, max(main, key=lambda s: s.revolutions))
     if not slow:
         add_speed_figures(found, motion, strokes)
     found.estimates += evenness
-    tau_l = motion.pick(run.column("tau_l"))
     if not add_torsion(found, motion, tau_l) and regime_of(run.procedure) is Regime.OTHER:  # the others keep their load
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
         found.cannot.append(f"Stiffness: {why}; a lock test shows it (hdrig run stiffness-lock).")

@@ -39,8 +39,8 @@ WORDS = {
     "F_cl": "Coulomb friction, load side",
     "omega_n": "natural frequency, both ends free",
     "zeta": "damping ratio of that mode",
-    "skew": "load encoder read late, after the motor's",
-    "lag": "torque sensor read late, after the load encoder",
+    "skew": "how much older load angles are than motor angles beside them",
+    "lag": "how much older torques are than load angles beside them",
     "zero": "torque sensor with no torque",
 }
 

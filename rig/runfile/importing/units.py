@@ -48,8 +48,9 @@ _SPELLINGS = {
     "rev": "turns", "revs": "turns", "turn": "turns", "count": "counts", "inc": "counts", "ticks": "counts",
     "sec": "s", "second": "s", "seconds": "s", "msec": "ms", "milliseconds": "ms", "µs": "us", "usec": "us",
     "microseconds": "us", "nsec": "ns", "nanoseconds": "ns", "minutes": "min", "hours": "h",
-    "Nm": "N·m", "mNm": "mN·m", "cNm": "cN·m", "kNm": "kN·m", "kgfm": "kgf·m", "kgfcm": "kgf·cm",
-    "lbfft": "lbf·ft", "lbfin": "lbf·in", "ozfin": "ozf·in", "ftlb": "lbf·ft", "inlb": "lbf·in",
+    "Nm": "N·m", "Ncm": "cN·m", "Nmm": "mN·m", "mNm": "mN·m", "cNm": "cN·m", "kNm": "kN·m",
+    "kgfm": "kgf·m", "kgfcm": "kgf·cm", "lbfft": "lbf·ft", "lbfin": "lbf·in", "ozfin": "ozf·in",
+    "ftlb": "lbf·ft", "inlb": "lbf·in",
     "°/s": "deg/s", "1/min": "rpm", "min^-1": "rpm", "r/min": "rpm", "rev/s": "turns/s",
 }  # fmt: skip
 UNITS = {word: Unit(word, quantity, f) for quantity, words in _TABLE.items() for word, f in words.items()}

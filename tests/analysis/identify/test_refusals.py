@@ -1,0 +1,64 @@
+"""What no gear has, and runs that do not belong together, are refused before a number is written down."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rig.analysis.identify.possible import refuse_impossible, strange
+from rig.analysis.identify.recording import Recording, recording, refuse_another_ratio
+from rig.analysis.identify.zeros import refuse_other_zeros
+from rig.core.errors import DataError
+from rig.model.gearfile import Parameter
+from tests.analysis.synthetic import slow_run
+
+
+def slow(seed: int, name: str) -> Recording:
+    run = recording(slow_run(seed, manifest={"declared": {"K": 7160.0}}))
+    assert run is not None
+    return replace(run, name=name)
+
+
+def further(run: Recording, shift: float) -> Recording:
+    """The same motion, counted from a zero `shift` rad away."""
+    return replace(run, motion=replace(run.motion, theta_m=run.motion.theta_m + shift))
+
+
+def test_runs_of_two_zeros_of_the_motor_encoder_are_not_identified_together() -> None:
+    one, other = slow(1, "one"), further(slow(2, "other"), np.deg2rad(30.0))
+    with pytest.raises(
+        DataError, match=r"other counts the motor angle from another zero than one: .* 30\.\d° ± 0\.\d°"
+    ):
+        refuse_other_zeros([one, other])
+
+
+def test_runs_of_one_zero_are() -> None:
+    refuse_other_zeros([slow(1, "one"), slow(2, "other"), further(slow(3, "hardly moved"), np.deg2rad(0.2))])
+
+
+def measured(value: float, half: float) -> Parameter:
+    return Parameter(value, (value - half, value + half), "measured")
+
+
+@pytest.mark.parametrize(("name", "sensor"), [("J_l", "tau_l"), ("tau_c", "tau_m"), ("F_cl", "tau_l")])
+def test_a_negative_inertia_or_friction_says_which_sensor_is_the_wrong_way_round(name: str, sensor: str) -> None:
+    with pytest.raises(DataError, match=f"^{name} comes out at -0.3 ± 0.01 .*above 0: {sensor} seems"):
+        refuse_impossible({name: measured(-0.3, 0.01)})
+    refuse_impossible({name: measured(-0.001, 0.01)})  # zero, as far as anybody can tell
+
+
+def test_a_number_far_from_what_is_declared_is_said_with_both() -> None:
+    far = strange({"K": measured(7.16e6, 1e3), "B_sp": measured(-4.4, 1.0)}, {"K": {"value": 7160.0}})
+    assert [sentence.split(" ")[0] for sentence in far] == ["B_sp", "K"]
+    assert "declared 7160 N·m/rad" in far[1]
+    assert strange({"K": measured(6000.0, 10.0), "B_sp": measured(-0.1, 1.0)}, {"K": 7160.0}) == []
+
+
+def test_a_ratio_off_by_half_a_per_cent_is_refused_where_the_torque_says_it_is_no_wind_up() -> None:
+    run = slow(1, "one")
+    free = replace(run, tau_l=np.zeros(run.t.size))
+    refuse_another_ratio([free])
+    with pytest.raises(DataError, match=r"declared 50: θ̃ grows by"):
+        refuse_another_ratio([replace(free, motion=replace(free.motion, theta_l=1.006 * free.theta_l))])
