@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rig.analysis.at_speed.decomposition import decompose, phasors
 from rig.analysis.identify.recording import Recording
 from rig.analysis.identify.slow import SLOW
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.motion.strokes import find_strokes
-from rig.analysis.orders.align import Alignment
+from rig.analysis.kinematic_error.profile import Profile
+from rig.analysis.orders.align import Alignment, Complex, align
 from rig.core.errors import DataError
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
@@ -30,7 +30,7 @@ def refuse_other_zeros(runs: Sequence[Recording]) -> None:
     if not slow:
         return
     first, reference = slow[0]
-    odd = [(run, where) for run, error in slow[1:] if (where := _turned(run, error, reference)) is not None]
+    odd = [(run, where) for run, error in slow[1:] if (where := _turned(error.profile, reference.profile)) is not None]
     if odd:
         run, where = odd[0]
         others = f" and {len(odd) - 1} more" if len(odd) > 1 else ""
@@ -52,11 +52,21 @@ def _slow_error(run: Recording) -> KinematicError | None:
     return error if error is not None and error.speed_rpm < SLOW else None
 
 
-def _turned(run: Recording, error: KinematicError, reference: KinematicError) -> Alignment | None:
+def _turned(error: Profile, reference: Profile) -> Alignment | None:
     """The shift between two slow errors where there is one and it makes them alike; None else."""
-    parts = decompose(run.source, error, reference.profile)
-    if parts is None or parts.alignment.common:
+    k = min(error.terms, reference.terms)
+    seen, expected = _phasors(error, k), _phasors(reference, k)
+    u = np.sqrt(
+        0.5 * (error.u_cosine**2 + error.u_sine**2)[:k] + 0.5 * (reference.u_cosine**2 + reference.u_sine**2)[:k]
+    )
+    where = align(seen, expected, u, k)
+    if where is None or where.common:
         return None
-    as_they_are = parts.total - phasors(reference.profile, parts.total.size)
-    gone = float(np.sum(np.abs(parts.flexible) ** 2)) < LIKE**2 * float(np.sum(np.abs(as_they_are) ** 2))
-    return parts.alignment if gone else None
+    turned = expected * np.exp(-1j * np.arange(1.0, k + 1) * where.shift)
+    gone = np.linalg.norm(seen - turned) < LIKE * np.linalg.norm(seen - expected)
+    return where if gone else None
+
+
+def _phasors(p: Profile, k: int) -> Complex:
+    """a_n − j·b_n of orders 1..k, arcsec."""
+    return np.asarray(p.cosine[:k] - 1j * p.sine[:k])
