@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rig.analysis.findings.collected import pm
 from rig.analysis.identify.recording import Recording
 from rig.analysis.identify.slow import SLOW
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
-from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.kinematic_error.profile import Profile
+from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.orders.align import Alignment, Complex, align
 from rig.core.errors import DataError
 from rig.core.quantiles import Z95
@@ -33,10 +34,11 @@ def refuse_other_zeros(runs: Sequence[Recording]) -> None:
     odd = [(run, where) for run, error in slow[1:] if (where := _turned(error.profile, reference.profile)) is not None]
     if odd:
         run, where = odd[0]
+        apart = pm(where.fitted / DEG, Z95 * where.u_fitted / DEG, "degrees")
         others = f" and {len(odd) - 1} more" if len(odd) > 1 else ""
         raise DataError(
             f"{run.name}{others} counts the motor angle from another zero than {first.name}: its kinematic error lies "
-            f"{where.fitted / DEG:.1f}° ± {Z95 * where.u_fitted / DEG:.1f}° further, as after switching the encoder "
+            f"{pm(where.fitted / DEG, Z95 * where.u_fitted / DEG, '°')} further, as after switching the encoder "
             "off; expected one zero: identify the runs of one zero at a time"
         )
 
