@@ -38,7 +38,7 @@ def refuse_other_zeros(runs: Sequence[Recording]) -> None:
         others = f" and {len(odd) - 1} more" if len(odd) > 1 else ""
         raise DataError(
             f"{run.name}{others} counts the motor angle from another zero than {first.name}: its kinematic error lies "
-            f"{pm(where.fitted / DEG, Z95 * where.u_fitted / DEG, '°')} further, as after switching the encoder "
+            f"{apart} further, as after switching the encoder "
             "off; expected one zero: identify the runs of one zero at a time"
         )
 

@@ -26,7 +26,8 @@ class LoadDependentKinematicError(Effect):
     pressed alike whichever way they push. The two differ where the torque swings through zero within the lag.
 
     The paper's profiles change as they shrink: orders 1, 2 and 4 may each lose a wave of its own, whose size and phase
-    are fitted. As shares of what stays they would have no phase where little stays.
+    are fitted. As shares of what stays they would have no phase where little stays. The rest of them shrinks together,
+    and may turn together: a profile that shifts by an angle as the wave generator's plug is wound up.
 
     δ is 1 in Fig. 9, as far as five loads tell. Teeth that come into contact one by one spread the fall over decades of
     torque, clearances of one size end it at one: 0.6 and 2 come within a tenth of a power law and of a straight line.
@@ -89,12 +90,13 @@ class LoadDependentKinematicError(Effect):
         wave = np.array(_wave(known.kinematic_error, order))
         if shape[0] < EACH:
             return wave[:, None]
-        made = np.zeros((2, 2 * len(ORDERS) + 1))
+        made = np.zeros((2, 2 * len(ORDERS) + 2))
         if order in ORDERS:
             i = ORDERS.index(order)
             made[0, i] = made[1, i + len(ORDERS)] = 1.0
         else:
-            made[:, -1] = wave
+            made[:, -2] = wave
+            made[:, -1] = order * wave[1], -order * wave[0]
         return made
 
     def plausible(self, fit: Fit) -> bool:
@@ -109,16 +111,28 @@ class LoadDependentKinematicError(Effect):
 
 
 def _by_orders(signals: Signals, values: Array, slopes: Array) -> tuple[Array, Array]:
-    """Cosine and sine of ORDERS, rad each, and what is left of the whole without them, (n, 7), and slopes by θ_m."""
+    """Cosine and sine of ORDERS, rad each, what is left of the whole without them and its slope, (n, 8); and the slopes
+    of all by θ_m."""
     series = signals.gear.kinematic_error
     n = np.array(ORDERS)
     waves = powers(signals.theta_m, max(ORDERS))
     cos, sin = waves[:, 0::2][:, n - 1], waves[:, 1::2][:, n - 1]
     a, b = np.array([_wave(series, order) for order in ORDERS]).T
+    rest = slopes - (cos @ (n * b) - sin @ (n * a))[:, None]
     return (
-        np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None]]),
-        np.hstack([-n * sin, n * cos, slopes - (cos @ (n * b) - sin @ (n * a))[:, None]]),
+        np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None], rest]),
+        np.hstack([-n * sin, n * cos, rest, _curvature(signals)]),
     )
+
+
+def _curvature(signals: Signals) -> Array:
+    """Second derivative by θ_m of the orders that are not among ORDERS, rad, (n, 1)."""
+    series = signals.gear.kinematic_error
+    k = len(series.a)
+    n = np.arange(1.0, k + 1)
+    waves = powers(signals.theta_m, k)
+    square = np.where(np.isin(n, ORDERS), 0.0, n**2)
+    return np.asarray(-(waves[:, 0::2] @ (square * series.a) + waves[:, 1::2] @ (square * series.b)))[:, None]
 
 
 def _wave(series: FourierSeries, order: int) -> tuple[float, float]:

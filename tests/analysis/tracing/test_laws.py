@@ -180,9 +180,23 @@ def test_orders_that_shrink_alike_are_the_law_of_the_whole_series() -> None:
     whole, apart = (effect.columns(s, (of, 3.0, 3e-3, 1.0)) for of in (TORQUE, TORQUE + EACH))
     series = s.gear.kinematic_error
     a, b = ((*part, *4 * (0.0,)) for part in (series.a, series.b))
-    alike = np.array([*(a[n - 1] for n in ORDERS), *(b[n - 1] for n in ORDERS), 1.0])
+    alike = np.array([*(a[n - 1] for n in ORDERS), *(b[n - 1] for n in ORDERS), 1.0, 0.0])
     for port in (Port.KINEMATIC_ERROR, Port.LEVER):
         np.testing.assert_allclose(apart[port] @ alike, whole[port][:, 0], atol=1e-12)
+
+
+def test_what_is_not_one_of_the_large_orders_may_turn_by_an_angle() -> None:
+    """The last two columns: the rest, and what it changes by for a rad of turn; orders 3 and 5 are all of the rest."""
+    s = motion()
+    third = FourierSeries((0.0, 0.0, 2e-4, 0.0, 1e-4), (0.0, 0.0, 1e-4, 0.0, -3e-5))
+    s = dataclasses.replace(s, gear=dataclasses.replace(s.gear, kinematic_error=third))
+    columns = LoadDependentKinematicError().columns(s, (TORQUE + EACH, 3.0, 3e-3, 1.0))
+    h = 1e-5
+    for port, of in ((Port.KINEMATIC_ERROR, third.value), (Port.LEVER, third.slope)):
+        per_turn = (of(s.theta_m + h) - of(s.theta_m - h)) / (2 * h)
+        rest, turned = columns[port][:, 6], columns[port][:, 7]
+        np.testing.assert_allclose(turned * of(s.theta_m), per_turn * rest, atol=1e-14)
+        assert np.ptp(turned) > 0
 
 
 @pytest.mark.parametrize("of", [TORQUE, TORQUE + EACH])

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
+from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
+from rig.analysis.tracing.selection.inferred import beside_series, is_inferred
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED
 from rig.model.effect import Array
 
@@ -27,8 +29,12 @@ class HeldOut:
     gains: dict[Key, float]  # what a torque sensor's gain may do along T in a lock test, rad per N·m
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
-        """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T."""
-        return {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
+        """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
+        what is not known of a kinematic error that nobody read."""
+        e = {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
+        inferred = [key for key in e if is_inferred(d.eq, key)]
+        known = scatter(s) if inferred else np.zeros((0, 0))
+        return e | {key: beside_series(e[key], d, key, known, self.floors[key]) for key in inferred}
 
     def _beside_gain(self, key: Key, e: Array, d: Design) -> Array:
         if key not in self.gains:

@@ -1,0 +1,42 @@
+"""Lock tests without a load encoder: a kinematic error that was inferred, not read, is not held against them.
+
+Over the few degrees that a locked motor turns θ̃ is what the orders of θ̃_p make there, and without a load encoder they
+are known by the torques they cause at speed alone: far worse than a lock test repeats. What their own uncertainty allows
+there is no residual.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS
+from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.fit.model import Design
+from rig.model.effect import Array
+
+PIECES: Final = 50  # of a lock test that its floor counts as independent: its rows follow one another too closely
+SERIES: Final = [INDEX[f"{part}{n}"] for part in "ab" for n in range(1, ORDERS + 1)]
+
+
+def is_inferred(eq: Equations, key: Key) -> bool:
+    """Whether a block is the kinematic error of a lock test whose load angle nobody read."""
+    run, channel = key
+    return channel == "A" and eq.runs[run].locked and "theta_l" not in eq.runs[run].has
+
+
+def beside_series(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Array:
+    """What is left of `e` (n,) when the orders of θ̃_p may move as their `covariance` (p, p) lets them: the ridge of
+    Bayes with a floor of `floor`."""
+    baseline = d.parts[key][0]
+    mine = [i for i, at in enumerate(baseline.at) if at in SERIES]
+    columns = np.asarray(baseline.z.whole(), dtype=np.float64)[:, mine]
+    columns = columns - columns.mean(0)
+    prior = covariance[np.ix_(baseline.at[mine], baseline.at[mine])]
+    weight = PIECES / (e.size * floor**2)
+    # (P⁻¹ + w·ZᵀZ)⁻¹·w·Zᵀe without the inverse of a prior that may be singular
+    moved = np.linalg.solve(
+        np.eye(len(mine)) + weight * prior @ (columns.T @ columns), weight * prior @ (columns.T @ e)
+    )
+    return np.asarray(e - columns @ moved)

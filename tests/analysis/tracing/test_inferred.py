@@ -1,0 +1,58 @@
+"""Without a load encoder a lock test is not held against a kinematic error that is known by torques alone."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit.channels import BASELINE, INDEX
+from rig.analysis.tracing.selection.inferred import beside_series, is_inferred
+
+THETA = np.linspace(-1.0, 1.0, 2000)
+FLOOR = 4e-6  # rad
+KEY = (0, "A")
+
+
+def block(columns: dict[str, np.ndarray]) -> Any:
+    at = np.array([INDEX[name] for name in columns])
+    z = SimpleNamespace(whole=lambda: np.column_stack([*columns.values()]))
+    return SimpleNamespace(parts={KEY: (SimpleNamespace(z=z, at=at),)})
+
+
+def known_to(**sigmas: float) -> np.ndarray:
+    out = np.zeros((len(BASELINE), len(BASELINE)))
+    for name, sigma in sigmas.items():
+        out[INDEX[name], INDEX[name]] = sigma**2
+    return out
+
+
+@pytest.mark.parametrize(("sigma", "left"), [(2e-5, 0.1), (0.0, 1.0)])
+def test_what_the_orders_are_not_known_to_is_no_residual_and_what_they_are_known_to_is(
+    sigma: float, left: float
+) -> None:
+    """A wave of order 2 that the fit has 20 µrad wrong; once it is as unsure as that, once it is sure."""
+    d = block({"a2": np.cos(2 * THETA), "compliance": THETA})
+    e = 2e-5 * (np.cos(2 * THETA) - np.cos(2 * THETA).mean())
+    rest = beside_series(e, d, KEY, known_to(a2=sigma), FLOOR)
+    assert np.std(rest) <= left * np.std(e) * (1 + 1e-9)
+    assert np.std(rest) >= (0.0 if sigma else 1.0) * np.std(e) * (1 - 1e-9)
+
+
+def test_a_loop_that_no_order_makes_stays() -> None:
+    """Hysteresis has two values at one motor angle; uncertain orders have one."""
+    way = np.concatenate((THETA, THETA[::-1]))
+    loop = 2e-5 * np.concatenate((np.ones(THETA.size), -np.ones(THETA.size)))
+    d = block({"a2": np.cos(2 * way), "b1": np.sin(way)})
+    assert np.std(beside_series(loop, d, KEY, known_to(a2=1e-4, b1=1e-4), FLOOR)) == pytest.approx(2e-5, rel=1e-3)
+
+
+def test_only_locked_runs_without_a_load_encoder_are_inferred() -> None:
+    def of(locked: bool, *has: str) -> bool:
+        return is_inferred(cast(Any, SimpleNamespace(runs=[SimpleNamespace(locked=locked, has=set(has))])), KEY)
+
+    assert of(True, "theta_m", "tau_l")
+    assert not of(True, "theta_m", "theta_l", "tau_l")
+    assert not of(False, "theta_m", "tau_l")
