@@ -1,12 +1,14 @@
 """Where a rest lives: the coordinate it was made with is found, whatever else changes beside it."""
 
 from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.rest import unknown
 from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, straightened
-from rig.analysis.tracing.rest.home import plainest
+from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.past import since_turned
 from rig.analysis.tracing.rest.sudden import turned_since
@@ -72,6 +74,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         lambda at: at["direction"] * np.exp(-((np.mod(5.537 * at["motor_angle"], 6.283) - 2) ** 2) / 0.02),
     ),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
+    "a torque sensor whose gain breathes": ("time_periodic", lambda at: at["load"] * np.sin(2.7 * at["time"])),
     "a brinell mark in the race": (
         "motor_angle",
         lambda at: np.exp(-((np.mod(at["motor_angle"] - 3.8, 2 * np.pi) - np.pi) ** 2) / 2 / 0.02**2),
@@ -114,6 +117,20 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
 def said(at: At, e: np.ndarray, channel: str = "A") -> str:
     """The coordinate of a rest (n,) over its floor."""
     return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))[0].coordinate
+
+
+def test_where_nothing_stands_out_of_the_floor_the_channel_is_taken_that_can_be_foretold(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Repeats differ by it, so it is in the floor: the channel with a hair more left than others says nothing."""
+    shares = {"A": 9.6, "M": 1.2, "L": 1.1}
+    monkeypatch.setattr(unknown, "rest", lambda eq, e, floors, channel: channel)
+    monkeypatch.setattr(
+        unknown, "homes", lambda r, channel: [Home("time" if channel == "A" else "load", channel, shares[channel])]
+    )
+    e = {(0, "A"): 0.80 * np.ones(9), (0, "M"): 0.95 * np.ones(9), (0, "L"): 0.9 * np.ones(9)}
+    found = unknown.home(cast(Any, None), e, dict.fromkeys(e, 1.0))
+    assert [(h.coordinate, h.channel) for h in found] == [("time", "A")]
 
 
 @pytest.mark.slow

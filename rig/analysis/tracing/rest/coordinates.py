@@ -25,7 +25,7 @@ def _levels(x: Array, count: int = LEVELS) -> Index:
     return np.where(good, np.digitize(x, edges), -1)
 
 
-def _steps(x: Array, count: int = LEVELS) -> Index:
+def steps(x: Array, count: int = LEVELS) -> Index:
     """Levels as wide as each other: most rows have little load, and a lock test most of the range."""
     good = np.isfinite(x)
     if good.sum() < 100 or np.ptp(x[good]) == 0:
@@ -90,7 +90,7 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
 }
 FINE: Sequence[tuple[str, Callable[[Rest], Index]]] = (
     ("motor_angle", lambda r: turned(r.at["motor_angle"], FINER * BINS)),
-    ("load", lambda r: _steps(r.at["load"], FINER * LEVELS)),
+    ("load", lambda r: steps(r.at["load"], FINER * LEVELS)),
 )
 """The same once more: a dent in a race is narrow, and so are the waves of a sensor's scale."""
 
@@ -121,11 +121,11 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
     "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
     "load_angle": (lambda r: both(turned(r.at["load_angle"], 2 * BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
-        lambda r: _steps(np.abs(r.at["speed"])),
+        lambda r: steps(np.abs(r.at["speed"])),
         lambda r: both(_levels(np.abs(r.at["speed"])), (r.at["direction"] + 1).astype(int)),
     ),
     "load": (
-        lambda r: _steps(r.at["load"]),
+        lambda r: steps(r.at["load"]),
         lambda r: both(_levels(r.at["load"]), (r.at["direction"] + 1).astype(int)),
         lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["load"], PERIODS)),
     ),

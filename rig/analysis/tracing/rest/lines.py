@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from rig.analysis.tracing.rest.binned import Halves, score
-from rig.analysis.tracing.rest.coordinates import both, turned
+from rig.analysis.tracing.rest.coordinates import both, steps, turned
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.analysis.tracing.rest.readings import in_bins, in_columns, share, waves
@@ -27,8 +27,21 @@ SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the 
 DAY = 40  # quarter waves of SLOWEST that a campaign must take: in two minutes a slow wave is a trend
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
+LOADS = 8  # levels of torque
 SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
 """As it is, and as friction shows it: the other way round on the way back."""
+
+
+def _way(r: Rest) -> Index:
+    return (r.at["direction"] + 1).astype(int)
+
+
+BY_THE_CLOCK: Sequence[tuple[Callable[[Rest], Array], Callable[[Rest], Index]]] = (
+    (SENSES[0], lambda r: np.ones(r.e.size, dtype=int)),
+    (SENSES[1], _way),
+    (lambda r: np.nan_to_num(r.at["load"]), lambda r: steps(r.at["load"], LOADS)),
+)
+"""The same for what comes and goes by the clock, and what does so as a sensor's gain under load does."""
 
 
 def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
@@ -105,9 +118,10 @@ def line(r: Rest, channel: str) -> Home | None:
     return Home("time_periodic", channel, part, frequency_hz=float(np.median([f for f, _, _ in best])))
 
 
-def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home:
-    """What comes and goes with the time, of any form that all runs share: a pump, or a brake that rubs against the
-    `sense` of the motion. Every run has a phase of its own, as clocks that are read to the second leave it.
+def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among: Callable[[Rest], Index]) -> Home:
+    """What comes and goes with the time, of any form that all runs share: a pump, a brake that rubs against the
+    `sense` of the motion, or what breathes under load and is as large as that: apart `among` what it depends on. Every
+    run has a phase of its own, as clocks that are read to the second leave it.
     """
     r = h.rest
     t, e = r.at["time"], r.e * sense(r)
@@ -123,7 +137,7 @@ def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Hom
         for run in np.unique(rest.run):
             mine = rest.run == run
             own[mine] = _phase(rest.at["time"][mine], signed[mine], f)
-        return both(turned(TURN * f * rest.at["time"] + own, PHASES), (sense(rest) + 1).astype(int))
+        return both(turned(TURN * f * rest.at["time"] + own, PHASES), among(rest))
 
     return Home("time_periodic", channel, score(h, phase(r)) / h.total, frequency_hz=f, read=in_bins(phase))
 

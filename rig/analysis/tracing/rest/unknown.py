@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import ORDERS
+from rig.analysis.tracing.fit.channels import ORDERS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, score, straightened
 from rig.analysis.tracing.rest.coordinates import FINE, INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
-from rig.analysis.tracing.rest.lines import SENSES, best_order, by_the_clock, by_the_day, line
+from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.sudden import since, turned_since
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
@@ -109,7 +109,7 @@ def frequency(r: Rest, channel: str) -> Home | None:
 def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     """`seen`: a line in runs of differing speed."""
     found = [home for home in (seen, by_the_day(h, channel)) if home is not None]
-    return found + [by_the_clock(h, channel, sense) for sense in SENSES]
+    return found + [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
 
 
 def _of_the_output(found: Home, r: Rest) -> Home:
@@ -146,7 +146,12 @@ def _wound(h: Halves, channel: str) -> Home | None:
 
 
 def home(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> list[Home]:
-    """Best coordinates of the channel with the most left."""
+    """Best coordinates of the channel with the most left; where nothing that was fitted stands out of its floor, of the
+    one of which most can be foretold: repeats differ by it, so it is in the floor."""
+    if max(loudness(e, floors).values()) <= 1.0:
+        rests = {c: r for c in WHOLE if (r := rest(eq, e, floors, c)) is not None}
+        by_channel = [homes(r, c) for c, r in rests.items()]
+        return plainest(max(by_channel, key=lambda some: some[0].share)) if by_channel else []
     most, channel = _loudest(eq, e, floors)
     if most is None:
         return []

@@ -1,8 +1,8 @@
 """Lock tests without a load encoder: a kinematic error that was inferred, not read, is not held against them.
 
-Over the few degrees that a locked motor turns θ̃ is what the orders of θ̃_p make there, and without a load encoder they
-are known by the torques they cause at speed alone: far worse than a lock test repeats. What their own uncertainty allows
-there is no residual.
+Over the few degrees that a locked motor turns θ̃ is what the orders of θ̃_p make there, and without a load encoder these
+are known by the torques they cause at speed alone: far worse than a lock test repeats. What their own uncertainty
+allows there is no residual.
 """
 
 from __future__ import annotations
