@@ -15,7 +15,7 @@ from rig.commands import CATALOGUE
 from rig.core.errors import Exit
 from rig.core.way_out import ending_in_a_sentence
 from rig.process.ctrl_c import after_imports
-from rig.process.streams import Tolerant, show_what_fits
+from rig.process.streams import Tolerant, show_what_fits, standard
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
@@ -46,9 +46,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     # our matrices are small: a second BLAS thread only spins beside the loop and the recorder
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     before = sys.stdout, sys.stderr
-    for stream in before:
+    streams = standard(sys.stdout, 1), standard(sys.stderr, 2)
+    for stream in streams:
         show_what_fits(stream)
-    out, err = (Tolerant(stream) for stream in before)
+    out, err = (Tolerant(stream) for stream in streams)
     sys.stdout, sys.stderr = cast(TextIO, out), cast(TextIO, err)
     try:
         code = ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))
