@@ -31,6 +31,11 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
     return int(worst)
 
 
+def say_unread(error: OSError) -> None:
+    """On stderr: what runs may lie there is not known."""
+    print(f"left out: {error.filename} cannot be read: {error.strerror}", file=sys.stderr)
+
+
 def expand(paths: list[Path]) -> list[Path]:
     """Run folders as given; a folder that is no run gives the runs below it.
 
@@ -40,7 +45,7 @@ def expand(paths: list[Path]) -> list[Path]:
     found: list[Path] = []
     files: list[Path] = []
     for path in paths:
-        inside = runs_in(path)
+        inside = runs_in(path, say_unread)
         if not inside and path.is_file() and len(paths) > 1:
             files.append(path)
         elif not inside:
