@@ -7,8 +7,9 @@ import importlib
 import os
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
-from typing import TextIO, cast
+from typing import Any, TextIO, cast
 
 from rig import __version__
 from rig.commands import CATALOGUE
@@ -29,10 +30,21 @@ class Parser(argparse.ArgumentParser):
 
     hints: Mapping[str, str] = MappingProxyType({})  # of options that are looked for here, where they are
 
+    def __init__(self, **words: Any) -> None:
+        super().__init__(**words)
+        self.register("type", Path, _place)  # of every option and argument that takes a folder or a file
+
     def error(self, message: str) -> None:  # type: ignore[override]
         hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), "")
         print(f"hdrig: {message}{hint}; see {self.prog} --help", file=sys.stderr)
         raise SystemExit(Exit.USAGE)
+
+
+def _place(said: str) -> Path:
+    """A path as given, but none of no characters: Path takes it for the folder one is in."""
+    if not said:
+        raise argparse.ArgumentTypeError("an empty path, as of a shell variable that is not set; expected a name")
+    return Path(said)
 
 
 def overview() -> str:
