@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from rig.core.errors import Exit, HdrigError, UsageError
+from rig.core.errors import Exit, HdrigError, UsageError, said_of
 from rig.runfile.listing import runs_in
 
 
@@ -25,7 +25,7 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
         try:
             code = act(folder)
         except HdrigError as error:
-            print(f"hdrig: {folder}: {error}", file=sys.stderr)
+            print(f"hdrig: {folder}: {said_of(folder, error)}", file=sys.stderr)
             code = Exit(error.exit)
         worst = worst or code
     return int(worst)
