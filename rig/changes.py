@@ -98,13 +98,20 @@ def judge_weight(found: Weighing, tau_ext: float, zero: float) -> str:
     """The weight is the one that was asked for. Raises NotReady with what hangs there instead."""
     measured, allowed = zero - found.torque, tolerance(tau_ext) + 2 * found.error
     if abs(measured - tau_ext) <= allowed:
-        return f"{measured:+.2f} N·m on the output, {tau_ext:+g} N·m were asked for ({found.sentence})"
-    what = f"expected {tau_ext:+g} N·m within {allowed:.2f} N·m"
+        hung = f"{_signed(measured, '.2f')} N·m on the output, {_signed(tau_ext, 'g')} N·m were asked for"
+        return f"{hung} ({found.sentence})"
+    what = f"expected {_signed(tau_ext, 'g')} N·m within {allowed:.2f} N·m"
     if tau_ext and abs(measured + tau_ext) <= allowed:
-        raise NotReady(f"{measured:+.2f} N·m hang on the output, {what}: the weight pulls the wrong way")
+        raise NotReady(f"{_signed(measured, '.2f')} N·m hang on the output, {what}: the weight pulls the wrong way")
     if abs(measured) <= WEIGHT_FLOOR + 2 * found.error:
-        raise NotReady(f"{measured:+.2f} N·m hang on the output, {what}: the weight is not there")
-    raise NotReady(f"{measured:+.2f} N·m hang on the output, {what}: it is another weight")
+        raise NotReady(f"{_signed(measured, '.2f')} N·m hang on the output, {what}: the weight is not there")
+    raise NotReady(f"{_signed(measured, '.2f')} N·m hang on the output, {what}: it is another weight")
+
+
+def _signed(value: float, digits: str) -> str:
+    """With its sign, and without one where it is shown as nothing."""
+    shown = f"{value:+{digits}}"
+    return shown if float(shown) else shown[1:]
 
 
 def judge_free(found: LockProof) -> str:

@@ -7,15 +7,16 @@ import importlib
 import os
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
-from typing import TextIO, cast
+from typing import Any, TextIO, cast
 
 from rig import __version__
 from rig.commands import CATALOGUE
 from rig.core.errors import Exit
 from rig.core.way_out import ending_in_a_sentence
 from rig.process.ctrl_c import after_imports
-from rig.process.streams import Tolerant, show_what_fits
+from rig.process.streams import Tolerant, show_what_fits, standard
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
@@ -29,10 +30,21 @@ class Parser(argparse.ArgumentParser):
 
     hints: Mapping[str, str] = MappingProxyType({})  # of options that are looked for here, where they are
 
+    def __init__(self, **words: Any) -> None:
+        super().__init__(**words)
+        self.register("type", Path, _place)  # of every option and argument that takes a folder or a file
+
     def error(self, message: str) -> None:  # type: ignore[override]
         hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), "")
         print(f"hdrig: {message}{hint}; see {self.prog} --help", file=sys.stderr)
         raise SystemExit(Exit.USAGE)
+
+
+def _place(said: str) -> Path:
+    """A path as given, but none of no characters: Path takes it for the folder one is in."""
+    if not said:
+        raise argparse.ArgumentTypeError("an empty path, as of a shell variable that is not set; expected a name")
+    return Path(said)
 
 
 def overview() -> str:
@@ -46,9 +58,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     # our matrices are small: a second BLAS thread only spins beside the loop and the recorder
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     before = sys.stdout, sys.stderr
-    for stream in before:
+    streams = standard(sys.stdout, 1), standard(sys.stderr, 2)
+    for stream in streams:
         show_what_fits(stream)
-    out, err = (Tolerant(stream) for stream in before)
+    out, err = (Tolerant(stream) for stream in streams)
     sys.stdout, sys.stderr = cast(TextIO, out), cast(TextIO, err)
     try:
         code = ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))

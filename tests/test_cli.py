@@ -43,6 +43,16 @@ def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str
     assert CATALOGUE[verb][1].split(":")[0][:20] in capsys.readouterr().out.replace("\n", " ")
 
 
+def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["devices", "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert "none:" not in said
+    assert "can0 for example; left out: serial ports alone" in said
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("args", "words"),

@@ -128,14 +128,14 @@ PROCEDURES: Mapping[str, Part] = {
 }
 
 
-def analyse(run: Source, reference: Source | None = None, doubt: str = "") -> Result:
+def analyse(run: Source, reference: Source | None = None, doubt: str = "", beyond: str = "") -> Result:
     """All that `run` says: figures with 95 % intervals, checks, curves, and what it cannot tell.
 
     `reference` is a slow run of the same gear: a run at speed is then split into the pure kinematic error and what
     flexibility makes of it; from the wind-up of a lock test the kinematic error is taken off.
 
     `doubt` says why the samples may not be those that were recorded, as what the manifest promises of them and they
-    do not keep does: no limit is then met or missed.
+    do not keep does: no limit is then met or missed. `beyond` says the same of torques larger than the rig's.
 
     `run` is a `rig.runfile.Run`, or anything with the same columns and manifest. Never raises on what a run lacks or
     holds, but HdrigError when its samples cannot be read: the Result says it. Limits and verdict: see
@@ -145,7 +145,7 @@ def analyse(run: Source, reference: Source | None = None, doubt: str = "") -> Re
         warnings.simplefilter("ignore")  # numpy's remarks on empty and constant pieces say nothing to an operator
         tame = Tame(run)
         try:
-            return _analyse(tame, reference, doubt)
+            return _analyse(tame, reference, doubt, beyond)
         except OF_DATA as why:
             said = f"The analysis broke off on what this run holds ({type(why).__name__}: {why})."
             return replace(_nothing(tame, said), broke_off=traceback.format_exc())
@@ -170,10 +170,10 @@ def _broken(run: Tame, doubt: str) -> str:
     return f"The samples are not what the manifest says: {'; '.join(found)}." if found else ""
 
 
-def _analyse(run: Tame, reference: Source | None, doubt: str) -> Result:
+def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Result:
     if not RATIOS[0] <= run.ratio <= RATIOS[1]:
         return _nothing(run, f"The manifest says a gear ratio of {run.ratio:g}: no gear has it, nothing was computed.")
-    found = Findings(broken=_broken(run, doubt))
+    found = Findings(broken=_broken(run, doubt), beyond=beyond)
     motion = motion_of(run)
     if motion is None or motion.theta_m.size < 16:
         why = "The run has no motor angle: nothing can be said about the gear."

@@ -12,7 +12,7 @@ from rig.catalogue.remembered import Remembered
 from rig.catalogue.row import UNREADABLE, Row, row_of
 from rig.core.errors import UsageError
 from rig.runfile import manifest
-from rig.runfile.listing import run_folders
+from rig.runfile.listing import Unread, is_run, passed_by, run_folders
 from rig.runfile.process import is_being_made
 
 RUNNING = "running"
@@ -27,10 +27,11 @@ def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
     return filter.of(rows(str(root)))
 
 
-def passing(root: Path | str, filter: Filter = ALL) -> Iterator[Row]:
-    """The same runs one by one, as they lie on disk; none is kept or remembered. Raises UsageError at once."""
+def passing(root: Path | str, filter: Filter = ALL, unread: Unread = passed_by) -> Iterator[Row]:
+    """The same runs one by one, as they lie on disk; none is kept or remembered; `unread` is told of folders that may
+    not be looked into. Raises UsageError at once."""
     _refuse_no_folder(root)
-    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in _folders(str(root)))
+    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in _folders(str(root), unread))
     return (row for row in found if filter.passes(row))
 
 
@@ -39,9 +40,9 @@ def rows(root: str) -> Iterator[Row]:
     return (row(folder) for folder in _folders(root))
 
 
-def _folders(root: str) -> Iterator[str]:
+def _folders(root: str, unread: Unread = passed_by) -> Iterator[str]:
     """`root` itself where it is a run folder, as for every verb that takes runs; else those below it."""
-    return iter([root]) if (Path(root) / manifest.NAME).exists() else run_folders(root)
+    return iter([root]) if is_run(root) else run_folders(root, unread=unread)
 
 
 def row(folder: Path | str) -> Row:

@@ -43,9 +43,11 @@ class Scatter:
         if not self.known:
             return "reproducibility not known: no repeats of the same gear, procedure, conditions and assembly"
         said = f"{self.sd:.3g}" if unit == "1" else f"{self.sd:.3g} {unit}"
+        dof = f"{self.dof:.1f}".removesuffix(".0")
+        freedom = f"{dof} degree of freedom" if dof == "1" else f"{dof} degrees of freedom"
         where = "one assembly" if self.sets == 1 else f"{self.sets} assemblies"
         return (
-            f"scatter of a single run {said} (standard deviation, {self.dof:.1f} degrees of freedom), from "
+            f"scatter of a single run {said} (standard deviation, {freedom}), from "
             f"successive differences among {self.repeats} repeats of the same gear, procedure and conditions in {where}"
         )
 

@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig compensate`."""
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--campaign", type=Path, metavar="FOLDER", help="identify the error from the runs in there")
-    source.add_argument("--gear", metavar="GEAR", help="gear file of hdrig identify")
+    source.add_argument("--gear", type=Path, metavar="GEAR", help="gear file of hdrig identify")
     parser.add_argument("--speed", type=float, nargs="+", default=[SLOW], metavar="RPM", help=f"default {SLOW}")
     parser.add_argument("--revolutions", type=int, default=REVOLUTIONS, metavar="N", help="of the motor, each way")
     bench_arguments(parser)
@@ -87,7 +87,7 @@ def _gear(args: argparse.Namespace) -> GearFile:
     """Raises UsageError: no gear file, or one without a kinematic error; DataError when nothing can be identified."""
     from rig.model import gearfile
 
-    found = gearfile.read(Path(args.gear)) if args.gear else gear_of(expand([args.campaign]), TERMS, say)
+    found = gearfile.read(args.gear) if args.gear else gear_of(expand([args.campaign]), TERMS, say)
     if not found.kinematic_error.series.a:
         raise UsageError("the gear file holds no kinematic error; identify the gear from slow runs first")
     return found

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig devices`."""
     parser.add_argument("--interface", default="socketcan", metavar="NAME", help="python-can's name of the CAN adapter")
-    parser.add_argument("--channel", default="", metavar="CHANNEL", help="its channel, can0 for example; none: no CAN")
+    parser.add_argument(
+        "--channel", default="", metavar="CHANNEL", help="its channel, can0 for example; left out: serial ports alone"
+    )
     parser.add_argument("--bitrate", type=int, default=1_000_000, metavar="BIT/S", help="of the bus (1000000)")
     parser.add_argument(
         "--option",

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from rig.core.errors import Exit, HdrigError, UsageError
+from rig.core.errors import Exit, HdrigError, UsageError, said_of
 from rig.runfile.listing import runs_in
 
 
@@ -25,10 +25,15 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
         try:
             code = act(folder)
         except HdrigError as error:
-            print(f"hdrig: {folder}: {error}", file=sys.stderr)
+            print(f"hdrig: {folder}: {said_of(folder, error)}", file=sys.stderr)
             code = Exit(error.exit)
         worst = worst or code
     return int(worst)
+
+
+def say_unread(error: OSError) -> None:
+    """On stderr: what runs may lie there is not known."""
+    print(f"left out: {error.filename} cannot be read: {error.strerror}", file=sys.stderr)
 
 
 def expand(paths: list[Path]) -> list[Path]:
@@ -40,7 +45,7 @@ def expand(paths: list[Path]) -> list[Path]:
     found: list[Path] = []
     files: list[Path] = []
     for path in paths:
-        inside = runs_in(path)
+        inside = runs_in(path, say_unread)
         if not inside and path.is_file() and len(paths) > 1:
             files.append(path)
         elif not inside:

@@ -8,7 +8,9 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import Exit, NotReady
+from rig.commands.targets import refuse_unwritable
+from rig.core.errors import Exit
+from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from rig.live.view.viewer import Viewer
@@ -32,10 +34,9 @@ def run(args: argparse.Namespace) -> int:
     from rig.console.server import Serving
 
     read(args.bench)  # what is wrong with it is said now
-    try:
+    refuse_unwritable(args.out)
+    with writing(args.out):
         args.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise NotReady(f"the folder {args.out} for the runs cannot be made: {error.strerror}") from None
     with _viewer(args.view) as viewer:
         serving = Serving(args.host, args.port, args.out, args.bench, tuple(args.name), viewer)
         for line in serving.lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -17,6 +18,7 @@ from rig.model.simulate.spread import drawn_gears
 from rig.report.numbers import quantity
 
 SECONDS = 5.0  # what constant-torque lets a run settle: twelve time constants of inertia over drag of the paper's gear
+HARDLY = 0.01  # motor turns: the spring gives so much before anything slides
 Array = npt.NDArray[Any]
 
 
@@ -40,13 +42,19 @@ def line(tau: float, made: RunUp) -> str:
     turning, drawn = made.turning[0], made.turning[1:]
     share = f" ({drawn.sum()} of {drawn.size})" if drawn.size else ""
     if not turning:
-        went = f"it stops or sticks after {made.moved[0]:.2g} motor turns"
-        return f"{tau:10.4g}{('no' + share):>22s}   {went}"
+        return f"{tau:10.4g}{('no' + share):>22s}   {went(float(made.moved[0]))}"
     speed, time = made.speed / RPM, made.time
     return (
         f"{tau:10.4g}{('yes' + share):>22s}{quantity(speed[0], _half(speed[1:], drawn)):>20s}"
         f"{quantity(time[0], _half(time[1:], drawn)):>20s}"
     )
+
+
+def went(turns: float) -> str:
+    """What became of a motor that does not keep turning, after its `turns` in all."""
+    if not math.isfinite(turns):
+        return "its motion grows beyond all numbers: a gear with these parameters and this torque there is not"
+    return f"it stops or sticks after {turns:.2g} motor turns" if turns >= HARDLY else "it does not start"
 
 
 def _half(values: Array, drawn: Array) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from pathlib import Path
 
 
 class Exit(IntEnum):
@@ -47,3 +48,11 @@ class RecorderError(HdrigError):
     """Samples can no longer be kept."""
 
     exit = Exit.TRIPPED
+
+
+def said_of(place: Path, error: HdrigError) -> str:
+    """The sentence of `error`, to stand behind `place`: a path that it begins with is not said twice."""
+    sentence = str(error)
+    if sentence.startswith(f"{place}/"):
+        return sentence.removeprefix(f"{place}/")
+    return f"it {sentence.removeprefix(f'{place} ')}" if sentence.startswith(f"{place} ") else sentence

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 
@@ -19,6 +20,9 @@ def ending_in_a_sentence(act: Callable[[], int]) -> int:
         print("hdrig: interrupted", file=sys.stderr)
         return int(Exit.HALTED)
     except Exception as error:  # noqa: BLE001 - the way out: the drive is safe by now, the person gets a sentence
+        if isinstance(error, PermissionError) and error.filename is not None:  # a place nobody may look into
+            print(f"hdrig: {os.fsdecode(error.filename)} cannot be used: {error.strerror}", file=sys.stderr)
+            return int(Exit.USAGE)
         print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
         return int(Exit.INTERNAL)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import DataError, Exit
+from rig.core.errors import DataError, Exit, HdrigError, said_of
 from rig.core.units import RPM
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
     that can be determined."""
     from rig.analysis.identify.predictions import predictions
 
-    runs, recordings = open_runs(folders)
+    runs, recordings = open_runs(folders, say)
     found, file = _fitted(runs, recordings, terms, say)
     characteristics = beside(runs, say)
     if not characteristics:
@@ -83,7 +83,7 @@ def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
 
 def gear_of(folders: Sequence[Path], terms: int, say: Say) -> GearFile:
     """The gear file alone, without what is measured beside the model. Raises DataError as `identify`."""
-    runs, recordings = open_runs(folders)
+    runs, recordings = open_runs(folders, say)
     return _fitted(runs, recordings, terms, say)[1]
 
 
@@ -108,18 +108,18 @@ def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
     )
 
 
-def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
-    """All runs of the campaign, and those that identification can read. Raises DataError when none, or two
+def open_runs(folders: Sequence[Path], say: Say) -> tuple[list[Run], list[Recording]]:
+    """All runs of the campaign, and those that identification can read; a run that cannot be opened is left out in
+    words. Raises what the first one is refused with when none can be opened; DataError when none is left, or two
     gears, another gear ratio than declared, or two zeros of the motor's encoder."""
     from rig.analysis.identify.recording import recording, refuse_another_ratio
     from rig.analysis.identify.zeros import refuse_other_zeros
-    from rig.runfile.run import Run
 
-    runs = []
-    for folder in folders:
-        one = Run.open(folder)
-        if one.manifest.get("status") in ("completed", "imported", None) and one.procedure != "other":
-            runs.append(one)
+    runs = [
+        one
+        for one in opened(folders, say)
+        if one.manifest.get("status") in ("completed", "imported", None) and one.procedure != "other"
+    ]
     if not runs:
         raise DataError("no completed run of an experiment among these folders: nothing to identify from")
     for what, values in (
@@ -136,6 +136,24 @@ def open_runs(folders: Sequence[Path]) -> tuple[list[Run], list[Recording]]:
     refuse_another_ratio(found)
     refuse_other_zeros(found)
     return runs, found
+
+
+def opened(folders: Sequence[Path], say: Say) -> list[Run]:
+    """The runs among `folders` that can be opened, and a word for each that cannot. Raises the first refusal where
+    there is none."""
+    from rig.runfile.run import Run
+
+    runs, refused = [], []
+    for folder in folders:
+        try:
+            runs.append(Run.open(folder))
+        except HdrigError as error:
+            refused.append((folder, error))
+    if not runs and refused:
+        raise refused[0][1]
+    for folder, why in refused:
+        say(f"{folder.name} is left out: {said_of(folder, why)}")
+    return runs
 
 
 def coasts(runs: list[Run], found: Identified, say: Say) -> list[Coasting]:

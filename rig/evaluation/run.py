@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rig.core.errors import DataError, Exit
 from rig.core.kinds import Regime, regime_of
+from rig.evaluation.ranges import beyond_ranges
 from rig.evaluation.reference import reference_beside, reference_of_one_zero
 from rig.evaluation.traceback_file import NAME as TRACEBACK
 from rig.evaluation.traceback_file import keep
@@ -37,7 +38,7 @@ def analyse_folder(
     """
     from rig.analysis.analyse import analyse
     from rig.report.history import with_former
-    from rig.report.page import write
+    from rig.report.page import bench, write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
     from rig.runfile.finalise import add_derived
@@ -48,7 +49,7 @@ def analyse_folder(
     doubt = changed_journal(folder, run.manifest)
     if reference is None:
         reference = BESIDE.get(regime_of(run.procedure), without)(run)
-    result = with_former(target, analyse(run, reference, doubt))
+    result = with_former(target, analyse(run, reference, doubt, beyond_ranges(run, bench(folder))))
     if result.broke_off:
         result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
     with writing(target):

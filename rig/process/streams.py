@@ -10,6 +10,23 @@ from typing import Any, TextIO
 NOBODY = (errno.EPIPE, errno.EIO)  # `| head`, a closed terminal: who read here chose not to, and nothing is missed
 
 
+def standard(stream: TextIO | None, number: int) -> TextIO:
+    """`stream`, the process's standard stream `number`; where it was closed (`2>&-`) one that goes nowhere, in its
+    place: else the next file opened would get that number, and what a library says there would stand in it."""
+    if stream is not None:
+        return stream
+    try:
+        os.fstat(number)
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, number)  # processes of ours inherit it
+        if nowhere != number:
+            os.close(nowhere)
+        os.set_inheritable(number, True)
+        return open(number, "w", closefd=False)
+    return open(os.devnull, "w")  # the number is somebody else's by now
+
+
 class Tolerant:
     """A text stream that goes silent for good at the first write that fails. Everything else is the stream's own."""
 

@@ -3,31 +3,59 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rig.runfile.manifest import NAME
 
-
-def runs_in(path: Path) -> list[Path]:
-    """`path` where it is a run folder, else every one below it, however deep, in the order of their names."""
-    return [path] if (path / NAME).exists() else sorted(found.parent for found in path.rglob(NAME))
+Unread = Callable[[OSError], object]
+"""Told of a folder that may not be looked into."""
 
 
-def run_folders(root: str, depth: int = 3) -> Iterator[str]:
+def passed_by(error: OSError) -> None:
+    """For whom a folder that is not theirs to look into is none of their runs."""
+
+
+def is_run(path: Path | str) -> bool:
+    """True for a folder with a manifest. Raises PermissionError where that cannot be seen."""
+    try:
+        os.stat(f"{path}/{NAME}")
+    except PermissionError:
+        raise
+    except (OSError, ValueError):
+        return False
+    return True
+
+
+def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
+    """`path` where it is a run folder, else every one below it, however deep, in the order of their names. Raises
+    PermissionError where that cannot be seen."""
+    if is_run(path):
+        return [path]
+    below = os.walk(path, onerror=unread) if path.is_dir() else ()
+    return sorted(Path(at) for at, folders, files in below if NAME in files or NAME in folders)
+
+
+def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:
     """Folders with a manifest, down to ./runs/date/run; hidden ones are passed by."""
     try:
         entries = os.scandir(root)
-    except OSError:  # not ours to look into
+    except OSError as error:
+        unread(error)
         return
     with entries:
         for entry in entries:
             if entry.name.startswith(".") or not _is_folder(entry):
                 continue
-            if os.path.exists(f"{entry.path}/{NAME}"):
+            try:
+                found = is_run(entry.path)
+            except PermissionError as error:
+                unread(error)
+                continue
+            if found:
                 yield entry.path
             elif depth > 1:
-                yield from run_folders(entry.path, depth - 1)
+                yield from run_folders(entry.path, depth - 1, unread)
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Does a run keep its promises? Hashes, row counts, time order, gaps, flags, journal against archive, read-only."""
+"""Does a run keep its promises? Its manifest, hashes, rows, time order, gaps, flags, journal and archive, read-only."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.journal import JournalReader, journal_files
+from rig.runfile.misfits import misfits
 from rig.runfile.process import is_being_made
 from rig.runfile.promised import time_untold
 from rig.runfile.run import Run
@@ -39,6 +40,7 @@ def verify(folder: Path) -> list[Finding]:
     """
     about = manifest.read(folder)
     findings = [*_status(about), *_hashes(folder, about), *_read_only(folder, about)]
+    findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
     try:
         run = Run.open(folder)
     except HdrigError as error:

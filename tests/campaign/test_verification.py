@@ -149,6 +149,12 @@ def test_a_sensor_that_was_not_tared_is_refused_with_what_it_shows() -> None:
     assert "+0.400" in judge_tare(found(0.4), 45.0)
 
 
+def test_a_load_that_is_none_has_no_sign() -> None:
+    said = judge_weight(found(0.042), 0.0, zero=0.04)
+    assert said.startswith("0.00 N·m on the output, 0 N·m were asked for")
+    assert judge_weight(found(-2.54), 2.5, zero=0.0).startswith("+2.54 N·m on the output, +2.5 N·m were")
+
+
 @pytest.mark.parametrize(("tau_ext", "neighbour"), [(0.5, 0.0), (0.5, 1.0), (7.5, 10.0), (15.0, 10.0)])
 def test_neighbours_of_the_load_sweep_are_told_apart(tau_ext: float, neighbour: float) -> None:
     judge_weight(found(0.04 - tau_ext), tau_ext, zero=0.04)

@@ -22,7 +22,8 @@ def run(root: Path, day: str, number: int = 0, value: float = 90.0, half: float 
     """A folder by date, `value` ± `half` arcsec its peak to peak; `changes` go into the manifest."""
     name = str(changes.pop("name", "kinematic_error_peak_to_peak"))
     started = f"{day}T{6 + number // 60:02d}:{number % 60:02d}:00+00:00"
-    folder = root / day / f"{number:04d}-{str(changes.get('procedure', 'kinematic-error'))[:40]}-{len(changes)}"
+    kind = str(changes.get("procedure", "kinematic-error"))[:40].encode(errors="replace").decode()  # half a pair: "?"
+    folder = root / day / f"{number:04d}-{kind}-{len(changes)}"
     folder.mkdir(parents=True)
     manifest = {**MANIFEST, "uid": f"{day}-{number}", "started_utc": started, **changes}
     (folder / "manifest.json").write_text(json.dumps(manifest))

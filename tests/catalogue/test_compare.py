@@ -14,7 +14,7 @@ from rig.catalogue import compare, trend
 from rig.catalogue.compare import Mark
 from rig.catalogue.figures import Figure, common_label, figures
 from rig.catalogue.sameness import beside
-from rig.catalogue.scatter import between, scatter
+from rig.catalogue.scatter import Scatter, between, scatter
 from rig.cli import main
 from rig.core.errors import UsageError
 from tests.catalogue.folders import run
@@ -261,3 +261,10 @@ def test_a_figure_that_does_not_count_is_told_by_its_key_and_in_old_files_by_its
 ) -> None:
     (tmp_path / "result.json").write_text(json.dumps({"estimates": {"K": {"value": 1.0, "unit": "N·m/rad", **said}}}))
     assert figures(tmp_path)["K"].rejected is rejected
+
+
+@pytest.mark.parametrize(
+    ("dof", "said"), [(1.0, ", 1 degree of freedom)"), (1.6, ", 1.6 degrees of freedom)"), (3.0, ", 3 degrees of")]
+)
+def test_one_degree_of_freedom_is_one_in_words(dof: float, said: str) -> None:
+    assert said in Scatter(0.2, dof, repeats=2, sets=1).words("arcsec")

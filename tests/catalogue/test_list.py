@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from pathlib import Path
@@ -78,6 +79,38 @@ def test_links_in_a_ring_are_passed_by(tmp_path: Path) -> None:
     (tmp_path / "to").symlink_to("fro")
     (tmp_path / "fro").symlink_to("to")
     assert len(runs(tmp_path)) == 1
+
+
+def _shut(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody may look into `folder`: said by the system, whoever runs the test (root may look everywhere)."""
+    real = os.stat
+
+    def stat(path: Any, *args: Any, **more: Any) -> os.stat_result:
+        if os.fspath(path).startswith(f"{folder}/"):
+            raise PermissionError(errno.EACCES, "Permission denied", os.fspath(path))
+        return real(path, *args, **more)
+
+    monkeypatch.setattr(os, "stat", stat)
+
+
+def test_a_run_nobody_may_read_is_told_of_on_stderr_and_the_others_are_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kept, shut = run(tmp_path, "2026-11-20"), run(tmp_path, "2026-11-21")
+    _shut(shut, monkeypatch)
+    assert main(["list", str(tmp_path)]) == 0
+    said = capsys.readouterr()
+    assert str(kept) in said.out
+    assert said.err == f"left out: {shut}/manifest.json cannot be read: Permission denied\n"
+
+
+@pytest.mark.parametrize("verb", ["list", "analyse", "verify", "export", "identify", "recover"])
+def test_a_folder_nobody_may_read_is_refused_in_a_sentence(
+    verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _shut(tmp_path, monkeypatch)
+    assert main([verb, str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"hdrig: {tmp_path}/manifest.json cannot be used: Permission denied\n"
 
 
 def test_a_manifest_that_never_ends_keeps_no_listing_waiting(tmp_path: Path) -> None:

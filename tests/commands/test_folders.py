@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from rig.commands.folders import expand
-from rig.core.errors import UsageError
+from rig.commands.folders import expand, for_each
+from rig.core.errors import Exit, UsageError
 
 
 @pytest.fixture
@@ -47,3 +47,17 @@ def test_what_does_not_exist_or_is_empty_is_refused_among_others_too(campaign: P
 def test_runs_alone_say_nothing(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(expand([campaign])) == 3
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("said", "shown"),
+    [("{0}/t.csv: no t", "t.csv: no t"), ("{0} is empty", "it is empty"), ("no t in {0}", "no t in {0}")],
+)
+def test_the_path_of_a_refused_run_is_said_once(
+    said: str, shown: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def act(folder: Path) -> Exit:
+        raise UsageError(said.format(folder))
+
+    assert for_each([tmp_path], act) == Exit.USAGE
+    assert capsys.readouterr().err == f"hdrig: {tmp_path}: {shown.format(tmp_path)}\n"

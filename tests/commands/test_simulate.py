@@ -9,6 +9,7 @@ import pytest
 
 from rig.cli import main
 from rig.commands.simulate import beyond
+from rig.commands.starts import went
 from rig.model.gearfile import Covered, GearFile, Parameter
 from rig.report.text.gear import breakaway_beside
 from tests.closing.test_compensate import gear
@@ -41,6 +42,22 @@ def test_a_speed_that_is_none_is_refused_in_the_unit_it_was_asked_in(
     assert said.out == ""
     assert words in said.err
     assert "rad/s" not in said.err
+
+
+@pytest.mark.parametrize(
+    ("turns", "words"),
+    [
+        (0.0, "it does not start"),
+        (3.1e-5, "it does not start"),
+        (2.04, "it stops or sticks after 2 motor turns"),
+        (float("nan"), "its motion grows beyond all numbers: "),
+        (float("inf"), "its motion grows beyond all numbers: "),
+    ],
+)
+def test_what_became_of_a_motor_that_does_not_turn_is_said_without_a_number_that_is_none(
+    turns: float, words: str
+) -> None:
+    assert went(turns).startswith(words)
 
 
 def covering(speed_rpm: tuple[float, float], load: tuple[float, float]) -> GearFile:
@@ -92,4 +109,4 @@ def test_every_column_of_the_starting_table_names_its_unit(capsys: pytest.Captur
     head, row = capsys.readouterr().out.splitlines()[1:3]
     names = re.split(r"\s{2,}", head.strip())
     assert [name for name in names if name.rpartition(", ")[2] not in UNITS] == ["does it turn"]
-    assert row.endswith("motor turns")
+    assert row.endswith("it does not start")

@@ -52,6 +52,26 @@ def test_a_place_that_cannot_be_written_is_refused_alike_by_every_verb(
     assert said.out == ""
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "kinematic-error", "--out"],
+        ["serve", "--out"],
+        ["analyse"],
+        ["identify", "x", "-o"],
+        ["compensate", "--gear"],
+        ["compensate", "--campaign"],
+    ],
+)
+def test_an_empty_path_is_refused_and_never_the_folder_one_is_in(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main([*words, ""])
+    assert end.value.code == Exit.USAGE
+    assert "an empty path, as of a shell variable that is not set; expected a name" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("verb", [["tune"], ["devices", "--channel", "can0"]])
 def test_a_bench_file_that_could_not_be_written_is_not_worked_for(
     verb: list[str], capsys: pytest.CaptureFixture[str]

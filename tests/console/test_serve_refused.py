@@ -1,4 +1,4 @@
-"""What `hdrig serve` cannot do is a sentence and exit code 3, said before anything is started."""
+"""What `hdrig serve` cannot do is a sentence, said before anything is started."""
 
 from __future__ import annotations
 
@@ -17,5 +17,10 @@ def test_a_port_there_is_not_is_refused(tmp_path: Path, capsys: pytest.CaptureFi
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
-    assert main(["serve", "--port=0", "--out", str(tmp_path / "file/runs")]) == 3
-    assert "cannot be made: Not a directory" in capsys.readouterr().err
+    assert main(["serve", "--port=0", "--out", str(tmp_path / "file/runs")]) == 2
+    assert "file/runs: Not a directory; name another place with --out" in capsys.readouterr().err
+
+
+def test_a_folder_that_takes_no_run_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", "--port=0", "--out", "/proc"]) == 2  # it is there, and takes no file, of nobody
+    assert "cannot write /proc: " in capsys.readouterr().err

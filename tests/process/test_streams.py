@@ -54,6 +54,17 @@ def test_a_run_whose_output_goes_to_a_full_disk_still_completes(stream: str, tmp
     assert len(list(tmp_path.glob("*/*kinematic-error*/report.html"))) == 1
 
 
+@pytest.mark.slow
+def test_a_run_whose_stderr_is_closed_runs_and_its_number_is_no_files(tmp_path: Path) -> None:
+    command = '"$0" -m rig.cli run standstill --with duration=1 --out "$1" 2>&-'
+    done = subprocess.run(["sh", "-c", command, sys.executable, str(tmp_path)], timeout=120, stdout=subprocess.PIPE)
+    assert done.returncode == 0
+    assert b"report" in done.stdout
+    look = 'import os, rig.cli; rig.cli.main(["list", "."]); print(os.readlink("/proc/self/fd/2"))'
+    shut = subprocess.run(["sh", "-c", '"$0" -c "$1" 2>&-', sys.executable, look], timeout=60, stdout=subprocess.PIPE)
+    assert shut.stdout.splitlines()[-1] == b"/dev/null"
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
 def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost(encoding: str) -> None:
     args = [sys.executable, "-c", TEN, "run", "standstill", "--dry-run"]

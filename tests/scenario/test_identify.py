@@ -58,7 +58,7 @@ def test_simulate_says_which_torque_starts_the_gear_from_rest(capsys: pytest.Cap
     assert main(["simulate", "twin", "--start", "0.4", "0.6"]) == 0  # it slides at 0.3 N·m and breaks away at 0.5 N·m
     said = capsys.readouterr().out
     rows = {line.split()[0]: line.split() for line in said.splitlines()[2:4]}
-    assert rows["0.4"][1:4] == ["no", "it", "stops"]
+    assert rows["0.4"][1:4] == ["no", "it", "does"]
     assert rows["0.6"][1] == "yes"
     assert float(rows["0.6"][2]) == pytest.approx(807, abs=5)
     assert said.startswith("SIMULATED")

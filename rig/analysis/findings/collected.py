@@ -42,6 +42,7 @@ class Findings:
     rejected: str = ""  # why the run must not be believed, "" when it may
     inconclusive: str = ""  # why the run settles nothing, "" when it does
     broken: str = ""  # why the samples are not those that were recorded, "" when they are
+    beyond: str = ""  # why a torque cannot be what its column says, "" when it can
     believed: int = 0  # how many estimates were there when it was rejected: those are about the run, not the gear
 
     def reject(self, why: str) -> None:
@@ -68,8 +69,8 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
     """The verdict and its sentence.
 
     `manifest["limits"]`, optional: as `findings.limits.judge` takes them. A rejected run is FAIL whatever its figures.
-    A run that did not end as planned cannot PASS; one whose samples are not those recorded neither PASS nor FAIL by a
-    limit.
+    A run that did not end as planned cannot PASS; one whose samples are not those recorded, or not in the unit they
+    say, neither PASS nor FAIL by a limit.
     """
     judged = judge(found.estimates, manifest.get("limits") or {})
     found.checks += judged.checks
@@ -83,9 +84,10 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
         found.inconclusive = found.inconclusive or text
     if not any(np.isfinite(e.value) for e in estimates):
         found.inconclusive = found.inconclusive or "Nothing could be measured."
-    if found.broken:
-        found.checks.append(Check("as_recorded", False, found.broken))
-        verdict, sentence = Verdict.INCONCLUSIVE, f"{found.broken} {sentence}"
+    for name, doubt in (("as_recorded", found.broken), ("within_range", found.beyond)):
+        if doubt:
+            found.checks.append(Check(name, False, doubt))
+            verdict, sentence = Verdict.INCONCLUSIVE, f"{doubt} {sentence}"
     if found.inconclusive and verdict in (Verdict.PASS, Verdict.MEASURED):
         verdict = Verdict.INCONCLUSIVE
     if found.rejected:

@@ -11,6 +11,7 @@ from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Source
 from rig.core.numbers import number
 from rig.core.rows import stretches
+from rig.runfile.misfits import misfits
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
@@ -70,6 +71,7 @@ class Tame:
 
     def _tables(self, manifest: Any) -> dict[str, Any]:
         out = dict(manifest) if isinstance(manifest, Mapping) else {}
+        self.notes += [f"The manifest's {said}." for said in misfits(out)]
         for key in TABLES:
             if not isinstance(out.get(key), Mapping):
                 if out.get(key) is not None:
