@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -72,6 +72,10 @@ class Effect(ABC):
     def moved_by_noise(self) -> bool:
         """True when noise of a reading moves a state of its own, and does not add to its columns."""
         return False
+
+    def may_be_nothing(self, parameters: Sequence[Parameter]) -> bool:
+        """Whether its size, with its interval, may as well be zero; `parameters` as `parameters` gives them."""
+        return parameters[0].holds_zero
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Whether the number that scales the law (a speed, a torque, a time), with its interval, says anything of it;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Final
 
 import numpy as np
@@ -40,6 +40,10 @@ class TorqueSensorCrosstalk(Effect):
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of every order."""
         return amplitudes(fit, "N·m")
+
+    def may_be_nothing(self, parameters: Sequence[Parameter]) -> bool:
+        """Neither once nor twice a turn: a sensor that feels bending either way has no wave once a turn."""
+        return all(size.holds_zero for size in parameters[0:3:2])
 
     def plausible(self, fit: Fit) -> bool:
         """No larger than what winds the gear up by LARGEST: sensors have tenths of a per cent of crosstalk, and what

@@ -453,3 +453,11 @@ def test_orders_of_a_modulated_spring_together_are_those_of_each_alone() -> None
     sizes = np.array([0.01, 0.0, 0.0, 0.03, 0.0, 0.002]) / KNOWN.K
     names = [p.name for p in effect.parameters(Fit(sizes, (TOGETHER, 1.0, MOTOR), np.eye(9) * 1e-18, KNOWN, N))]
     assert names[::2] == ["kappa_order_2_amplitude", "kappa_order_1_amplitude", "kappa_order_4_amplitude"]
+
+
+@pytest.mark.parametrize(("twice", "nothing"), [(0.4, False), (0.005, True)])
+def test_crosstalk_that_is_felt_twice_a_turn_alone_is_not_nothing(twice: float, nothing: bool) -> None:
+    """|cos θ_l|: no wave once a turn, one of 0.4 ± 0.02 N·m twice a turn."""
+    effect = TorqueSensorCrosstalk()
+    fit = Fit(np.array([0.0, 0.001, twice, 0.0]), (1.0, 2.0), 1e-4 * np.eye(6), KNOWN, 50.0)
+    assert effect.may_be_nothing(effect.parameters(fit)) is nothing

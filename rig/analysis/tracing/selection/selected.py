@@ -94,8 +94,11 @@ def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], cover
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
     """Without names whose size may as well be zero, unless something is left to explain that is not with them. Of two
     that stand in for each other either may be the one that can go: the one that does less is tried first."""
+    effect = {term.name: term.effect for term in selected.solution.design.terms}
     insignificant = [
-        score for score in selected.scores if (words := selected.words.get(score.name)) and words[0].holds_zero
+        score
+        for score in selected.scores
+        if (words := selected.words.get(score.name)) and effect[score.name].may_be_nothing(words)
     ]
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
