@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.selection import score as held_out_score
 from rig.analysis.tracing.selection.elimination import unresolved
 from rig.analysis.tracing.selection.score import HeldOutScore, overall, unsteadiness
 from rig.model.effect import Parameter
@@ -139,3 +140,17 @@ def test_the_torque_that_holds_a_locked_output_counts_only_for_what_acts_nowhere
     d = held(M0=100, M9=100)
     assert overall({(9, "M"): 10_000.0, (0, "M"): 100.0}, d) == pytest.approx(1.0)
     assert overall({(9, "M"): 10_000.0}, d) == pytest.approx(np.sqrt(50.0))
+
+
+def test_a_term_that_does_nothing_on_unseen_runs_has_no_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was divided by what it does there: a campaign without a load encoder ended in an internal error."""
+    key = (0, "A")
+    part = SimpleNamespace(at=np.array([7]))
+    d = SimpleNamespace(
+        y={key: np.zeros(9)}, parts={key: (part,)}, terms=(SimpleNamespace(name="gap"),), place=lambda i: slice(7, 8)
+    )
+    at = SimpleNamespace(floors={key: 1.0}, residuals=lambda s, d: {key: np.ones(9)})
+    monkeypatch.setattr(held_out_score, "without", lambda s, mine: s)
+    found = held_out_score.score(cast(Any, None), cast(Any, d), cast(Any, at), {key: np.ones(9)}, "gap")
+    assert (found.share, found.size, found.ground) == (0.0, 0.0, ())
+    assert not found.named

@@ -49,10 +49,13 @@ def test_a_loop_that_no_order_makes_stays() -> None:
     assert np.std(beside_series(loop, d, KEY, known_to(a2=1e-4, b1=1e-4), FLOOR)) == pytest.approx(2e-5, rel=1e-3)
 
 
-def test_only_locked_runs_without_a_load_encoder_are_inferred() -> None:
-    def of(locked: bool, *has: str) -> bool:
-        return is_inferred(cast(Any, SimpleNamespace(runs=[SimpleNamespace(locked=locked, has=set(has))])), KEY)
+def test_the_motors_torque_and_lock_tests_lean_on_orders_where_no_load_angle_was_read() -> None:
+    def of(locked: bool, channel: str, *has: str) -> bool:
+        eq = SimpleNamespace(runs=[SimpleNamespace(locked=locked, has=set(has))])
+        return is_inferred(cast(Any, eq), (0, channel))
 
-    assert of(True, "theta_m", "tau_l")
-    assert not of(True, "theta_m", "theta_l", "tau_l")
-    assert not of(False, "theta_m", "tau_l")
+    assert of(True, "A", "theta_m", "tau_l")
+    assert of(False, "M", "theta_m", "tau_l")
+    assert not of(False, "L", "theta_m", "tau_l")
+    assert not of(True, "A", "theta_m", "theta_l", "tau_l")
+    assert not of(False, "M", "theta_m", "theta_l", "tau_l")

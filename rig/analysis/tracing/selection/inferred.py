@@ -1,8 +1,8 @@
-"""Lock tests without a load encoder: a kinematic error that was inferred, not read, is not held against them.
+"""Without a load encoder: a kinematic error that was inferred, not read, is not held against unseen runs.
 
-Over the few degrees that a locked motor turns θ̃ is what the orders of θ̃_p make there, and without a load encoder these
-are known by the torques they cause at speed alone: far worse than a lock test repeats. What their own uncertainty
-allows there is no residual.
+Its orders are then known by the torques they cause at speed alone, far worse than runs repeat. They are all that θ̃ is
+over the few degrees that a locked motor turns, and under load their slope is the lever by which the torque reaches the
+motor. What their own uncertainty allows there is no residual.
 """
 
 from __future__ import annotations
@@ -16,14 +16,16 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design
 from rig.model.effect import Array
 
-PIECES: Final = 50  # of a lock test that its floor counts as independent: its rows follow one another too closely
+PIECES: Final = 50  # of a run that its floor counts as independent: its rows follow one another too closely
 SERIES: Final = [INDEX[f"{part}{n}"] for part in "ab" for n in range(1, ORDERS + 1)]
 
 
 def is_inferred(eq: Equations, key: Key) -> bool:
-    """Whether a block is the kinematic error of a lock test whose load angle nobody read."""
+    """Whether a block of a run whose load angle nobody read leans on the orders of θ̃_p: the kinematic error of a lock
+    test, or the motor's torque."""
     run, channel = key
-    return channel == "A" and eq.runs[run].locked and "theta_l" not in eq.runs[run].has
+    leans = channel == "M" or (channel == "A" and eq.runs[run].locked)
+    return leans and "theta_l" not in eq.runs[run].has
 
 
 def beside_series(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Array:

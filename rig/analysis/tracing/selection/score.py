@@ -115,9 +115,9 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         if any(int(part.at[0]) in places for part in d.parts[key]):
             f = bare[key] - whole[key]
             size[key] = float(np.sqrt(np.mean(f**2))) / at.floors[key]
-    if not size:
+    most = max(size.values(), default=0.0)
+    if most == 0.0:  # it acts on no unseen run, or does nothing there
         return HeldOutScore(name, 0.0, 0.0, 1.0, 0.0, ())
-    most = max(size.values())
     ground = tuple(key for key, r in size.items() if r >= 0.5 * most)
     before, n = at.excess(bare, ground)
     after, _ = at.excess(whole, ground)
