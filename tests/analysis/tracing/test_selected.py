@@ -43,7 +43,9 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [SimpleNamespace(name=name, overall=work[name]) for name in names]
-        return SimpleNamespace(scores=scores, words=words, loud=loud, names=names)
+        effect = SimpleNamespace(may_be_nothing=lambda parameters: parameters[0].holds_zero)
+        terms = [SimpleNamespace(name=name, effect=effect) for name in names]
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=names, solution=solution("eq", *terms))
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
         rest = [n for n in of.names if n != name]

@@ -27,14 +27,14 @@ class HeldOut:
     seen: dict[Key, float]  # floors of the fitted blocks
     lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
     gains: dict[Key, float]  # what a torque sensor's gain may do along T in a lock test, rad per N·m
+    inferred: frozenset[Key] = frozenset()  # blocks that lean on orders of θ̃_p which nobody has read
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
         what is not known of a kinematic error that nobody read."""
         e = {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
-        inferred = [key for key in e if is_inferred(d.eq, key)]
-        known = scatter(s) if inferred else np.zeros((0, 0))
-        return e | {key: beside_series(e[key], d, key, known, self.floors[key]) for key in inferred}
+        known = scatter(s) if self.inferred else np.zeros((0, 0))
+        return e | {key: beside_series(e[key], d, key, known, self.floors[key]) for key in self.inferred & e.keys()}
 
     def _beside_gain(self, key: Key, e: Array, d: Design) -> Array:
         if key not in self.gains:
@@ -83,8 +83,9 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     repeated = any(eq.runs[i].locked for i, c in measured.by_run if c == "A")
     wound = [key for key in held if repeated and eq.runs[key[0]].locked and not eq.runs[key[0]].look.held_load]
     gains = {key: g for key in wound if (g := gain_of(measured, eq, key)) > 0}
+    inferred = frozenset(key for key in held if is_inferred(eq, key))
     floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}
-    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient, gains)
+    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient, gains, inferred)
 
 
 def unseen(s: Solution, at: HeldOut) -> Design:
