@@ -118,21 +118,12 @@ def _by_orders(signals: Signals, values: Array, slopes: Array) -> tuple[Array, A
     waves = powers(signals.theta_m, max(ORDERS))
     cos, sin = waves[:, 0::2][:, n - 1], waves[:, 1::2][:, n - 1]
     a, b = np.array([_wave(series, order) for order in ORDERS]).T
-    rest = slopes - (cos @ (n * b) - sin @ (n * a))[:, None]
+    slope = slopes - (cos @ (n * b) - sin @ (n * a))[:, None]
+    bend = (signals.series_bend + cos @ (n**2 * a) + sin @ (n**2 * b))[:, None]
     return (
-        np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None], rest]),
-        np.hstack([-n * sin, n * cos, rest, _curvature(signals)]),
+        np.hstack([cos, sin, values - (cos @ a + sin @ b)[:, None], slope]),
+        np.hstack([-n * sin, n * cos, slope, bend]),
     )
-
-
-def _curvature(signals: Signals) -> Array:
-    """Second derivative by θ_m of the orders that are not among ORDERS, rad, (n, 1)."""
-    series = signals.gear.kinematic_error
-    k = len(series.a)
-    n = np.arange(1.0, k + 1)
-    waves = powers(signals.theta_m, k)
-    square = np.where(np.isin(n, ORDERS), 0.0, n**2)
-    return np.asarray(-(waves[:, 0::2] @ (square * series.a) + waves[:, 1::2] @ (square * series.b)))[:, None]
 
 
 def _wave(series: FourierSeries, order: int) -> tuple[float, float]:
