@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.at_speed.convergence_law import Law, SpeedStep, fit_law, speed_at
-from rig.analysis.at_speed.decomposition import phasors
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.result import Array, Estimate
 from rig.analysis.kinematic_error.measure import groups_by_speed, measure
-from rig.analysis.kinematic_error.profile import Profile
+from rig.analysis.kinematic_error.profile import Profile, phasors
 from rig.analysis.motion.declared import declared_gear
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke, find_strokes

@@ -5,19 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
-from rig.analysis.kinematic_error.profile import Profile
+from rig.analysis.kinematic_error.profile import Profile, phasors, u_phasors
 from rig.analysis.motion.declared import declared_gear
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import find_strokes
-from rig.analysis.orders.align import Alignment, align
+from rig.analysis.orders.align import Alignment, Complex, align
 from rig.core.units import RPM
 from rig.model.linear import transmissibility
-
-Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -63,7 +60,7 @@ def decompose(run: Source, fast: KinematicError, slow: Profile) -> Decomposition
     ratio = ratios(run, fast, k)
     ratio_u = None if ratio is None else ratio[1]
     expected = pure * (1.0 if ratio is None else ratio[0])
-    u_fast, u_slow = _u(fast.profile, k), _u(slow, k)
+    u_fast, u_slow = u_phasors(fast.profile, k), u_phasors(slow, k)
     alignment = align(total, expected, np.hypot(u_fast, u_slow), trusted=k if ratio is not None else 2)
     if alignment is None:
         return None
@@ -72,17 +69,6 @@ def decompose(run: Source, fast: KinematicError, slow: Profile) -> Decomposition
     u = np.sqrt(u_fast**2 + u_slow**2 + (n * alignment.u * np.abs(pure)) ** 2)
     factor = max(fast.profile.factor, slow.factor)
     return Decomposition(total, turned, u, factor, None if ratio is None else ratio[0], ratio_u, alignment)
-
-
-def phasors(p: Profile, k: int) -> Complex:
-    """a_n − j·b_n of orders 1..k, arcsec."""
-    return np.asarray(p.cosine[:k] - 1j * p.sine[:k])
-
-
-def _u(p: Profile, k: int) -> Array:
-    """1 σ of one part of each phasor, what does not scatter included, (k,)."""
-    random = 0.5 * (p.u_cosine[:k] ** 2 + p.u_sine[:k] ** 2)
-    return np.asarray(np.sqrt(random + p.u_system[:k] ** 2))
 
 
 def ratios(run: Source, fast: KinematicError, k: int) -> tuple[Complex, Array] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rig.analysis.at_speed.decomposition import Complex, Decomposition, decompose, slow_profile
+from rig.analysis.at_speed.decomposition import Decomposition, decompose, slow_profile
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Array, Check, Estimate
@@ -14,6 +14,7 @@ from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.motion.tame import Tame
 from rig.analysis.motion.window import measured_window, part
+from rig.analysis.orders.align import Complex
 from rig.analysis.orders.revolutions import GRID
 from rig.core.quantiles import Z95
 from rig.core.units import DEG

@@ -10,9 +10,9 @@ from rig.analysis.findings.collected import pm
 from rig.analysis.identify.recording import Recording
 from rig.analysis.identify.slow import SLOW
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
-from rig.analysis.kinematic_error.profile import Profile
+from rig.analysis.kinematic_error.profile import Profile, phasors, u_phasors
 from rig.analysis.motion.strokes import find_strokes
-from rig.analysis.orders.align import Alignment, Complex, align
+from rig.analysis.orders.align import Alignment, align
 from rig.core.errors import DataError
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
@@ -57,18 +57,11 @@ def _slow_error(run: Recording) -> KinematicError | None:
 def _turned(error: Profile, reference: Profile) -> Alignment | None:
     """The shift between two slow errors where there is one and it makes them alike; None else."""
     k = min(error.terms, reference.terms)
-    seen, expected = _phasors(error, k), _phasors(reference, k)
-    u = np.sqrt(
-        0.5 * (error.u_cosine**2 + error.u_sine**2)[:k] + 0.5 * (reference.u_cosine**2 + reference.u_sine**2)[:k]
-    )
+    seen, expected = phasors(error, k), phasors(reference, k)
+    u = np.hypot(u_phasors(error, k), u_phasors(reference, k))
     where = align(seen, expected, u, k)
     if where is None or where.common:
         return None
     turned = expected * np.exp(-1j * np.arange(1.0, k + 1) * where.shift)
     gone = np.linalg.norm(seen - turned) < LIKE * np.linalg.norm(seen - expected)
     return where if gone else None
-
-
-def _phasors(p: Profile, k: int) -> Complex:
-    """a_n − j·b_n of orders 1..k, arcsec."""
-    return np.asarray(p.cosine[:k] - 1j * p.sine[:k])

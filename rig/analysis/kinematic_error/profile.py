@@ -8,6 +8,7 @@ import numpy as np
 
 from rig.analysis.findings.intervals import inflation, neighbour_correlation, t95
 from rig.analysis.findings.result import Array
+from rig.analysis.orders.align import Complex
 from rig.analysis.orders.revolutions import GRID, StrokeResult, filled
 from rig.core.quantiles import Z95
 
@@ -98,6 +99,17 @@ class Profile:
         value = max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0)
         half = float(np.hypot(self.factor * sizes.std(), self.system_half))
         return value, (max(value - half, 0.0), value + half)
+
+
+def phasors(p: Profile, k: int) -> Complex:
+    """a_n − j·b_n of orders 1..k, arcsec."""
+    return np.asarray(p.cosine[:k] - 1j * p.sine[:k])
+
+
+def u_phasors(p: Profile, k: int) -> Array:
+    """1 σ of one part of each phasor, what does not scatter included, (k,)."""
+    random = 0.5 * (p.u_cosine[:k] ** 2 + p.u_sine[:k] ** 2)
+    return np.asarray(np.sqrt(random + p.u_system[:k] ** 2))
 
 
 def _basis(terms: int) -> Array:

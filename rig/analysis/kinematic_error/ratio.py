@@ -48,7 +48,8 @@ def doubt(motion: Motion, tau_l: Array | None, K: float | None) -> str:
     known = tau_l is not None and K is not None and bool(np.isfinite(tau_l).all())
     torsion = tau_l / K if known and tau_l is not None and K is not None else None
     turns, travel = turns_per_turn(motion), float(np.ptp(motion.theta_l))
-    off = min(abs(motion.ratio / found - 1.0) for found in (turns, turns_per_turn(motion, torsion)))
+    shown = [turns] if torsion is None else [turns, turns_per_turn(motion, torsion)]
+    off = min(abs(motion.ratio / found - 1.0) for found in shown)
     if off < NEAR or off * travel < ERROR:
         return ""
     wound = "wind-up taken off" if known else "unless a load that changes with the angle winds the gear up"

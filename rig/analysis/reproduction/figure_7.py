@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from rig.analysis.at_speed.decomposition import phasors
 from rig.analysis.kinematic_error.measure import KinematicError
+from rig.analysis.kinematic_error.profile import phasors
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, Ruling, at_least, at_most, missing, positive
 from rig.analysis.reproduction.comparison import MOST, Shown, compared, drawn, explains, model_words

@@ -27,7 +27,7 @@ class LoadDependentKinematicError(Effect):
 
     The paper's profiles change as they shrink: orders 1, 2 and 4 may each lose a wave of its own, whose size and phase
     are fitted. As shares of what stays they would have no phase where little stays. The rest of them shrinks together,
-    and may turn together: a profile that shifts by an angle as the wave generator's plug is wound up.
+    and may turn together, as a profile does that shifts by an angle under load.
 
     δ is 1 in Fig. 9, as far as five loads tell. Teeth that come into contact one by one spread the fall over decades of
     torque, clearances of one size end it at one: 0.6 and 2 come within a tenth of a power law and of a straight line.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from rig.analysis.identify.mode import add_mode
 from rig.analysis.identify.possible import refuse_impossible, strange
 from rig.analysis.identify.recording import Recording, recording, refuse_another_ratio
 from rig.analysis.identify.zeros import refuse_other_zeros
@@ -61,3 +63,11 @@ def test_a_ratio_off_by_half_a_per_cent_is_refused_where_the_torque_says_it_is_n
     refuse_another_ratio([free])
     with pytest.raises(DataError, match=r"declared 50: θ̃ grows by"):
         refuse_another_ratio([replace(free, motion=replace(free.motion, theta_l=1.006 * free.theta_l))])
+
+
+def test_an_inertia_that_may_as_well_be_negative_has_no_frequency() -> None:
+    """−0.0007 ± 0.005 kg·m² at the motor, as of a torque in another unit: the square root of it ended in an error."""
+    sizes = {"N": (50.0, 0.0), "J_m": (-0.0007, 0.005), "J_l": (0.4, 0.01), "K": (7160.0, 10.0), "B_sp": (4.0, 0.1)}
+    found = {name: measured(value, half) for name, (value, half) in sizes.items()}
+    add_mode(found, cast(Any, None))
+    assert found.keys() == sizes.keys()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from rig.analysis.tracing.rest.binned import Halves, score
-from rig.analysis.tracing.rest.coordinates import both, steps, turned
+from rig.analysis.tracing.rest.coordinates import INDICES, both, steps, turned
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.analysis.tracing.rest.readings import in_bins, in_columns, share, waves
@@ -32,13 +32,9 @@ SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda
 """As it is, and as friction shows it: the other way round on the way back."""
 
 
-def _way(r: Rest) -> Index:
-    return (r.at["direction"] + 1).astype(int)
-
-
 BY_THE_CLOCK: Sequence[tuple[Callable[[Rest], Array], Callable[[Rest], Index]]] = (
     (SENSES[0], lambda r: np.ones(r.e.size, dtype=int)),
-    (SENSES[1], _way),
+    (SENSES[1], INDICES["direction"]),
     (lambda r: np.nan_to_num(r.at["load"]), lambda r: steps(r.at["load"], LOADS)),
 )
 """The same for what comes and goes by the clock, and what does so as a sensor's gain under load does."""
