@@ -122,15 +122,15 @@ class TorqueSensorSection(LatchedSection):
 
 
 class LimitsSection(Strict):
-    """[limits]: what the guard holds every run to."""
+    """[limits]: what the guard holds every run to. A limit beyond what any such rig can reach is a slip of unit, and none."""
 
-    speed_rpm: Annotated[float, quantity("rpm", **Positive)]
-    torque: Annotated[float, quantity("N·m", **Positive)]
-    shaft_torque: Annotated[float, quantity("N·m", **Positive)]
-    travel_turns: Annotated[float, quantity("turns", **Positive)]
-    following_deg: Annotated[float, quantity("deg", **Positive)]
-    following_s: Annotated[float, quantity("s", **NotNegative)]
-    twist_deg: Annotated[float, quantity("deg", **Positive)]
+    speed_rpm: Annotated[float, quantity("rpm", **Positive, le=20_000)]
+    torque: Annotated[float, quantity("N·m", **Positive, le=1000)]
+    shaft_torque: Annotated[float, quantity("N·m", **Positive, le=100_000)]
+    travel_turns: Annotated[float, quantity("turns", **Positive, le=1e6)]
+    following_deg: Annotated[float, quantity("deg", **Positive, le=720)]
+    following_s: Annotated[float, quantity("s", **NotNegative, le=10)]
+    twist_deg: Annotated[float, quantity("deg", **Positive, le=30)]
     stale_s: Annotated[float, quantity("s", **Positive, le=1)]  # a motor at 600 rpm turns ten times in a second
 
 

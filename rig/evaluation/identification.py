@@ -56,7 +56,7 @@ class Identification:
             *text.coasting(self.coasts),
             *text.characteristic_lines(self.file.characteristics),
             *text.breakaway_beside(self.file),
-            *(f"  cannot tell: {sentence}" for sentence in found.cannot),
+            *(f"  note: {sentence}" for sentence in found.cannot),
         ]
 
 

@@ -158,7 +158,7 @@ def _contents(view: Mapping[str, Any]) -> list[tuple[str, str]]:
         *((t.anchor, t.title, True) for t in found),
         ("timing", "Loop timing", view["timing"] or view["timing_said"]),
         ("conditions", "Conditions", view["conditions"] or view["declared"]),
-        ("cannot", "What this run cannot tell", view["cannot"]),
+        ("cannot", "What this run cannot tell, and notes", view["cannot"]),
         ("events", "Events", view["events"]),
         ("provenance", "Provenance", True),
     )

@@ -42,6 +42,8 @@ def test_the_shipped_bench_is_valid() -> None:
         ('from = "paper" }', 'from = "hearsay" }', ["hearsay", "catalogue"]),
         ("{ value = 50.0,", "{ vale = 50.0,", ["vale", "did you mean 'value'"]),
         ("stale_s = { value = 0.005", "stale_s = { value = nan", ["stale_s", "nan", "finite"]),
+        ("speed_rpm = { value = 600.0", "speed_rpm = { value = 1e9", ["limits.speed_rpm", "rpm", "20000"]),
+        ("twist_deg = { value = 0.4,", "twist_deg = { value = 400.0,", ["limits.twist_deg", "400.0 deg", "30"]),
         ("value = 10000, unit", "value = 0, unit", ["counts_per_turn", "0", "greater than 0"]),
         ("[35, -62,", "[35,", ["15 amplitudes", "14 phases"]),
         ('"hdrig.bench/1"', '"hdrig.bench/9"', ["schema", "hdrig.bench/9", "hdrig.bench/1"]),

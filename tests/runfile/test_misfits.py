@@ -51,4 +51,4 @@ def test_verify_calls_it_broken_and_an_analysis_says_it_and_gives_the_figures_al
     assert main(["verify", folder]) == 6
     assert f"error   manifest.json: {said}" in capsys.readouterr().out
     assert main(["analyse", folder]) == 0
-    assert f"  cannot tell: The manifest's {said}." in capsys.readouterr().out
+    assert f"  note: The manifest's {said}." in capsys.readouterr().out

@@ -30,7 +30,7 @@ def test_a_campaign_becomes_a_gear_file_that_simulate_takes(
     assert main(["identify", *paths, "-o", str(target)]) == 0
     said = capsys.readouterr().out
     assert "torsional stiffness" in said
-    assert "cannot tell: B_m and B_ml" in said
+    assert "note: B_m and B_ml" in said
     file = gearfile.read(target)
     assert file.parameters["K"].value == pytest.approx(7199.6, rel=1e-3)
     assert file.parameters["K"].origin == "measured"

@@ -19,6 +19,6 @@ def lines(result: Result, name: str, simulated: bool) -> list[str]:
         *head,
         *(f"  {e.label:{width}s}  {estimate(e.value, e.ci95, e.unit)}" for e in result.estimates),
         *(f"  not met: {check.sentence}" for check in result.checks if not check.passed),
-        *(f"  cannot tell: {sentence}" for sentence in result.cannot),
+        *(f"  note: {sentence}" for sentence in result.cannot),
         *bench_lines(result),
     ]
