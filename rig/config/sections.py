@@ -122,7 +122,7 @@ class TorqueSensorSection(LatchedSection):
 
 
 class LimitsSection(Strict):
-    """[limits]: what the guard holds every run to. A limit beyond what any such rig can reach is a slip of unit, and none."""
+    """[limits]: what the guard holds every run to. One that no rig can reach is a slip of unit."""
 
     speed_rpm: Annotated[float, quantity("rpm", **Positive, le=20_000)]
     torque: Annotated[float, quantity("N·m", **Positive, le=1000)]
