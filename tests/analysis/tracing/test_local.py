@@ -98,10 +98,31 @@ def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
     monkeypatch.setattr(steps, "_of_the_torque", lambda *of: False)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
+    monkeypatch.setattr(steps, "_in_other_parts", lambda *of: {})
     eq: Any = None
     found = steps.find_steps(eq, e)
     assert {run: len(rows) for run, rows in found.rows.items()} == {0: 1, 1: 1}
     assert found.rows[1][0] == pytest.approx(1500, abs=4)
+
+
+def test_the_jump_of_a_run_is_in_its_other_parts_too(rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Alternate turns are held out; the load encoder loses three counts in the middle of one of them."""
+    t, lost = 0.008 * np.arange(1200), 15e-6
+    seen = np.arange(1200) // 150 % 2 == 0
+    e = 4e-6 * rng.standard_normal(1200) + lost * (t > t[500])
+    times = {0: t[seen], 1: t[~seen], 2: t[~seen]}
+    monkeypatch.setattr(steps, "clock", lambda eq, key: times[key[0]])
+    names = ("speed_1", f"speed_1 ({HELD_PART})", f"speed_2 ({HELD_PART})")
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(name=name) for name in names])
+    at = int(np.searchsorted(times[0], t[500]))
+    left = {(0, "A"): e[seen], (1, "A"): e[~seen], (2, "A"): e[~seen]}
+    found = steps._in_other_parts(eq, left, {0: (at,)}, {0: (lost,)})
+    assert list(found) == [1]  # the third is another run's
+    row, size = found[1]
+    assert times[1][row] == pytest.approx(t[500], abs=0.1)
+    assert size == pytest.approx(lost, rel=0.2)
+    left[1, "A"] = left[1, "A"] - np.where(times[1] > t[500], lost, 0.0)  # what came back is not lost
+    assert not steps._in_other_parts(eq, left, {0: (at,)}, {0: (lost,)})
 
 
 def test_a_line_stands_out_of_its_surroundings_at_its_frequency(rng: np.random.Generator) -> None:

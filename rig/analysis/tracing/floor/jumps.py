@@ -66,6 +66,18 @@ def among(e: Array, onward: Mask, found: list[tuple[int, float]], usual: float) 
     return found
 
 
+def one_of_size(e: Array, rows: Sequence[int], size: float) -> tuple[int, float] | None:
+    """Which of `rows` of `e` (n,) parts it best into two means, and how far they are apart, if about `size` [rad]; None
+    where not, or where too little is on one side."""
+    at = np.array([row for row in rows if SHORTER[0] <= row <= e.size - SHORTER[0]], dtype=int)
+    if not at.size:
+        return None
+    total = np.cumsum(e)
+    apart = (total[-1] - total[at - 1]) / (e.size - at) - total[at - 1] / at
+    top = int(np.argmax(apart**2 * at * (e.size - at)))
+    return (int(at[top]), float(apart[top])) if ONE < apart[top] / size < 1 / ONE else None
+
+
 def _stairs(e: Array, found: Sequence[tuple[int, float]]) -> Array:
     """The stairs with jumps at those rows that come nearest to `e` (n,): its means between them."""
     edges = [0, *sorted(row for row, _ in found), e.size]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
-from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, jumps
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, jumps, one_of_size
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
@@ -74,9 +74,29 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
         if found and _lasts(eq, e, key, found):
             rows[key[0]] = tuple(at for at, _ in found)
             sizes[key[0]] = tuple(size for _, size in found)
+    for run, (row, size) in _in_other_parts(eq, e, rows, sizes).items():
+        rows[run], sizes[run] = (row,), (size,)
     placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
     rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
     return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()})
+
+
+def _in_other_parts(
+    eq: Equations, e: Mapping[Key, Array], rows: Mapping[int, Sequence[int]], sizes: Mapping[int, Sequence[float]]
+) -> dict[int, tuple[int, float]]:
+    """The jump of a run in those of its parts in which none was found: in a few seconds of noise it does not stand out
+    by itself, but when it was is known, and how large."""
+    out: dict[int, tuple[int, float]] = {}
+    for run, at in rows.items():
+        t, whole = clock(eq, (run, "A")), whole_run(eq.runs[run].name)
+        others = [i for i, c in e if c == "A" and i not in rows and whole_run(eq.runs[i].name) == whole]
+        for row, size in zip(at, sizes[run], strict=True):
+            when = t[max(row - EDGE, 0)], t[min(row + EDGE, t.size - 1)]
+            for other in others:
+                first, last = np.searchsorted(clock(eq, (other, "A")), when)
+                if found := one_of_size(e[other, "A"], range(first, last + 1), size):
+                    out[other] = found
+    return out
 
 
 def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:
