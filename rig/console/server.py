@@ -73,15 +73,16 @@ class Serving:
         loop = asyncio.get_running_loop()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, self.ask_end)
+        loop.add_signal_handler(signal.SIGQUIT, self.ask_end, True)
         await self.serve()
 
     async def serve(self) -> None:
         """Until `ask_end`."""
         await self._server.serve(sockets=[self._socket])
 
-    def ask_end(self) -> None:
-        """Once: stop (category 1), then close. Twice: halt."""
-        self._asked += 1
+    def ask_end(self, at_once: bool = False) -> None:
+        """Once: stop (category 1), then close. Twice, or `at_once`: halt."""
+        self._asked += 2 if at_once else 1
         link = self.console.link
         (link.switches.stop if self._asked == 1 else link.switches.halt)()
         if self._ending is None:

@@ -1,4 +1,5 @@
-"""Ctrl-C once = stop, twice = halt, at any moment of a session; a hold is asked for apart. Looked at every tick.
+r"""Ctrl-C once = stop, twice = halt, Ctrl-\ = halt, at any moment of a session; a hold is asked for apart. Looked at
+every tick.
 
 A key asks for each by name; asking for a stop twice is not a halt then.
 """
@@ -13,9 +14,13 @@ from rig.core.errors import Exit
 
 
 class Interrupts:
-    """While active, SIGINT, SIGTERM and SIGHUP are counted, not raised: 1 = stop (category 1), 2 or more = halt."""
+    r"""While active, SIGINT, SIGTERM and SIGHUP are counted, not raised: 1 = stop (category 1), 2 or more = halt.
 
-    SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    SIGQUIT is a halt by itself: who presses Ctrl-\ wants an end at once, and a program that dies of it would leave the
+    torque on.
+    """
+
+    SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 
     def __init__(self) -> None:
         self._signals = 0
@@ -44,7 +49,7 @@ class Interrupts:
 
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end; also what a button calls."""
-        self._signals += 1
+        self._signals += 2 if signum == signal.SIGQUIT else 1
 
     def hold(self) -> None:
         """Bring the motor to rest and hold it there, torque on; what a key calls."""

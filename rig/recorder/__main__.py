@@ -45,7 +45,7 @@ def main(folder: Path, ring_path: Path) -> int:
 
 def _be_ordinary() -> None:
     """Normal scheduling even when the loop that started us is real-time; deaf to signals meant for the whole group."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):  # AttributeError: no such call on this system
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))

@@ -85,10 +85,6 @@ class Panel(Interrupts):
         """True once a signal told this process to end."""
         return self._signals > 0
 
-    def request(self, signum: int = 0, frame: object = None) -> None:
-        """A signal to this process."""
-        self._signals += 1
-
     @property
     def who(self) -> str:
         """Who asked, for sentences that say that something was ended."""

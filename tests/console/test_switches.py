@@ -82,6 +82,12 @@ def test_two_signals_are_a_halt_as_on_a_terminal(panel: Panel) -> None:
         assert panel.count == 2
 
 
+def test_ctrl_backslash_is_a_halt_as_on_a_terminal(panel: Panel) -> None:
+    with panel:
+        signal.raise_signal(signal.SIGQUIT)
+        assert (panel.count, panel.signalled) == (2, True)
+
+
 def test_a_lost_page_is_a_stop_that_says_so_and_stays_one(pressed: Switches, panel: Panel) -> None:
     panel.arm(pressed.pressed, page_lost_s=0.02)
     assert panel.count == 0

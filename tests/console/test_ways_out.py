@@ -114,6 +114,14 @@ def test_ctrl_c_twice_takes_the_torque_off_at_once(served: Served) -> None:
     assert read(folder)["status"] == "stopped"
 
 
+def test_ctrl_backslash_takes_the_torque_off_at_once_and_closes_the_run(served: Served) -> None:
+    folder = served.running()
+    served.process.send_signal(signal.SIGQUIT)
+    assert served.process.wait(PATIENCE) == 0
+    about = read(folder)
+    assert (about["status"], "halted" in about["exit_reason"]) == ("stopped", True)
+
+
 def test_a_killed_control_process_is_told_and_its_run_can_be_recovered(served: Served) -> None:
     folder = served.running()
     os.kill(served.station, signal.SIGKILL)

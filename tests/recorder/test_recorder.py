@@ -140,7 +140,7 @@ def test_a_killed_recorder_ends_a_run_in_held_time_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
 def test_signals_meant_for_the_whole_program_do_not_reach_it(tmp_path: Path, number: signal.Signals) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())

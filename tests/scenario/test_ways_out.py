@@ -71,11 +71,20 @@ def test_one_signal_stops_the_motor_and_finishes_the_run(sig: signal.Signals, tm
 
 
 @pytest.mark.slow
-def test_two_signals_take_the_torque_off_at_once_and_keep_the_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "signals",
+    [
+        (signal.SIGINT, signal.SIGTERM),  # another signal: two of one kind may merge into one
+        (signal.SIGQUIT,),
+    ],
+)
+def test_two_signals_or_ctrl_backslash_take_the_torque_off_at_once_and_keep_the_run(
+    signals: tuple[signal.Signals, ...], tmp_path: Path
+) -> None:
     process = start(tmp_path)
     folder = wait_for(tmp_path, "kinematic-error", process)
-    process.send_signal(signal.SIGINT)
-    process.send_signal(signal.SIGTERM)  # another signal: two of one kind may merge into one
+    for number in signals:
+        process.send_signal(number)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 130, err
     assert json.loads((folder / "manifest.json").read_text())["status"] == "stopped"

@@ -21,7 +21,7 @@ from rig.process.streams import show_what_fits
 def main() -> None:
     """`painter HOW [TERMINAL]`, HOW as in `screens`, TERMINAL the number of an open file."""
     how, *terminal = sys.argv[1:]
-    for quiet in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for quiet in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(quiet, signal.SIG_IGN)  # it ends when its pipe does, so that the last words are seen
     show_what_fits(sys.stdout)
     try:
