@@ -1,4 +1,4 @@
-"""Hold, stop and halt by a key while a rig is worked on; the terminal as it was on every way out.
+r"""Hold, stop and halt by a key while a rig is worked on; the terminal as it was on every way out.
 
 A thread sleeps in `select` until a key is pressed and then only counts: the loop looks at the counts every tick, so a
 halt is one tick away, and a loop that nobody types at is never disturbed.
@@ -7,9 +7,13 @@ halt is one tick away, and a loop that nobody types at is never disturbed.
 |---|---|
 | h | hold: to rest, held there, torque on (category 2) |
 | s | stop: to rest, then torque off (category 1) |
-| Space, x | halt: torque off at once (category 0); the largest key, since it is always safe to press |
+| any other | halt: torque off at once (category 0); somebody in a panic presses whatever key is nearest |
 | Ctrl-C | stop, a second time halt |
+| Ctrl-\ | halt |
 | Ctrl-Z | while the motor is energised a stop: a program that sleeps cannot guard it; else what it always is |
+
+What a terminal sends by itself is no key: answers to what some program asked of it, focus, the mouse. That it is gone
+is told by a signal.
 """
 
 from __future__ import annotations
@@ -22,6 +26,7 @@ import signal
 import sys
 import termios
 import threading
+import time
 import tty
 from collections.abc import Callable, Iterator
 from types import FrameType, TracebackType
@@ -30,7 +35,21 @@ from typing import Any, final
 from rig.process.interrupts import Interrupts
 
 LOOK = 0.5  # s between two looks whether this program has come to the foreground again
-SEQUENCE = re.compile(rb"\x1b[\[O][0-9;]*[A-Za-z~]")  # Home ends in H, F4 in S: neither is a letter somebody typed
+WHOLE = 0.05  # s within which the rest of a sequence comes that a line cut in two
+AT_ONCE = 4096  # bytes
+UNASKED = re.compile(  # what a terminal sends by itself
+    rb"""\x1b\[ (?: [?>=] [0-9;:]* \$? [A-Za-z]  # what it is, its modes, its colours
+                | [0-9;:]* \$ y | [03] n | [0-9;]+ t  # a mode, its state, its size
+                | (?!1;\d+R) [0-9]+ ; [0-9]+ R  # where the cursor is; in the first row that is Shift-F3 as well, a key
+                | [IO]  # focus
+                | < [0-9;]+ [Mm] | [0-9]+ ; [0-9]+ ; [0-9]+ M | M [^\x1b]{3} )  # the mouse
+      | \x1b [\]P_^X] [^\x07\x1b]* (?: \x07 | \x1b\\ )  # a text: colours, a name, what a terminal can""",
+    re.VERBOSE | re.DOTALL,
+)
+PART = re.compile(  # of a sequence, at the end of what was read; Esc alone is a key and waits for nothing
+    rb"\x1b (?: \[ (?: [<?>=]? [0-9;:]* \$? | M [^\x1b]{0,2} ) | [\]P_^X] [^\x07\x1b]* \x1b? ) \Z",
+    re.VERBOSE | re.DOTALL,
+)
 IGNORED = (signal.SIGTTIN, signal.SIGTTOU)  # the shell's ways of stopping a program in the background, motor or not
 
 
@@ -43,8 +62,7 @@ class Keys:
 
     def __init__(self, interrupts: Interrupts, energised: Callable[[], bool]) -> None:
         self._energised = energised
-        self._acts = {b"h": interrupts.hold, b"s": interrupts.stop, b"x": interrupts.halt, b" ": interrupts.halt}
-        self._stop = interrupts.stop
+        self._hold, self._stop, self._halt = interrupts.hold, interrupts.stop, interrupts.halt
         self._terminal: int | None = None
         self._modes: list[Any] = []  # of the terminal, as it was
         self._listening = True
@@ -115,12 +133,28 @@ class Keys:
     def _read(self, terminal: int) -> bool:
         """What was typed, asked for; False when the terminal is gone."""
         try:
-            typed = os.read(terminal, 64)
+            came = typed = os.read(terminal, AT_ONCE)
+            give_up = time.monotonic() + WHOLE  # for all parts together: a key held down is no rest of anything
+            while came and PART.search(typed) and self._more(terminal, give_up):
+                came = os.read(terminal, AT_ONCE)
+                typed += came
         except OSError:  # in the background meanwhile, or hung up
             return self._foreground()
-        for key in SEQUENCE.sub(b"", typed).lower():
-            self._acts.get(bytes([key]), lambda: None)()
-        return bool(typed)
+        self._ask(UNASKED.sub(b"", typed).lower())
+        return bool(came)
+
+    @staticmethod
+    def _more(terminal: int, give_up: float) -> bool:
+        return bool(select.select([terminal], [], [], max(0.0, give_up - time.monotonic()))[0])
+
+    def _ask(self, keys: bytes) -> None:
+        """For what was typed at once; a halt goes before a stop, and a stop before a hold."""
+        if keys.strip(b"hs"):  # another key, or the bytes of one
+            self._halt()
+        elif b"s" in keys:
+            self._stop()
+        elif keys:
+            self._hold()
 
     def _nudge(self) -> None:
         """Have the thread look anew."""
@@ -134,10 +168,14 @@ class Keys:
             return False
 
     def _take(self) -> None:
-        """Keys as they are pressed, without echo; Ctrl-C stays a signal."""
+        """Keys as they are pressed, without echo; Ctrl-C stays a signal, Ctrl-S and Ctrl-Q are keys."""
         if self._terminal is not None and self._foreground():
             with contextlib.suppress(termios.error):
                 tty.setcbreak(self._terminal, termios.TCSANOW)
+                modes = termios.tcgetattr(self._terminal)
+                modes[tty.IFLAG] &= ~termios.IXON
+                modes[tty.LFLAG] &= ~termios.IEXTEN
+                termios.tcsetattr(self._terminal, termios.TCSANOW, modes)
 
     def _give(self) -> None:
         """The terminal as it was."""

@@ -40,10 +40,11 @@ def main() -> None:
 
 
 def give_back(terminal: int) -> None:
-    """Lines and echo, as a shell wants them. Raises termios.error when it is no terminal any more."""
+    """Lines, echo and Ctrl-S, as a shell wants them. Raises termios.error when it is no terminal any more."""
     modes = termios.tcgetattr(terminal)
     if not modes[3] & termios.ICANON:
-        modes[3] |= termios.ICANON | termios.ECHO
+        modes[0] |= termios.IXON
+        modes[3] |= termios.ICANON | termios.ECHO | termios.IEXTEN
         termios.tcsetattr(terminal, termios.TCSANOW, modes)
 
 

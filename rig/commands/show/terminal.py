@@ -9,7 +9,7 @@ from typing import Any, TextIO, final
 from rig.commands.show.screens import Screen
 from rig.commands.show.words import late, peak
 
-KEYS = "keys: Space halt (torque off)  Ctrl-C stop (twice: halt)  s stop  h hold"  # fits 80 columns
+KEYS = "any key: halt (torque off)  but s: stop  h: hold  Ctrl-C: stop (twice: halt)"  # fits 80 columns
 BAR = 12  # characters
 HOLDING = "holding"  # of the states an event can carry
 SETTLED = 1.0  # s to watch before a pace is believed

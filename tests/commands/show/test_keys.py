@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from rig.commands.show import keys
 from rig.commands.show.keys import Keys
 from rig.process.interrupts import Interrupts
 from tests.commands.show.terminals import Terminal
@@ -42,20 +43,60 @@ def soon(true: Callable[[], bool]) -> bool:
 def test_a_key_asks_for_what_it_says_and_a_second_stop_is_not_a_halt(keyboard: int, key: str, count: int) -> None:
     interrupts = Interrupts()
     with Keys(interrupts, lambda: True):
-        os.write(keyboard, key.encode() + b"h")
+        os.write(keyboard, key.encode())
+        assert soon(lambda: interrupts.count == count)
+        os.write(keyboard, b"h")
         assert soon(lambda: interrupts.held)
     assert interrupts.count == count
 
 
-def test_other_keys_ask_for_nothing(keyboard: int) -> None:
+@pytest.mark.parametrize(
+    "key",
+    [
+        "\x1b", "\r", "\n", "q", "\x04", "\x7f", "\x08", "\t", "ä", "\0", "\x11", "\x13", "\x0f", "\x16",  # to Ctrl-V
+        "\x1b[3~", "\x1b[A", "\x1bOA", "\x1b[[A", "\x1bOP", "\x1b[1;2R",  # Del, up twice, F1 twice, Shift-F3
+        "\x1bOS", "\x1b[1;2H", "\x1bs", "\x1bh", "\x1b[", "\x1b]", "\x1b[7$",  # F4, Home, Alt and a key
+        "\x1b[?62;c ", "\x1b[I\x1b", "\x1b]11;rgb:0/0/0",  # and a space, and Esc; what never ends is no answer
+    ],
+)  # fmt: skip
+def test_any_other_key_is_a_halt(keyboard: int, key: str) -> None:
     interrupts = Interrupts()
     with Keys(interrupts, lambda: True):
-        os.write(keyboard, "qwertzuiopü\n\x1b[A\x1b[1;2H\x1bOS\x04".encode())  # up, Shift-Home, F4
-        time.sleep(0.05)
+        os.write(keyboard, key.encode())
+        assert soon(lambda: interrupts.count == 2)
         assert not interrupts.held
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        ["\x1b[?62;22;52c"], ["\x1b[>41;354;0c"], ["\x1b[?2026;2$y"], ["\x1b[?1u"], ["\x1b[0n"], ["\x1b[24;80R"],
+        ["\x1b]11;rgb:0000/0000/0000\x1b\\"], ["\x1b]10;rgb:ffff/ffff/ffff\x07"], ["\x1bP>|XTerm(390)\x1b\\"],
+        ["\x1b[48;24;80;480;800t"], ["\x1b[I", "\x1b[O"], ["\x1b[<35;10;20M", "\x1b[M !!", "\x1b[35;1;2M"],
+        ["\x1b]11;rgb:00", "00/0000/0000\x1b", "\\\x1b[?6", "2c"],  # cut by a slow line
+    ],
+)  # fmt: skip
+def test_what_a_terminal_sends_by_itself_is_no_key(
+    keyboard: int, parts: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(keys, "WHOLE", 5.0)  # this machine may be busy
+    interrupts = Interrupts()
+    with Keys(interrupts, lambda: True):
+        for part in parts:
+            os.write(keyboard, part.encode())
+            time.sleep(0.01)
         os.write(keyboard, b"h")
         assert soon(lambda: interrupts.held)
     assert interrupts.count == 0
+
+
+def test_a_terminal_that_is_gone_has_pressed_nothing() -> None:
+    gone, other_end = os.pipe()
+    os.close(other_end)
+    interrupts = Interrupts()
+    assert not Keys(interrupts, lambda: True)._read(gone)
+    assert (interrupts.count, interrupts.held) == (0, False)
+    os.close(gone)
 
 
 def test_ctrl_c_after_a_stop_by_key_is_still_one_ctrl_c(keyboard: int) -> None:
@@ -84,8 +125,8 @@ def test_handlers_of_signals_are_given_back(keyboard: int) -> None:
 
 def test_while_a_question_is_asked_keys_are_letters_and_what_was_typed_before_is_no_answer(keyboard: int) -> None:
     interrupts = Interrupts()
-    with Keys(interrupts, lambda: True) as keys:
-        with keys.paused():
+    with Keys(interrupts, lambda: True) as listening:
+        with listening.paused():
             assert termios.tcgetattr(sys.stdin)[3] & termios.ICANON
             os.write(keyboard, b"xs h\n")
             assert sys.stdin.readline() == "xs h\n"
@@ -104,8 +145,8 @@ def test_ctrl_z_is_a_stop_while_the_motor_is_energised(keyboard: int) -> None:
 def test_without_a_terminal_nothing_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     with open(os.devnull) as nothing:
         monkeypatch.setattr(sys, "stdin", nothing)
-        with Keys(Interrupts(), lambda: True) as keys, keys.paused():
-            assert keys._terminal is None
+        with Keys(Interrupts(), lambda: True) as listening, listening.paused():
+            assert listening._terminal is None
 
 
 SLEEPER = """

@@ -40,10 +40,10 @@ def test_hold_then_stop_by_key(terminal: Terminal) -> None:
     assert terminal.modes == terminal.before
 
 
-def test_halt_by_the_space_bar(terminal: Terminal) -> None:
-    assert "keys: Space halt (torque off)  Ctrl-C stop (twice: halt)  s stop  h hold" in terminal.seen
+def test_halt_by_escape(terminal: Terminal) -> None:
+    assert "any key: halt (torque off)  but s: stop  h: hold  Ctrl-C: stop (twice: halt)" in terminal.seen
     assert "SIMULATED RUNNING kinematic-error" in terminal.seen
-    terminal.press(" ")
+    terminal.press("\x1b")
     assert terminal.end() == 130
     assert "halted by the operator: torque off at once" in terminal.seen
     assert terminal.modes == terminal.before
