@@ -95,15 +95,15 @@ class Console:
         @app.post("/api/check-parameters")
         async def check_parameters(request: Request) -> Response:
             asked = await _body(request)
-            if asked is None:
-                return _no_object()
+            if isinstance(asked, Response):
+                return asked
             return JSONResponse(await asyncio.to_thread(self.desk.check, asked))
 
         @app.post("/api/act")
         async def act(request: Request) -> Response:
             asked = await _body(request)
-            if asked is None:
-                return _no_object()
+            if isinstance(asked, Response):
+                return asked
             self.link.switches.page_alive()
             answer = await self.desk.act(asked, _page(request))
             return JSONResponse(answer.body, answer.status)
@@ -126,21 +126,21 @@ def _page(request: Request) -> str:
     return request.headers.get(PAGE_HEADER, "")[:64]
 
 
-async def _body(request: Request) -> dict[str, Any] | None:
-    """A JSON object, or None: too long, no JSON, or something else than an object."""
+async def _body(request: Request) -> dict[str, Any] | Response:
+    """A JSON object, or the refusal: 413 too long, 400 no JSON, no text, or something else than an object."""
     taken = b""
     async for part in request.stream():
         taken += part
         if len(taken) > LONGEST:
-            return None
+            return _no_object(413)
     try:
         found = json.loads(taken)
         json.dumps(found, ensure_ascii=False).encode()  # half a character could be neither written down nor sent on
     except (ValueError, RecursionError):
-        return None
-    return found if isinstance(found, dict) else None
+        return _no_object(400)
+    return found if isinstance(found, dict) else _no_object(400)
 
 
-def _no_object() -> Response:
+def _no_object(status: int) -> Response:
     why = f"expected a JSON object of at most {LONGEST} bytes of whole characters"
-    return JSONResponse({"accepted": False, "why": why}, 409)
+    return JSONResponse({"accepted": False, "why": why}, status)

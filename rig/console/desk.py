@@ -19,6 +19,7 @@ FORWARDED = (
     "id", "act", "bench", "overrides", "clock", "procedure", "parameters", "note", "plan", "resume", "turns",
     "speed_rpm", "text", "prompt_id", "done",
 )  # fmt: skip
+PRESSED = ("stop", "halt")  # whatever the id, the page, the revision; the same id again presses again
 LONGEST_TEXT = 2000  # characters of a note
 
 
@@ -29,7 +30,7 @@ class ActDesk:
     def __init__(self, link: Link, gate: Gate, offered: str) -> None:
         """`offered`: the bench the server was started for."""
         self.link, self.gate, self.offered = link, gate, offered
-        self._under_way: dict[str, asyncio.Future[Answer]] = {}
+        self._under_way: dict[str, tuple[object, asyncio.Future[Answer]]] = {}  # by id: which act
         self._based_on: tuple[object, ...] = ()
 
     def look(self) -> None:
@@ -44,20 +45,24 @@ class ActDesk:
             self.gate.passed()
 
     async def act(self, asked: Mapping[str, Any], page: str) -> Answer:
-        """Done once per id; the same id again, even while the first is under way, is answered as the first."""
+        """Done once per id; the same id again, even while the first is under way, is answered as the first.
+
+        Stop and halt are done each time they come: nobody is kept from stopping a motor for an id.
+        """
         act, key = asked.get("act"), str(asked.get("id"))
+        if act in PRESSED:
+            return self._with_revision(Answer.yes(await self.link.press(str(act))))
         before = self.gate.before(asked)
         if before is not None:
-            return before
+            return self._with_revision(before)
         if key in self._under_way:
-            return await asyncio.shield(self._under_way[key])
-        if isinstance(act, str) and act in ("stop", "halt") and "id" not in asked:
-            return Answer.yes(await self.link.press(act))  # nobody is kept from stopping a motor for a missing id
+            first, answered = self._under_way[key]
+            return await asyncio.shield(answered) if first == act else self._with_revision(self.gate.used(first))
         why = self.gate.refuse(asked, page, rights(self.link.picture, self.gate, page))
         if why:
             return self._with_revision(Answer.no(why))
         waiting: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
-        self._under_way[key] = waiting
+        self._under_way[key] = (act, waiting)
         try:
             answer = self._with_revision(await self._carry_out(str(act), asked, page))
         except BaseException:
@@ -69,7 +74,8 @@ class ActDesk:
         return self.gate.remember(asked, answer)
 
     def _with_revision(self, answer: Answer) -> Answer:
-        return Answer(answer.status, {**answer.body, "revision": self.gate.revision})
+        """The present one, but an answer given before keeps its own."""
+        return Answer(answer.status, {"revision": self.gate.revision, **answer.body})
 
     async def _carry_out(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
         if act in ALWAYS:

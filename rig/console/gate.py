@@ -1,4 +1,7 @@
-"""Which act is done, and how often: once per id, on the present revision, by the page that holds control."""
+"""Which act is done, and how often: once per id, on the present revision, by the page that holds control.
+
+What this says of stop and halt only a page is told: whoever asks for one gets it, see `desk`.
+"""
 
 from __future__ import annotations
 
@@ -38,15 +41,21 @@ class Gate:
 
     revision: int = 1
     controller: str | None = None  # id of the page that holds control; None: the next one that acts gets it
-    _answers: OrderedDict[str, Answer] = field(default_factory=OrderedDict)
+    _answers: OrderedDict[str, tuple[object, Answer]] = field(default_factory=OrderedDict)  # by id: to which act
 
     def before(self, asked: Mapping[str, Any]) -> Answer | None:
-        """The answer an id got before; None for one not seen yet."""
-        return self._answers.get(str(asked.get("id")))
+        """The answer an id got before, a refusal where that was to another act; None for an id not seen yet."""
+        act, answer = self._answers.get(str(asked.get("id")), (None, None))
+        return answer if answer is None or act == asked.get("act") else self.used(act)
+
+    @staticmethod
+    def used(act: object) -> Answer:
+        """The refusal to an id that came with another `act` before."""
+        return Answer.no(f"this id was that of another act, '{act}': every act needs an id of its own, a UUID")
 
     def remember(self, asked: Mapping[str, Any], answer: Answer) -> Answer:
         """An id is answered once and for all."""
-        self._answers[str(asked["id"])] = answer
+        self._answers[str(asked["id"])] = (asked.get("act"), answer)
         while len(self._answers) > REMEMBERED:
             self._answers.popitem(last=False)
         return answer

@@ -69,6 +69,28 @@ def test_the_same_id_is_done_once_and_answered_twice(ready: Hand) -> None:
     assert ready.told("note").count("once") == 1
 
 
+def test_the_id_of_another_act_is_refused(ready: Hand) -> None:
+    body = {"id": str(uuid.uuid4()), "based_on": ready.state()["revision"], "act": "note", "text": "once"}
+    assert ready.client.post("/api/act", json=body).status_code == 200
+    said = ready.client.post("/api/act", json={**body, "act": "prove", "based_on": ready.state()["revision"]})
+    assert (said.status_code, "that of another act, 'note'" in said.json()["why"]) == (409, True)
+    assert said.json()["revision"] == ready.state()["revision"]
+
+
+@pytest.mark.parametrize("id", [None, "of the start", "42", 42, "", ["x"], "halted before"])
+@pytest.mark.parametrize("act", ["stop", "halt"])
+def test_stop_and_halt_are_done_whatever_the_id(ready: Hand, act: str, id: Any) -> None:
+    start = str(uuid.uuid4())
+    given = start if id == "of the start" else id
+    if id == "halted before":
+        assert ready.client.post("/api/act", json={"id": id, "act": act}).status_code == 200
+    ready.do("start", id=start, procedure="kinematic-error", parameters=FOREVER)
+    ready.until(lambda s: s["run"] and s["run"]["t"] > 1.0)
+    said = ready.client.post("/api/act", json={"id": given, "act": act})
+    assert (said.status_code, said.json()["accepted"]) == (200, True)
+    assert ready.until(lambda s: not s["job"])["last_run"]["status"] == "stopped"
+
+
 def test_a_second_click_on_the_same_state_is_refused_and_starts_nothing(ready: Hand) -> None:
     revision = ready.state()["revision"]
     more = {"based_on": revision, "procedure": "standstill", "parameters": {"duration": 1.0}}
@@ -108,9 +130,9 @@ def test_only_one_page_holds_control_and_it_can_be_taken(ready: Hand) -> None:
 ])  # fmt: skip
 def test_a_body_that_is_no_act_is_refused_and_does_nothing(ready: Hand, content: bytes) -> None:
     said = ready.client.post("/api/act", content=content)
-    assert said.status_code == 409
+    assert said.status_code == (413 if len(content) > 65_536 else 400)
     assert said.json()["accepted"] is False
-    assert ready.client.post("/api/check-parameters", content=content).status_code == 409
+    assert ready.client.post("/api/check-parameters", content=content).status_code == said.status_code
 
 
 @pytest.mark.parametrize("hostile", [

@@ -82,7 +82,10 @@ def test_an_id_is_answered_once_and_for_all() -> None:
     assert gate.before(first) is None
     answer = gate.remember(first, Answer.yes())
     gate.passed()
-    assert gate.before(dict(first, act="disconnect")) is answer
+    assert gate.before(first) is answer
+    other = gate.before(dict(first, act="disconnect"))
+    assert other is not None
+    assert (other.status, "another act, 'connect'" in other.body["why"]) == (409, True)
 
 
 def test_the_memory_of_ids_is_bounded() -> None:
