@@ -77,8 +77,8 @@ class Loop:
         self.rows = 0  # handed to the sink so far
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
-        """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure, a recorder that failed)
-        only after the drive was made safe.
+        """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure or of a drive that says its
+        torque is off, a recorder that failed) only after the drive was made safe.
         """
         if self.interrupts.count:
             why = f"stopped {self.interrupts.who} before anything was energised"
@@ -88,10 +88,14 @@ class Loop:
             with nullcontext() if self.timing.virtual else RealTime() as real_time:
                 self.timing.scheduling = real_time.granted if real_time else ""
                 ending = self._energised(procedure, setting)
+        except NotReady as error:
+            if self.instruments.safe():
+                self.supervisor.act(Act.FINISH if self.running else Act.TRIP, str(error))
+                raise
+            ending = Ending("tripped", str(error), Exit.TRIPPED)  # energised and lost is more than not ready
         except BaseException as error:
             self.instruments.safe()
-            refused = isinstance(error, NotReady)
-            self.supervisor.act(Act.FINISH if refused and self.running else Act.TRIP, str(error) or repr(error))
+            self.supervisor.act(Act.TRIP, str(error) or repr(error))
             raise
         finally:
             confirmed = self.instruments.safe()

@@ -11,11 +11,11 @@ import pytest
 from rig.core.channels import Flag
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.core.sample import Torque
+from rig.core.sample import Mode, Torque
 from rig.guard import Guard
 from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
-from rig.supervisor import Act, State, Supervisor
+from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
@@ -178,6 +178,24 @@ def test_a_drive_that_does_not_confirm_torque_off_is_a_fault_whatever_the_ending
     assert ending.exit is Exit.TRIPPED
     assert "did not confirm" in ending.reason
     assert bench.supervisor.state is State.FAULT
+
+
+@pytest.mark.parametrize("running", [True, False])
+def test_a_drive_lost_once_it_was_energised_is_a_trip_that_says_so(
+    running: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = Bench()
+
+    def lost(mode: Mode = Mode.TORQUE) -> None:
+        bench.world.confirms = False
+        raise NotReady("the drive does not answer")
+
+    if not running:
+        monkeypatch.setattr(bench.instruments.drive, "enable", lost)
+    ending = bench.run(lost)
+    assert (ending.status, ending.exit) == ("tripped", Exit.TRIPPED)
+    assert ending.reason == f"the drive does not answer; {UNCONFIRMED}"
+    assert bench.supervisor.fault == ending.reason
 
 
 def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
