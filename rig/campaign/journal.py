@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import uuid
@@ -13,7 +14,7 @@ from typing import Any
 from rig.bench import BENCHES
 from rig.campaign.plan import PLANS, digest
 from rig.campaign.planner import Campaign
-from rig.core.errors import NotReady, UsageError
+from rig.core.errors import HdrigError, NotReady, RecorderError, UsageError
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.runfile.manifest import contents, parse, sync_folder, told, utc_now, write_atomic
 from rig.runfile.process import is_being_made, this_process
@@ -25,7 +26,9 @@ KINDS: dict[str, type[Change]] = {k.__name__: k for k in (HangWeight, LockOutput
 
 
 class Journal:
-    """One campaign's book. Every method that changes it has it safe on disk when it returns. Raises NotReady."""
+    """One campaign's book. Every method that changes it has it safe on disk when it returns. Raises RecorderError: a
+    disk that takes no more ends a campaign as it ends a run.
+    """
 
     def __init__(self, folder: Path, book: dict[str, Any]) -> None:
         self.folder = folder
@@ -119,19 +122,24 @@ class Journal:
         self.book |= {"status": status, "sentence": sentence, "ended_utc": utc_now(), "process": None}
         self._save()
 
+    def fail(self, status: str, sentence: str) -> None:
+        """As `close`, after an error: that is what is told then, also where the disk takes no more."""
+        with contextlib.suppress(RecorderError):
+            self.close(status, sentence)
+
     def reopen(self) -> None:
-        """Go on with it in this process. Raises NotReady while another one does."""
+        """Go on with it in this process. Raises NotReady while another one does, and when it cannot be written."""
         if is_being_made(self.book):
             pid = self.book["process"]["pid"]
             raise NotReady(f"{self.folder} is being made by process {pid}; stop that first")
         self.book |= {"status": "running", "sentence": "", "process": this_process()}
         self._before = self.book["rig_time_s"]
         self.book["sessions"].append(utc_now())
-        self._save()
+        self._save(NotReady)
 
-    def _save(self) -> None:
+    def _save(self, kind: type[HdrigError] = RecorderError) -> None:
         data = json.dumps(self.book, indent=1, ensure_ascii=False).encode(errors="replace") + b"\n"
-        with told(NotReady, f"{self.folder / NAME} cannot be written"):
+        with told(kind, f"{self.folder / NAME} cannot be written"):
             write_atomic(self.folder / NAME, data)
 
 

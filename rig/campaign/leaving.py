@@ -24,7 +24,7 @@ def swept(journal: Journal) -> Iterator[None]:
         yield
     except HdrigError as error:
         if came_to_something(journal):
-            journal.close("failed", str(error))
+            journal.fail("failed", str(error))
         else:
             _remove(journal)
         raise

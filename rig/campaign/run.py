@@ -89,7 +89,7 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
             raise
         exit = error.exit
         desk.say(str(error))
-        journal.close("stopped" if session.interrupts.count else "failed", str(error))
+        journal.fail("stopped" if session.interrupts.count else "failed", str(error))
     return exit
 
 
@@ -211,8 +211,8 @@ def _measure(session: Session, campaign: Campaign, journal: Journal, desk: Desk,
             done = session.run(item.procedure, watch)
     except HdrigError as error:
         status = "stopped" if session.interrupts.count else "failed"
-        journal.end(index, status, str(error), session.folder)
         desk.say(f"run {status}: {error}")
+        journal.end(index, status, str(error), session.folder)
         return error.exit
     finally:
         session.note, session.facts = note, checks

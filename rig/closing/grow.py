@@ -13,7 +13,7 @@ from rig.closing.story import Story
 
 
 def grown(campaign: Campaign, journal: Journal, items: Sequence[Item], why: str) -> Campaign:
-    """With `items` at its end; the book knows them, and why, when this returns. Raises NotReady."""
+    """With `items` at its end; the book knows them, and why, when this returns. Raises RecorderError."""
     journal.book["runs"] += [entry_of(item.record()) for item in items]
     journal.tell(f"runs {len(campaign.items) + 1} to {len(campaign.items) + len(items)} were added: {why}")
     return replace(campaign, items=(*campaign.items, *items))
@@ -22,7 +22,7 @@ def grown(campaign: Campaign, journal: Journal, items: Sequence[Item], why: str)
 def regrown(campaign: Campaign, journal: Journal, story: Story) -> Campaign:
     """The campaign as the rounds of `story` had made it, from the plan it began with; the book is made to know it all.
 
-    Raises UsageError when it knows other runs, NotReady when it cannot be written.
+    Raises UsageError when it knows other runs, RecorderError when it cannot be written.
     """
     for round in story.rounds:
         if round.plan:

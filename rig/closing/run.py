@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+
 from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.run import check_facts, settle
 from rig.closing.loop import Closing
 from rig.closing.story import End
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit, HdrigError, RecorderError
 
 EXITS = {End.NOTHING: Exit.PASS, End.EXPLAINED: Exit.PASS, End.STOPPED: Exit.STOPPED}
 
@@ -32,7 +34,8 @@ def conduct(closing: Closing) -> Exit:
         exit, sentence = error.exit, str(error)
         status = "stopped" if session.interrupts.count else "failed"
         closing.desk.say(sentence)
-        closing.ended(End.STOPPED, sentence)
+        with contextlib.suppress(RecorderError):  # a full disk: what ended it is what is told
+            closing.ended(End.STOPPED, sentence)
     finally:
         _close(journal, status, sentence)
     return exit
@@ -40,4 +43,4 @@ def conduct(closing: Closing) -> Exit:
 
 def _close(journal: Journal, status: str, sentence: str) -> None:
     count = ", ".join(f"{number} {what}" for what, number in journal.count().items())
-    journal.close(status, f"{count}; {sentence}")
+    (journal.fail if status == "failed" else journal.close)(status, f"{count}; {sentence}")

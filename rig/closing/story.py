@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Status, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
-from rig.core.errors import NotReady, UsageError
+from rig.core.errors import RecorderError, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
 NAME = "close-loop.json"
@@ -106,10 +106,10 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
 
 
 def write_story(folder: Path, story: Story) -> Path:
-    """Replace close-loop.json. Raises NotReady when it cannot be written."""
+    """Replace close-loop.json. Raises RecorderError when it cannot be written."""
     path = folder / NAME
     text = json.dumps({"schema": SCHEMA, **asdict(story)}, indent=1, ensure_ascii=False)
-    with told(NotReady, f"{path} cannot be written"):
+    with told(RecorderError, f"{path} cannot be written"):
         write_atomic(path, text.encode() + b"\n")
     return path
 

@@ -135,8 +135,13 @@ def make(campaign: Campaign, journal: Journal, clock: ClockName, args: argparse.
 def _told(journal: Journal, exit: Exit, show: Show) -> int:
     """The summary on stdout and in the folder, and what follows the last run; the exit code."""
     text = "\n".join(summary.lines(journal)) + "\n"
-    with told(DataError, f"the runs are kept in {journal.folder}, its summary cannot be written"):
-        (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    try:
+        with told(DataError, f"the runs are kept in {journal.folder}, its summary cannot be written"):
+            (journal.folder / "summary.txt").write_text(text, encoding="utf-8")
+    except DataError as error:
+        if not exit:
+            raise
+        print(f"hdrig: {error}", file=sys.stderr)  # what ended the campaign says how this ends
     show.tell("campaign", folder=str(journal.folder), status=journal.book["status"], runs=journal.count())
     show.leave(exit)
     print(f"{text}campaign folder {journal.folder}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
 
@@ -13,10 +14,13 @@ from rig.campaign.changes import ByHand, Measure, deeds
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
 from rig.campaign.planner import Campaign
 from rig.campaign.resume import take_up
-from rig.core.errors import Exit, NotReady, UsageError
+from rig.core.errors import Exit, NotReady, RecorderError, UsageError
 from rig.core.operator import LockOutput, Rigging
+from rig.core.procedure import Procedure
 from rig.runfile.process import this_process
 from rig.runfile.verify import verify
+from rig.session import Session, Watch
+from rig.session.done import Done
 from tests.campaign.plans import HEAD, LOADED, LOCKED, REST, campaign
 from tests.campaign.rigs import Quiet, go_on, make
 
@@ -135,6 +139,31 @@ def test_a_run_that_trips_is_recorded_in_words_and_ends_the_campaign(tmp_path: P
     assert statuses(journal) == ["failed", "planned"]
     assert "it is too hot" in journal.book["runs"][0]["sentence"]
     assert (journal.folder / journal.book["runs"][0]["run"] / "samples.parquet").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lost", [True, False], ids=["the run too", "the book alone"])
+def test_a_disk_that_fills_ends_the_campaign_as_it_ends_a_run(
+    lost: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    honest = Session.run
+
+    def full(path: Path, data: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    def run(self: Session, procedure: Procedure, watch: Watch) -> Done:
+        done = honest(self, procedure, watch)
+        monkeypatch.setattr("rig.campaign.journal.write_atomic", full)
+        if lost:
+            raise RecorderError("the recorder cannot write")
+        return done
+
+    monkeypatch.setattr(Session, "run", run)
+    exit, _, desk = make(tmp_path, campaign(REST, REST))
+    assert exit is Exit.TRIPPED
+    assert "campaign.json cannot be written: No space left on device" in desk.said[-1]
+    assert ("run failed: the recorder cannot write" in desk.said) is lost
+    assert len(desk.begun) == 1
 
 
 @pytest.mark.slow
