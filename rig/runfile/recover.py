@@ -1,4 +1,5 @@
-"""What a killed program left → a readable run. Never "completed": a run found dead is interrupted."""
+"""What a killed program left → a readable run. Never "completed": a run found dead is interrupted, or tripped where its
+events say so."""
 
 from __future__ import annotations
 
@@ -10,12 +11,14 @@ from typing import Any, NamedTuple
 from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
-from rig.runfile.events import EventLog, mend_events
+from rig.runfile.events import EventLog, mend_events, read_events
 from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed, refuse_stranger
 from rig.runfile.journal import journal_files
 from rig.runfile.process import Process, lives
 from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.run import ratio_of
+
+FAULT = "fault: "  # how the event of a trip begins: the state it leads to
 
 
 class Recovery(NamedTuple):
@@ -49,13 +52,13 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     ratio_of(folder, about)
     _refuse_empty(folder, about)
     _refuse_living(folder, about)
-    reason = _reason(about)
+    status, reason = _end(folder, about)
     with manifest.told(DataError, f"{folder} cannot be recovered"):
         mend_events(folder)
         if "events.jsonl" not in about.get("files", {}):  # entered already: its hash is taken
             with EventLog(folder) as events:
                 events.write("recover", reason)
-    closed = finalise(folder, "interrupted", reason, step=step)
+    closed = finalise(folder, status, reason, step=step)
     return Recovery(closed.rows, closed.seconds, True, _told(folder, closed))
 
 
@@ -98,8 +101,21 @@ def _recorder_of(folder: Path, path: Path, loop: Process | None) -> Process:
     return Process(pid=pid, started=started, host=str(loop.get("host", "")) if loop else "")
 
 
+def _end(folder: Path, about: Mapping[str, Any]) -> tuple[str, str]:
+    """What is known of the end: status and reason. A trip was written down as it came; why the folder was not closed
+    after it, a full disk or a kill, nobody knows any more.
+    """
+    closing = about.get("closing") or {}
+    if closing.get("status") == "tripped":
+        return "tripped", str(closing.get("reason"))
+    trips = [str(e.get("text")) for e in read_events(folder) if e.get("kind") == "trip" and e.get("t") is not None]
+    if trips:  # those without a time were before this run
+        return "tripped", trips[0].removeprefix(FAULT)
+    return "interrupted", _reason(about)
+
+
 def _reason(about: Mapping[str, Any]) -> str:
-    """What is known of the end."""
+    """What is known of an end that was no trip."""
     closing, said = about.get("closing"), about.get("exit_reason")
     if about.get("status") != "running" and said:
         return str(said)  # the recorder outlived the loop and said so

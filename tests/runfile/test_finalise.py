@@ -180,6 +180,33 @@ def test_recover_says_what_it_found_and_where(tmp_path: Path) -> None:
     assert_prefix(folder, 500)
 
 
+def test_recover_takes_a_trip_that_was_written_down_into_account(tmp_path: Path) -> None:
+    folder = dead_run(tmp_path)
+    why = "the recorder cannot write: No space left on device; the drive did not confirm that its torque is off"
+    with EventLog(folder) as events:
+        events.write("trip", f"fault: {why}", 0.4)
+    recover(folder)
+    assert (manifest_of(folder)["status"], manifest_of(folder)["exit_reason"]) == ("tripped", why)
+    assert errors(folder) == []
+
+
+def test_recover_takes_no_trip_of_before_the_run_for_its_end(tmp_path: Path) -> None:
+    folder = dead_run(tmp_path)
+    with EventLog(folder) as events:
+        events.write("trip", "fault: it was too hot")  # waited for a folder, and was reset before the run
+    recover(folder)
+    assert manifest_of(folder)["status"] == "interrupted"
+    assert "found dead and recovered" in manifest_of(folder)["exit_reason"]
+
+
+def test_a_tripped_run_that_could_not_be_closed_stays_tripped(tmp_path: Path) -> None:
+    folder = ended_run(tmp_path)
+    with pytest.raises(Killed):
+        finalise(folder, "tripped", "it is too hot", step=killer("archive"))
+    recover(folder)
+    assert (manifest_of(folder)["status"], manifest_of(folder)["exit_reason"]) == ("tripped", "it is too hot")
+
+
 def test_recover_without_shared_memory_gives_what_the_journal_has(tmp_path: Path) -> None:
     folder = dead_run(tmp_path)
     Path(manifest_of(folder)["ring"]).unlink()
