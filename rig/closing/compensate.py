@@ -23,6 +23,7 @@ from rig.runfile.run import Run
 from rig.session import Ended, Session
 
 STRANGE = 0.5  # of the RMS of the error: feeding such a series forward may well make it worse
+HALVED = 5  # a speed is halved fewer times than that to find one that would do
 DYNAMIC = 0.4  # of the error; with so much made by the gear's dynamics its series is not found in the rest
 ORDERS = 15  # looked at for the one that is amplified most
 SEED = 20011  # of the draws of the series: the same gear file gives the same prediction
@@ -95,8 +96,17 @@ def refuse_first(bench: Bench, gear: GearFile, speeds_rpm: Sequence[float], revo
     if said := unlike_the_series(gear, slowest):
         raise UsageError(
             f"--speed {slowest:g}: {said}; the zero of the encoder is found at the slowest speed, from an error that "
-            f"is the series: expected a slower one before it, as in --speed 9.6 {slowest:g}"
+            f"is the series: expected {_slower(gear, slowest)}"
         )
+
+
+def _slower(gear: GearFile, speed_rpm: float) -> str:
+    """What to ask for instead, in words: the nearest of some slower speeds at which the error is the series."""
+    speeds = [speed_rpm / 2**k for k in range(1, HALVED)]
+    found = next((slower for slower in speeds if not unlike_the_series(gear, slower)), None)
+    if found is None:
+        return f"a gear file of slow runs: down to {speeds[-1]:.3g} rpm no speed would do"
+    return f"a slower one before it, as in --speed {found:.3g} {speed_rpm:g}"
 
 
 def unlike_the_series(gear: GearFile, speed_rpm: float) -> str:

@@ -84,7 +84,9 @@ def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
 def gear_of(folders: Sequence[Path], terms: int, say: Say) -> GearFile:
     """The gear file alone, without what is measured beside the model. Raises DataError as `identify`."""
     runs, recordings = open_runs(folders, say)
-    return _fitted(runs, recordings, terms, say)[1]
+    found, file = _fitted(runs, recordings, terms, say)
+    refuse_nothing(found, recordings)
+    return file
 
 
 def _fitted(runs: list[Run], recordings: list[Recording], terms: int, say: Say) -> tuple[Identified, GearFile]:

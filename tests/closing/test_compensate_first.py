@@ -31,6 +31,18 @@ def test_a_slow_speed_first_makes_a_resonant_one_possible() -> None:
     refuse_first(read("twin"), gear(), (380.0, 9.6), 3)
 
 
+def test_the_slower_speed_that_is_advised_is_one_that_would_do() -> None:
+    with pytest.raises(UsageError, match=r"expected a slower one before it, as in --speed \S+ 380") as refused:
+        refuse_first(read("twin"), gear(), (380.0,), 3)
+    refuse_first(read("twin"), gear(), (380.0, float(str(refused.value).split()[-2])), 3)
+
+
+def test_where_no_speed_would_do_none_is_advised(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rig.closing.compensate.unlike_the_series", lambda gear, speed: "all of it is something else")
+    with pytest.raises(UsageError, match=r"--speed 9\.6: .*: expected a gear file of slow runs: down to 0\.6 rpm"):
+        refuse_first(read("twin"), gear(), (9.6,), 3)
+
+
 def test_at_a_slow_speed_the_error_is_the_series() -> None:
     assert unlike_the_series(gear(), 9.6) == ""
 

@@ -13,7 +13,7 @@ from rig.analysis.identify.recording import Recording, recording
 from rig.analysis.identify.undetermined import NOTHING, WANTED
 from rig.bench import read, twin_parameters
 from rig.core.errors import DataError
-from rig.evaluation.identification import refuse_nothing
+from rig.evaluation.identification import gear_of, refuse_nothing
 from rig.model import gearfile
 from rig.model.gear import Gear
 from rig.report.text.gear import parameter_line
@@ -87,13 +87,17 @@ def test_without_a_torque_sensor_load_side_friction_is_unknown_and_not_zero(alon
     assert "unknown" in parameter_line("F_cl", found.parameters["F_cl"], "N·m")
 
 
-def test_runs_that_determine_nothing_are_refused() -> None:
+def test_runs_that_determine_nothing_are_refused_and_give_no_gear(monkeypatch: pytest.MonkeyPatch) -> None:
     t = np.arange(0.0, 4.0, 1e-3)
     still = recording(Made("still", {"t": t, **dict.fromkeys(("theta_m", "theta_l", "tau_l", "tau_m"), 0.0 * t)}))
     assert still is not None
     found = identified(fit([still], 15), {"declared": DECLARED})
     with pytest.raises(DataError, match=r"nothing of the gear can be determined from what is here \(constant-torque\)"):
         refuse_nothing(found, [still])
+    monkeypatch.setattr("rig.evaluation.identification.open_runs", lambda folders, say: ([], [still]))
+    monkeypatch.setattr("rig.evaluation.identification._fitted", lambda *known: (found, None))
+    with pytest.raises(DataError, match="nothing of the gear can be determined"):
+        gear_of([], 15, lambda text: None)
 
 
 @pytest.mark.slow
