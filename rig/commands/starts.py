@@ -15,6 +15,7 @@ from rig.core.units import RPM
 from rig.model.gearfile import GearFile
 from rig.model.simulate.run_up import RunUp, run_up
 from rig.model.simulate.spread import drawn_gears
+from rig.model.simulate.steady import refuse_load
 from rig.report.numbers import quantity
 
 SECONDS = 5.0  # what constant-torque lets a run settle: twelve time constants of inertia over drag of the paper's gear
@@ -23,10 +24,13 @@ Array = npt.NDArray[Any]
 
 
 def lines(file: GearFile, torques: Sequence[float], load: float) -> Iterator[str]:
-    """A line a torque, by the gear file's gear and as many drawn from its intervals. Raises UsageError: no numbers."""
+    """A line a torque, by the gear file's gear and as many drawn from its intervals. Raises UsageError: no numbers,
+    NoSteadyState: a load beyond any gear.
+    """
     if not np.isfinite(torques).all():
         raise UsageError(f"--start {' '.join(f'{x:g}' for x in torques)}: expected torques in N·m")
     gears = [file.gear(), *drawn_gears(file)]
+    refuse_load(gears[0], load)
     yield f"{'τ, N·m':>10s}{'does it turn':>22s}{'motor speed, rpm':>20s}{'run up in, s':>20s}"
     for tau in torques:
         yield line(tau, run_up(gears, tau, SECONDS, load))

@@ -31,6 +31,17 @@ def test_a_torque_that_is_no_number_is_refused_before_anything_is_said(
         (["--speed", "0"], "--speed 0 rpm: expected a mean speed of the motor in rpm, either way, not 0"),
         (["--speed", "120", "nan"], "--speed nan rpm: expected"),
         (["--torque", "inf"], "--torque inf: expected a torque of the motor in N·m"),
+        (
+            ["--torque", "1e300"],
+            "at 1e+300 N·m under a load of 0 N·m: the motor would turn at 2.89e+303 rpm; expected",
+        ),
+        (["--speed", "1e9"], "the motor would turn at 1e+09 rpm; expected up to 100000 rpm"),
+        (
+            ["--load", "1e6", "--speed", "300"],
+            "a load of 1e+06 N·m winds the gear up by 140 rad, its stiffness is",
+        ),
+        (["--load", "1e6", "--torque", "1"], "a load of 1e+06 N·m winds the gear up by 140 rad"),
+        (["--load", "1e6", "--start", "1"], "expected up to 7160 N·m, which is 1 rad"),
         (["--speed", "0.001"], "at 0.001 rpm under a load of 0 N·m: the motor would come to rest"),
     ],
 )

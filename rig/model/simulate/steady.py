@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rig.core.units import TURN
+from rig.core.units import RPM, TURN
 from rig.model.fourier import FourierSeries
 from rig.model.gear import Gear
 from rig.model.linear import effective_inertia, natural_frequency
@@ -20,6 +20,8 @@ CLOSE = 1e-12  # of the scale of each unknown: where Newton's steps end
 NEAR = 1e-6  # the same where steps no longer shrink
 MOST_STEPS = 40
 HALVINGS = 8  # of a Newton step that would stop the motor or not come closer
+FASTEST = 1e5 * RPM  # of a motor, ten times what one on such a gear reaches; beyond, numbers mean nothing
+FURTHEST = 1.0  # rad that a load winds the spring up, a hundred times what a gear survives
 STAGES = (1.0, 0.3, 0.0)  # extra damping, as a share of critical, where the direct attempt does not converge
 
 
@@ -131,6 +133,7 @@ def drag(gear: Gear, omega: float, tau_ext: float = 0.0) -> float:
 
 def _speed_without_ripple(gear: Gear, tau: float, tau_ext: float) -> tuple[float, float]:
     """Direction, and the speed at which drag equals the torque on the rising branch of friction."""
+    refuse_load(gear, tau_ext)
     way = float(np.sign(tau + tau_ext / gear.ratio)) or 1.0
     viscous = gear.viscous
     left = way * (tau + tau_ext / gear.ratio) - gear.tau_c - gear.F_cl / gear.ratio
@@ -142,6 +145,7 @@ def _speed_without_ripple(gear: Gear, tau: float, tau_ext: float) -> tuple[float
             else "without viscous drag the speed under a constant torque grows without end"
         )
     omega = left / viscous
+    _refuse_speed(omega)
     for _ in range(MOST_STEPS):  # Newton from the fast side: the rising branch
         error = drag(gear, way * omega, tau_ext) - tau
         slope = viscous + float(friction(gear, np.array(omega), 1.0)[1])
@@ -154,9 +158,28 @@ def _speed_without_ripple(gear: Gear, tau: float, tau_ext: float) -> tuple[float
     return way, way * omega
 
 
+def refuse_load(gear: Gear, tau_ext: float) -> None:
+    """Raises NoSteadyState for a load that winds the gear up beyond any gear."""
+    if abs(tau_ext) > FURTHEST * gear.K:
+        raise NoSteadyState(
+            f"a load of {tau_ext:g} N·m winds the gear up by {abs(tau_ext) / gear.K:.3g} rad, its stiffness is "
+            f"{gear.K:.4g} N·m/rad; expected up to {FURTHEST * gear.K:.4g} N·m, which is {FURTHEST:g} rad"
+        )
+
+
+def _refuse_speed(omega: float) -> None:
+    if abs(omega) > FASTEST:
+        raise NoSteadyState(
+            f"the motor would turn at {abs(omega) / RPM:.3g} rpm; expected up to {FASTEST / RPM:g} rpm, more than any "
+            "such gear reaches"
+        )
+
+
 def _solve(gear: Gear, tau_ext: float, way: float, omega: float, tau: float | None) -> Waveform:
     if not (np.isfinite(omega) and omega != 0.0):
         raise NoSteadyState(f"a mean speed of {omega:g} rad/s is no turning gear")
+    refuse_load(gear, tau_ext)
+    _refuse_speed(omega)
     grid = grid_for(gear.kinematic_error)
     first = _linear(gear, grid, omega, tau_ext, way)
     torque = drag(gear, omega, tau_ext) if tau is None else tau
