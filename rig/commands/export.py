@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rig.commands.folders import expand, for_each, runs_argument
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit
+from rig.core.errors import Exit, UsageError
 
 FORMATS = ("csv", "mdf4", "mcap", "hdf5")  # as in rig.runfile.export, which is too heavy for --help
 
@@ -27,8 +27,12 @@ def run(args: argparse.Namespace) -> int:
     if args.to is not None:
         refuse_unwritable(args.to if args.to.is_dir() or not args.to.suffix else args.to.parent, "--to")
 
+    folders = expand(args.runs)
+    if len(folders) > 1 and args.to is not None and args.to.suffix and not args.to.is_dir():
+        raise UsageError(f"--to {args.to} is one file, and these are {len(folders)} runs: expected a folder")
+
     def export_one(folder: Path) -> Exit:
         print(export(Run.open(folder), args.kind, args.to))
         return Exit.PASS
 
-    return for_each(expand(args.runs), export_one)
+    return for_each(folders, export_one)
