@@ -116,6 +116,8 @@ def _time(result: Converted, table: Table, clock: ChannelMap, file: str) -> Arra
     found = timing.stamps(raw[keep], clock, clock.unit)
     result.utc, result.time = found.utc, {"first": found.first, **timing.facts(found.t)}
     result.notes += timing.notes(result.time)
+    if found.first and raw.dtype.kind != "M":
+        result.notes.append(f"t was moved to start at 0: the file's first stamp is {found.first:.9g} s")
     if raw.dtype.kind == "M":
         result.notes.append("t was dates; those without a time zone were read as UTC")
     result.channels["t"] = Channel(found.t, "s", clock.meaning or "time since the first row, as the logger stamped it")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,10 @@ def enough(rows: int, file: str) -> None:
 
 def not_numbers(raw: Array, column: str, file: str) -> UsageError:
     """The sentence for a column of text, dates or the like, showing the first cell that is no number."""
-    for row, cell in enumerate(raw.tolist()):
+    cells = raw.tolist()
+    if said := _two_decimals(cells):
+        return UsageError(f"{file}: column '{column}' is not numbers: {said}; expected one decimal character in all")
+    for row, cell in enumerate(cells):
         try:
             float(cell)
         except (TypeError, ValueError):
@@ -48,7 +51,23 @@ def not_numbers(raw: Array, column: str, file: str) -> UsageError:
             elif row == 0 and isinstance(cell, str) and known(cell):
                 hint = ", a unit; set [csv] units_row = true"
             return UsageError(f"{file}: column '{column}' is not numbers: row {row + 1} holds {cell!r}{hint}")
+    text = next(((row, cell) for row, cell in enumerate(cells, 1) if isinstance(cell, str)), None)
+    if text is not None:  # each would be a number where a point divides
+        return UsageError(
+            f"{file}: column '{column}' is not numbers: row {text[0]} holds {text[1]!r}; expected numbers as [csv] "
+            "decimal says"
+        )
     return UsageError(f"{file}: column '{column}' holds {raw.dtype}; expected numbers")
+
+
+def _two_decimals(cells: Sequence[Any]) -> str:
+    """The first number with a comma and the first with a point, in words; "" where there is one kind at most."""
+    first: dict[str, str] = {}
+    for row, cell in enumerate(cells, 1):
+        for mark in ",.":
+            if isinstance(cell, str) and cell.count(mark) == 1 and cell.replace(mark, "").strip(" +-").isdigit():
+                first.setdefault(mark, f"row {row} holds {cell!r}")
+    return " and ".join(first.values()) if len(first) > 1 else ""
 
 
 def holes(values: Array, bad: Array, name: str, column: str, file: str) -> None:

@@ -80,6 +80,7 @@ def test_the_manifest_notes_the_measured_ratio_the_jitter_and_the_stiffness(fore
     assert "theta_m turns 49.9965 times as far as theta_l (over 144 deg of load); gear.ratio = 50" in notes
     assert "stiffness of 2e+04 N·m/rad" in notes
     assert "gap" not in notes
+    assert "t was moved to start at 0: the file's first stamp is 5 s" in notes
 
 
 def test_a_gap_is_imported_and_noted_with_its_length(foreign: Foreign) -> None:

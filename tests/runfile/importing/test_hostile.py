@@ -116,6 +116,18 @@ def test_utf16_and_a_byte_order_mark_are_read(foreign: Foreign) -> None:
     assert foreign.imported(path).rows == 400
 
 
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_decimals_of_two_kinds_are_told_with_row_and_value(foreign: Foreign, decimal: str) -> None:
+    path = foreign.folder / "run.csv"
+    write_csv(path, columns(), delimiter=";", decimal=decimal)
+    lines = path.read_text().splitlines(keepends=True)
+    lines[3] = lines[3].replace(decimal, ",." [decimal == ","])
+    path.write_text("".join(lines))
+    said = foreign.refused(path, MAPPING + f'[csv]\ndelimiter = ";"\ndecimal = "{decimal}"\n')
+    assert f"column 'time' is not numbers: row 1 holds '5000{decimal}0' and row 3 holds '" in said
+    assert "object" not in said
+
+
 def test_decimal_commas_that_were_not_declared(foreign: Foreign) -> None:
     path = foreign.folder / "run.csv"
     write_csv(path, columns(), delimiter=";", decimal=",")
