@@ -127,7 +127,8 @@ def words(found: Round) -> str:
     errors = ", ".join(
         f"{word} {before[c]:.2f} → {after[c]:.2f}" for c, word in SENSOR_NAMES.items() if c in before and c in after
     )
-    runs = f"{counted(found.fitted, 'run')} fitted and {found.held_out} held out"
+    parts = f" ({counted(found.in_part, 'part')} of fitted runs among them)" if found.in_part else ""
+    runs = f"{counted(found.fitted, 'run')} fitted and {found.held_out} held out{parts}"
     return (
         f"round {found.number}, {found.minutes:.1f} min of rig time, {runs}: {found.status.replace('_', ' ')}\n"
         f"  {_said(found)}\n  held-out error over its floor: {errors}"

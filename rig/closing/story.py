@@ -12,6 +12,7 @@ from typing import Any
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.errors import RecorderError, UsageError
 from rig.runfile.manifest import contents, parse, told, write_atomic
@@ -60,6 +61,7 @@ class Round:
     plan: str = ""
     words: str = ""
     refused: str = ""
+    in_part: int = 0  # of the held-out ones: parts of runs that were fitted with the rest of them
 
 
 def left(found: Round) -> str:
@@ -95,6 +97,7 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
         sentence=found.verdict.sentence,
         fitted=len(found.fitted),
         held_out=len(found.held_out),
+        in_part=sum(name not in found.fitted and whole_run(name) in found.fitted for name in found.held_out),
         over_floor_before=found.ratios_before,
         over_floor_after=found.ratios_after,
         pooled_before=said["before"]["pooled"],

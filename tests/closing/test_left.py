@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -78,4 +79,10 @@ def test_what_is_said_of_a_round_names_every_channel_and_counts_in_words() -> No
         "Not all of it: the kinematic error stays at 1.50 times its floor and the shaft torque stays at 2.00 times its "
         "floor, and what that is, is not known."
     )
-    assert "1 run fitted and 1 held out" in words(told)
+    assert "1 run fitted and 1 held out:" in words(told)
+
+
+def test_parts_of_fitted_runs_are_told_so_that_the_numbers_add_up() -> None:
+    parted = replace(found(Status.EXPLAINED, {}), fitted=("slow", "lock"), held_out=("slow 2", "lock (part held out)"))
+    told = told_by(parted, 1, (), 1.0)
+    assert "2 runs fitted and 2 held out (1 part of fitted runs among them)" in words(told)

@@ -67,6 +67,12 @@ def render(story: Mapping[str, Any]) -> str:
     return environment(HERE).get_template("page.html").render(view)
 
 
+def _parts(r: Mapping[str, Any]) -> str:
+    """That some of the held-out ones were fitted with their rest; nothing of a story written before that was told."""
+    parts = r.get("in_part", 0)
+    return f" ({counted(parts, 'part')} of fitted runs)" if parts else ""
+
+
 def _round(r: Mapping[str, Any], last: Mapping[str, Any] | None) -> dict[str, Any]:
     before, after = r["over_floor_before"], r["over_floor_after"]
     ratios = [(word, before[c], after[c]) for c, word in SENSOR_NAMES.items() if c in before and c in after]
@@ -75,7 +81,7 @@ def _round(r: Mapping[str, Any], last: Mapping[str, Any] | None) -> dict[str, An
         "status": r["status"].replace("_", " "),
         "minutes": r["minutes"],
         "made": r["made"],
-        "runs": f"{counted(r['fitted'], 'run')} fitted, {r['held_out']} held out",
+        "runs": f"{counted(r['fitted'], 'run')} fitted, {r['held_out']} held out{_parts(r)}",
         "sentence": r["sentence"],
         "named": ", ".join(humanise(e).lower() for e in r["effects"]) or "–",
         "cells": {word: f"{a:.2f} → {b:.2f}" for word, a, b in ratios},

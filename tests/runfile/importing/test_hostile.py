@@ -121,7 +121,7 @@ def test_decimals_of_two_kinds_are_told_with_row_and_value(foreign: Foreign, dec
     path = foreign.folder / "run.csv"
     write_csv(path, columns(), delimiter=";", decimal=decimal)
     lines = path.read_text().splitlines(keepends=True)
-    lines[3] = lines[3].replace(decimal, ",." [decimal == ","])
+    lines[3] = lines[3].replace(decimal, ",."[decimal == ","])
     path.write_text("".join(lines))
     said = foreign.refused(path, MAPPING + f'[csv]\ndelimiter = ";"\ndecimal = "{decimal}"\n')
     assert f"column 'time' is not numbers: row 1 holds '5000{decimal}0' and row 3 holds '" in said
