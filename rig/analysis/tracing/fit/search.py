@@ -29,6 +29,7 @@ class Scored:
     evidence: float
     drop: float
     size: float  # RMS over floor where it matters most
+    laws: tuple[Term, ...] = ()  # others of the same effect with nearly as much
 
 
 @dataclass(frozen=True)
@@ -236,10 +237,14 @@ def _same(a: Term, b: Term) -> bool:
 
 
 def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
-    best: dict[str, Scored] = {}
+    """The best shape of each effect, with those of its other laws that have nearly as much evidence."""
+    best: dict[str, list[Scored]] = {}
     for r in ranked:
-        best.setdefault(r.term.name, r)
-    return tuple(best.values())
+        mine = best.setdefault(r.term.name, [])
+        near = not mine or r.evidence > NEARLY * mine[0].evidence
+        if near and len(mine) < CLOSEST and all(_chosen(r.term) != _chosen(other.term) for other in mine):
+            mine.append(r)
+    return tuple(replace(first, laws=tuple(r.term for r in others)) for first, *others in best.values())
 
 
 def _pruned(s: Solution) -> Solution:

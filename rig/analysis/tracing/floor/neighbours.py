@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -21,14 +21,17 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
         return None
     theta = eq.rows[key].theta_m
     parts = strokes(theta)
-    if len(parts) >= 3:
-        made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
-    else:
-        made = [against_both(theta[p], e[key][p]) for p in parts]
-    d = np.concatenate([m - m.mean() for m in made if m.size]) if any(m.size for m in made) else np.zeros(0)
+    d = _joined([compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)])
+    if d.size < FLOOR_LEAST / 4:  # one way once, or on either side of where it began, as one cycle about zero goes
+        d = _joined([against_both(theta[p], e[key][p]) for p in parts])
     if d.size < FLOOR_LEAST / 4:
         return None
     return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d), freedom(d))
+
+
+def _joined(made: Sequence[Array]) -> Array:
+    """Differences of all parts, each about its own mean."""
+    return np.concatenate([np.zeros(0), *(d - d.mean() for d in made if d.size)])
 
 
 def against_both(theta: Array, e: Array) -> Array:

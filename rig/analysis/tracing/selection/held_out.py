@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
-from rig.analysis.tracing.fit.covariance import scatter
+from rig.analysis.tracing.fit.covariance import inverse, scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
-from rig.analysis.tracing.selection.inferred import beside_series, is_inferred
+from rig.analysis.tracing.selection.uncertain import beside, is_inferred
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED
 from rig.model.effect import Array
 
@@ -31,10 +31,13 @@ class HeldOut:
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
-        what is not known of a kinematic error that nobody read."""
+        what is not known of a kinematic error that nobody read, nor of the inertia where the motor turns back."""
         e = {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
-        known = scatter(s) if self.inferred else np.zeros((0, 0))
-        return e | {key: beside_series(e[key], d, key, known, self.floors[key]) for key in self.inferred & e.keys()}
+        turned = [key for key in e if key[1] == "R"]
+        known = scatter(s) if self.inferred & e.keys() else np.zeros((0, 0))
+        rough = inverse(s.gram) if turned else known
+        e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in self.inferred & e.keys()}
+        return e | {key: beside(e[key], d, key, rough, self.floors[key]) for key in turned}
 
     def _beside_gain(self, key: Key, e: Array, d: Design) -> Array:
         if key not in self.gains:

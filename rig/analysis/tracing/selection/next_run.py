@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.bank import reach
+from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
@@ -48,10 +49,15 @@ class Alone:
 
 
 def _alone(p: Prepared, candidate: Scored) -> Alone | None:
-    """None where its law cannot be such an effect's."""
+    """Of its laws the one that explains most; None where none can be such an effect's."""
+    made = [alone for term in (candidate.term, *candidate.laws) if (alone := _by_law(p, term)) is not None]
+    return max(made, key=lambda alone: alone.gain, default=None)
+
+
+def _by_law(p: Prepared, law: Term) -> Alone | None:
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
-    s = refine(p.baseline.design, candidate.term, runs, covered)[1]
+    s = refine(p.baseline.design, law, runs, covered)[1]
     term = s.design.terms[0]
     if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
         return None

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
-from rig.analysis.tracing.selection.inferred import beside_series, is_inferred
+from rig.analysis.tracing.selection.uncertain import beside, is_inferred
 
 THETA = np.linspace(-1.0, 1.0, 2000)
 FLOOR = 4e-6  # rad
@@ -36,7 +36,7 @@ def test_what_the_orders_are_not_known_to_is_no_residual_and_what_they_are_known
     """A wave of order 2 that the fit has 20 µrad wrong; once it is as unsure as that, once it is sure."""
     d = block({"a2": np.cos(2 * THETA), "compliance": THETA})
     e = 2e-5 * (np.cos(2 * THETA) - np.cos(2 * THETA).mean())
-    rest = beside_series(e, d, KEY, known_to(a2=sigma), FLOOR)
+    rest = beside(e, d, KEY, known_to(a2=sigma), FLOOR)
     assert np.std(rest) <= left * np.std(e) * (1 + 1e-9)
     assert np.std(rest) >= (0.0 if sigma else 1.0) * np.std(e) * (1 - 1e-9)
 
@@ -46,7 +46,7 @@ def test_a_loop_that_no_order_makes_stays() -> None:
     way = np.concatenate((THETA, THETA[::-1]))
     loop = 2e-5 * np.concatenate((np.ones(THETA.size), -np.ones(THETA.size)))
     d = block({"a2": np.cos(2 * way), "b1": np.sin(way)})
-    assert np.std(beside_series(loop, d, KEY, known_to(a2=1e-4, b1=1e-4), FLOOR)) == pytest.approx(2e-5, rel=1e-3)
+    assert np.std(beside(loop, d, KEY, known_to(a2=1e-4, b1=1e-4), FLOOR)) == pytest.approx(2e-5, rel=1e-3)
 
 
 def test_the_motors_torque_and_lock_tests_lean_on_orders_where_no_load_angle_was_read() -> None:

@@ -1,8 +1,9 @@
-"""Without a load encoder: a kinematic error that was inferred, not read, is not held against unseen runs.
+"""What the fit itself does not know is not held against unseen runs.
 
-Its orders are then known by the torques they cause at speed alone, far worse than runs repeat. They are all that θ̃ is
-over the few degrees that a locked motor turns, and under load their slope is the lever by which the torque reaches the
-motor. What their own uncertainty allows there is no residual.
+Without a load encoder the orders of the kinematic error are known by the torques they cause at speed alone, far worse
+than runs repeat. They are all that θ̃ is over the few degrees that a locked motor turns, and under load their slope is
+the lever by which the torque reaches the motor. And where all runs turn at one speed the motor's inertia shows at
+reversals alone, whose rows are not fitted. What their own uncertainty allows there is no residual.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from rig.model.effect import Array
 
 PIECES: Final = 50  # of a run that its floor counts as independent: its rows follow one another too closely
 SERIES: Final = [INDEX[f"{part}{n}"] for part in "ab" for n in range(1, ORDERS + 1)]
+INERTIA: Final = [INDEX["J_m"]]
 
 
 def is_inferred(eq: Equations, key: Key) -> bool:
@@ -28,15 +30,16 @@ def is_inferred(eq: Equations, key: Key) -> bool:
     return leans and "theta_l" not in eq.runs[run].has
 
 
-def beside_series(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Array:
-    """What is left of `e` (n,) when the orders of θ̃_p may move as their `covariance` (p, p) lets them: the ridge of
-    Bayes with a floor of `floor`."""
+def beside(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Array:
+    """What is left of `e` (n,) when the orders of θ̃_p, or the motor's inertia at reversals, may move as their
+    `covariance` (p, p) lets them: the ridge of Bayes with a floor of `floor`."""
     baseline = d.parts[key][0]
-    mine = [i for i, at in enumerate(baseline.at) if at in SERIES]
+    free = INERTIA if key[1] == "R" else SERIES
+    mine = [i for i, at in enumerate(baseline.at) if at in free]
     columns = np.asarray(baseline.z.whole(), dtype=np.float64)[:, mine]
     columns = columns - columns.mean(0)
     prior = covariance[np.ix_(baseline.at[mine], baseline.at[mine])]
-    weight = PIECES / (e.size * floor**2)
+    weight = min(PIECES, e.size) / (e.size * floor**2)
     # (P⁻¹ + w·ZᵀZ)⁻¹·w·Zᵀe without the inverse of a prior that may be singular
     moved = np.linalg.solve(
         np.eye(len(mine)) + weight * prior @ (columns.T @ columns), weight * prior @ (columns.T @ e)
