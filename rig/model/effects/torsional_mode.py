@@ -211,14 +211,18 @@ class TorsionalMode(Effect):
         )
 
     def _of_hub(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
+        """Without a frequency where 1/ω² may as well be nothing: the hub is stiff, as far as can be told."""
         inertia, square = fit.coefficients[:2]
-        frequency = 1.0 / (2.0 * np.pi * np.sqrt(max(square, 1e-12)))
-        half = fit.half_width(by[1] * frequency / (2.0 * max(square, 1e-12)))
-        return (
-            parameter("J_2", inertia, fit.half_width(by[0]), "kg·m²"),
-            parameter("frequency", frequency, half, "Hz"),
-        )
+        turned = (parameter("J_2", inertia, fit.half_width(by[0]), "kg·m²"),)
+        if square <= fit.half_width(by[1]):
+            return turned
+        frequency = 1.0 / (2.0 * np.pi * np.sqrt(square))
+        half = fit.half_width(by[1] * frequency / (2.0 * square))
+        return (*turned, parameter("frequency", frequency, half, "Hz"))
 
     def plausible(self, fit: Fit) -> bool:
-        """An inertia is positive, and so is a compliance."""
-        return bool(np.all(fit.coefficients[:2] > 0))
+        """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared."""
+        inertia, *others = fit.coefficients[:2]
+        if fit.shape[0] == HUB:
+            return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
+        return bool(inertia > 0 and all(x > 0 for x in others))
