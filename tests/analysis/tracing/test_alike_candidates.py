@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.search import Scored
 from rig.model.effects.cogging_torque import CoggingTorque
 from rig.model.effects.support_compliance import SupportCompliance
-from rig.model.effects.torsional_mode import DRIVEN, LOAD, TorsionalMode
+from rig.model.effects.torsional_mode import DRIVEN, LOAD, MOTOR, TorsionalMode
 
 SUPPORT = Term(SupportCompliance(), (0.0, 69.0, 0.05))
 MODE, SAME_MODE = (Term(TorsionalMode(), (LOAD, hz, 0.04, 0.0)) for hz in (50.0, 54.0))
@@ -48,3 +48,15 @@ def test_one_law_of_each_that_is_nearly_as_good_is_refined(tried: list[Term]) ->
 def test_what_is_far_ahead_is_refined_alone(tried: list[Term]) -> None:
     assert chosen((SUPPORT, 2443.0), (DRIVEN_MODE, 1500.0)) == SUPPORT
     assert tried == [SUPPORT]
+
+
+def test_an_effect_keeps_those_of_its_laws_that_explain_nearly_as_much() -> None:
+    """A rival is asked in each of them: which is best shows once their shapes are refined."""
+    ranked = [
+        Scored(t, e, 2 * e, 1.0) for t, e in ((SUPPORT, 802.0), (MODE, 717.0), (SAME_MODE, 700.0), (DRIVEN_MODE, 663.0))
+    ]
+    support, mode = search._best_of_each(
+        [*ranked, Scored(Term(TorsionalMode(), (MOTOR, 50.0, 0.04, 0.0)), 300.0, 1.0, 1.0)]
+    )
+    assert (support.term, support.laws) == (SUPPORT, ())
+    assert (mode.term, mode.laws) == (MODE, (DRIVEN_MODE,))

@@ -1,8 +1,12 @@
 """The floor is the noise of one run, whatever the repeats have in common and however they drift apart in time."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.floor.neighbours import neighbours
 from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns, strokes
 
 
@@ -23,6 +27,16 @@ def test_strokes_are_compared_with_strokes_of_their_own_direction(rng: np.random
     backlash = np.where(np.gradient(theta) > 0, 5.0, -5.0)
     d = compare(theta, backlash + _noise(rng, theta.size, 0.1), theta, backlash + _noise(rng, theta.size, 0.1))
     assert np.sqrt(np.mean(d**2)) < 0.5  # far below the 10 between directions
+
+
+def test_one_cycle_about_where_it_began_is_compared_turn_by_turn(rng: np.random.Generator) -> None:
+    """Up, down past the start, up to it again: the two ways up share no angle."""
+    theta = np.concatenate([np.linspace(0, 25, 3000), np.linspace(25, -25, 6000), np.linspace(-25, 0, 3000)])
+    e = np.sin(2 * theta) + _noise(rng, theta.size, 0.1)
+    eq: Any = SimpleNamespace(rows={(0, "M"): SimpleNamespace(theta_m=theta)})
+    found = neighbours(eq, {(0, "M"): e}, (0, "M"))
+    assert found is not None
+    assert found.rms == pytest.approx(0.1, rel=0.05)
 
 
 def test_slow_noise_has_fewer_independent_rows(rng: np.random.Generator) -> None:

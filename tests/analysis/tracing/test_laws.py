@@ -155,6 +155,18 @@ def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> Non
     np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
 
 
+@pytest.mark.parametrize(("square", "told"), [(2.8e-6, True), (-1.1e-6, False), (4e-7, False)])
+def test_a_hub_on_a_spring_too_stiff_to_be_seen_has_an_inertia_and_no_frequency(square: float, told: bool) -> None:
+    """1/ω² known to ±1e-6 s²; the spring's frequency is told where that is not nothing."""
+    spread = np.diag([1e-3, 0.5e-6, 0.0, 0.0, 0.0, 0.0]) ** 2
+    fit = Fit(np.array([0.06, square]), (HUB, 71.0, 0.04, 0.0), spread, KNOWN, N)
+    law = TorsionalMode()
+    assert law.plausible(fit)
+    assert [p.name for p in law.parameters(fit)] == ["J_2", *(["frequency"] if told else [])]
+    assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([0.06, -9e-6])))
+    assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([-0.06, square])))
+
+
 @pytest.mark.parametrize("side", [MOTOR, OUTPUT])
 def test_a_modulated_spring_pushes_the_shaft_whose_angle_it_follows(side: float) -> None:
     """−∂/∂θ of ½·T²/K(θ) at constant torque, by finite differences: what resists is its negative."""
