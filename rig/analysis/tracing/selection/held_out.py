@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
-from rig.analysis.tracing.fit.covariance import inverse, scatter
+from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.fit.model import Design, Solution, design, inverse
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
 from rig.analysis.tracing.selection.uncertain import beside, is_inferred
