@@ -115,8 +115,10 @@ class Equations:
         return np.asarray(x - self.share_of_mean(key, x.shape[0]) * x.mean(0))
 
     def share_of_mean(self, key: Key, n: int) -> float:
-        """How much of the mean of `n` rows of a block is the run's own."""
-        free = key[1] == "A" and self.runs[key[0]].locked
+        """How much of the mean of `n` rows of a block is the run's own: all of a load's torque where nobody says what
+        hung on it."""
+        run = self.runs[key[0]]
+        free = (key[1] == "A" and run.locked) or (key[1] == "L" and not run.load_known)
         return 1.0 if free else self.noise.pull(key[1], n)
 
     def bare(self, key: Key, x: Array) -> Array:

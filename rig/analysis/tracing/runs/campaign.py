@@ -14,6 +14,7 @@ from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
+from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
@@ -76,6 +77,8 @@ def read_campaign(folder: Path) -> Campaign:
     for sort in (_odd, _lacking, _same_gear):
         runs, odd = sort(runs)
         out += odd
+    runs, carrying = weighed(runs)
+    out += carrying
     notes = unfit + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")

@@ -55,6 +55,8 @@ class Recording(Once):
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
     look: Look = field(default_factory=Look)  # what of it is looked at
+    load_stated: bool = True  # whether the manifest says what hangs on the output
+    load_known: bool = True  # but for friction; else the mean of its shaft torque is its own
 
     @property
     def knows(self) -> frozenset[str]:
@@ -135,6 +137,7 @@ def record(whole_run: Run, start: float) -> Recording:
         notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
+        load_stated=run.conditions.get("tau_ext") is not None,
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
     )
 
