@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor.neighbours import neighbours
+from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns, strokes
 
 
@@ -34,7 +34,8 @@ def test_one_cycle_about_where_it_began_is_compared_turn_by_turn(rng: np.random.
     theta = np.concatenate([np.linspace(0, 25, 3000), np.linspace(25, -25, 6000), np.linspace(-25, 0, 3000)])
     e = np.sin(2 * theta) + _noise(rng, theta.size, 0.1)
     eq: Any = SimpleNamespace(rows={(0, "M"): SimpleNamespace(theta_m=theta)})
-    found = neighbours(eq, {(0, "M"): e}, (0, "M"))
+    assert neighbours(eq, {(0, "M"): e}, (0, "M")) is None
+    found = turn_by_turn(eq, {(0, "M"): e}, (0, "M"))
     assert found is not None
     assert found.rms == pytest.approx(0.1, rel=0.05)
 

@@ -9,7 +9,7 @@ from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.rest.joined import _elsewhere
 
-KEY = (0, "L")
+KEY = (0, "M")
 
 
 def block(rng: np.random.Generator, own: int) -> Rows:
@@ -23,7 +23,7 @@ def block(rng: np.random.Generator, own: int) -> Rows:
 @pytest.mark.parametrize("own", [0, 2])
 def test_products_are_those_of_bare_columns(rng: np.random.Generator, local: float, own: int) -> None:
     r = block(rng, own)
-    eq = Equations((), {KEY: r}, Noise({"L": 0.1}, {"L": 2.0}, {"L": local}))
+    eq = Equations((), {KEY: r}, Noise({"M": 0.1}, {"M": 2.0}, {"M": local}))
     bare = eq.bare(KEY, r.z)
     gram, right = eq.products(KEY)
     np.testing.assert_allclose(gram, bare.T @ bare, rtol=1e-9, atol=1e-6)
@@ -32,9 +32,9 @@ def test_products_are_those_of_bare_columns(rng: np.random.Generator, local: flo
 
 
 def test_what_other_blocks_know_is_the_sum_of_what_their_bare_columns_do(rng: np.random.Generator) -> None:
-    keys = [(0, "L"), (1, "L")]
+    keys = [(0, "M"), (1, "M")]
     rows = dict(zip(keys, (block(rng, 0), block(rng, 2)), strict=True))
-    eq = Equations((), rows, Noise({"L": 0.1}, {"L": 2.0}, {"L": np.inf}))
+    eq = Equations((), rows, Noise({"M": 0.1}, {"M": 2.0}, {"M": np.inf}))
     bare = [eq.bare(key, rows[key].z) for key in keys]
     known = _elsewhere(eq, keys)[:4, :4]
     np.testing.assert_allclose(known, sum(50.0 * z.T @ z for z in bare), rtol=1e-9, atol=1e-4)

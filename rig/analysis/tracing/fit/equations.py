@@ -117,9 +117,10 @@ class Equations:
     def share_of_mean(self, key: Key, n: int) -> float:
         """How much of the mean of `n` rows of a block is the run's own: all of a load's torque where nobody says what
         hung on it."""
-        run = self.runs[key[0]]
-        free = (key[1] == "A" and run.locked) or (key[1] == "L" and not run.load_known)
-        return 1.0 if free else self.noise.pull(key[1], n)
+        run, channel = key
+        free = channel == "A" and self.runs[run].locked
+        free = free or (channel == "L" and not self.runs[run].load_known)
+        return 1.0 if free else self.noise.pull(channel, n)
 
     def bare(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) without what the run has to itself."""

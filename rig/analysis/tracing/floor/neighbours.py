@@ -21,17 +21,28 @@ def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | Non
         return None
     theta = eq.rows[key].theta_m
     parts = strokes(theta)
-    d = _joined([compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)])
-    if d.size < FLOOR_LEAST / 4:  # one way once, or on either side of where it began, as one cycle about zero goes
-        d = _joined([against_both(theta[p], e[key][p]) for p in parts])
+    if len(parts) < 3:
+        return turn_by_turn(eq, e, key)
+    return _scatter(
+        key, [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
+    )
+
+
+def turn_by_turn(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
+    """Every turn of a single run against those before and after it: where one way is gone once, or on either side of
+    where it began, as one cycle about zero goes."""
+    if key not in e:
+        return None
+    theta = eq.rows[key].theta_m
+    return _scatter(key, [against_both(theta[p], e[key][p]) for p in strokes(theta)])
+
+
+def _scatter(key: Key, made: Sequence[Array]) -> Scatter | None:
+    """Of the differences of all parts, each about its own mean."""
+    d = np.concatenate([np.zeros(0), *(d - d.mean() for d in made if d.size)])
     if d.size < FLOOR_LEAST / 4:
         return None
     return Scatter((key[0], key[0]), float(np.sqrt(np.mean(d**2))), d.size, 0.0, autocorrelation(d), freedom(d))
-
-
-def _joined(made: Sequence[Array]) -> Array:
-    """Differences of all parts, each about its own mean."""
-    return np.concatenate([np.zeros(0), *(d - d.mean() for d in made if d.size)])
 
 
 def against_both(theta: Array, e: Array) -> Array:

@@ -11,7 +11,7 @@ from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.homed import about_a_line
-from rig.analysis.tracing.floor.neighbours import neighbours
+from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, repeats, scatter
@@ -58,6 +58,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
         if not found:
             found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
+            found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
             words = (
                 f"neighbouring turns or strokes of {len(found)} runs compared at equal motor angle, no repeats there"
             )
