@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 
-from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.run import check_facts, settle
 from rig.closing.loop import Closing
@@ -22,12 +21,12 @@ def conduct(closing: Closing) -> Exit:
     """
     session, journal = closing.session, closing.journal
     session.facts = check_facts(journal)
-    exit, status, sentence = Exit.INTERNAL, "failed", "an internal error ended it"
+    exit, status, sentence, close = Exit.INTERNAL, "failed", "an internal error ended it", journal.fail
     try:
         settle(session, journal, closing.desk)
         story = closing.close()
         exit, sentence = EXITS.get(story.end, Exit.INCOMPLETE), story.sentence
-        status = "stopped" if story.end is End.STOPPED else "completed"
+        status, close = "stopped" if story.end is End.STOPPED else "completed", journal.close
     except HdrigError as error:
         if not came_to_something(journal):
             raise
@@ -37,10 +36,6 @@ def conduct(closing: Closing) -> Exit:
         with contextlib.suppress(RecorderError):  # a full disk: what ended it is what is told
             closing.ended(End.STOPPED, sentence)
     finally:
-        _close(journal, status, sentence)
+        count = ", ".join(f"{number} {what}" for what, number in journal.count().items())
+        close(status, f"{count}; {sentence}")
     return exit
-
-
-def _close(journal: Journal, status: str, sentence: str) -> None:
-    count = ", ".join(f"{number} {what}" for what, number in journal.count().items())
-    (journal.fail if status == "failed" else journal.close)(status, f"{count}; {sentence}")

@@ -1,5 +1,4 @@
-"""What a killed program left → a readable run. Never "completed": a run found dead is interrupted, or tripped where its
-events say so."""
+"""What a killed program left → a readable run. Never "completed": a run found dead is interrupted."""
 
 from __future__ import annotations
 
@@ -52,13 +51,13 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     ratio_of(folder, about)
     _refuse_empty(folder, about)
     _refuse_living(folder, about)
-    status, reason = _end(folder, about)
+    reason = _reason(folder, about)
     with manifest.told(DataError, f"{folder} cannot be recovered"):
         mend_events(folder)
         if "events.jsonl" not in about.get("files", {}):  # entered already: its hash is taken
             with EventLog(folder) as events:
                 events.write("recover", reason)
-    closed = finalise(folder, status, reason, step=step)
+    closed = finalise(folder, "interrupted", reason, step=step)
     return Recovery(closed.rows, closed.seconds, True, _told(folder, closed))
 
 
@@ -101,21 +100,8 @@ def _recorder_of(folder: Path, path: Path, loop: Process | None) -> Process:
     return Process(pid=pid, started=started, host=str(loop.get("host", "")) if loop else "")
 
 
-def _end(folder: Path, about: Mapping[str, Any]) -> tuple[str, str]:
-    """What is known of the end: status and reason. A trip was written down as it came; why the folder was not closed
-    after it, a full disk or a kill, nobody knows any more.
-    """
-    closing = about.get("closing") or {}
-    if closing.get("status") == "tripped":
-        return "tripped", str(closing.get("reason"))
-    trips = [str(e.get("text")) for e in read_events(folder) if e.get("kind") == "trip" and e.get("t") is not None]
-    if trips:  # those without a time were before this run
-        return "tripped", trips[0].removeprefix(FAULT)
-    return "interrupted", _reason(about)
-
-
-def _reason(about: Mapping[str, Any]) -> str:
-    """What is known of an end that was no trip."""
+def _reason(folder: Path, about: Mapping[str, Any]) -> str:
+    """What is known of the end."""
     closing, said = about.get("closing"), about.get("exit_reason")
     if about.get("status") != "running" and said:
         return str(said)  # the recorder outlived the loop and said so
@@ -124,7 +110,11 @@ def _reason(about: Mapping[str, Any]) -> str:
         return f"killed while its files were being closed; the run itself was {was}"
     if closing:
         return str(closing.get("reason"))
-    return f"the program was killed or the power failed; found dead and recovered {manifest.utc_now()}"
+    found = f"found dead and recovered {manifest.utc_now()}"
+    trips = [str(e.get("text")) for e in read_events(folder) if e.get("kind") == "trip" and e.get("t") is not None]
+    if trips:  # those without a time were before this run
+        return f"it had tripped, and its files were not closed after that: {trips[0].removeprefix(FAULT)}; {found}"
+    return f"the program was killed or the power failed; {found}"
 
 
 def _told(folder: Path, closed: Closed) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -24,6 +25,11 @@ def believed(run: Source) -> Known:
     """The gear as declared, to begin with; a paper-sized one where nothing is."""
     said = {name: abs(stated(run.declared, name, getattr(UNKNOWN, name))) for name in ("K", "J_m", "J_l")}
     return replace(UNKNOWN, K=said["K"], J_m=said["J_m"], J_l=said["J_l"])
+
+
+def states(table: Mapping[str, Any], name: str) -> bool:
+    """Whether a manifest states a number, zero among them."""
+    return math.isfinite(numbers.stated(table.get(name)))
 
 
 def stated(table: Mapping[str, Any], name: str, default: float) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import RATIOS, Tame
-from rig.analysis.tracing.runs.declared import believed, is_locked, stated
+from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.meanings import computed_torque
@@ -137,7 +137,7 @@ def record(whole_run: Run, start: float) -> Recording:
         notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
-        load_stated=run.conditions.get("tau_ext") is not None,
+        load_stated=states(run.conditions, "tau_ext"),
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
     )
 

@@ -31,7 +31,7 @@ def weighed(runs: Sequence[Recording]) -> tuple[list[Recording], list[Said]]:
     heavy = [r for r in unsaid if abs(r.mean_torque) > LEAST + friction * _one_way(r)]
     weights = _in_groups({r.name: -r.mean_torque for r in heavy})
     said = [
-        Said(name, "", f"its conditions.tau_ext is not stated; the shaft torque says about {weight:.3g} N·m")
+        Said(name, "", f"its conditions.tau_ext is not stated; the shaft torque says {weight:.3g} N·m, friction in it")
         for name, weight in weights.items()
     ]
     return [_carrying(r, weights[r.name]) if r.name in weights else r for r in runs], said

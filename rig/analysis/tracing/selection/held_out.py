@@ -33,11 +33,13 @@ class HeldOut:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
         what is not known of a kinematic error that nobody read, nor of the inertia where the motor turns back."""
         e = {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
-        turned = [key for key in e if key[1] == "R"]
-        known = scatter(s) if self.inferred & e.keys() else np.zeros((0, 0))
-        rough = inverse(s.gram) if turned else known
-        e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in self.inferred & e.keys()}
-        return e | {key: beside(e[key], d, key, rough, self.floors[key]) for key in turned}
+        if inferred := self.inferred & e.keys():
+            known = scatter(s)
+            e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in inferred}
+        if turned := [key for key in e if key[1] == "R"]:
+            known = inverse(s.gram)  # rougher, but most campaigns have reversals, and a scatter takes all rows
+            e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in turned}
+        return e
 
     def _beside_gain(self, key: Key, e: Array, d: Design) -> Array:
         if key not in self.gains:
