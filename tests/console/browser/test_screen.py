@@ -13,6 +13,7 @@ from tests.console.browser.puppet import BENCH, RUN, Puppet
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
 SCREENS = {"a wall": (1920, 1080), "a desk": (1600, 900), "a tablet": (1024, 768)}
+NARROW = {"half a desk": (800, 900), "a small desk": (1280, 800), "a little wider": (1300, 850)}
 UNITS = r"(arcsec|deg|rpm|N·m|µs|ticks?|ms|s|%)"
 SCROLLS = "[document.body.scrollHeight > innerHeight, document.body.scrollWidth > innerWidth]"
 PAINTED = """node => {
@@ -24,6 +25,21 @@ PAINTED = """node => {
 TEXTS = ("#state", "#fault", "#halt b", ".tile dt", ".tile .basis", ".summary", "#steps .said", "#bench")
 TOUCH = 44  # px, the least a finger hits
 
+WORDS = ".tile :is(dt, .value, .basis), .pick button, .chart .legend, .key, #run-time"
+CUT = """words => [...document.querySelectorAll(words)]
+  .filter(one => one.checkVisibility())
+  .filter(one => {
+    const [box, room] = [one, one.closest('.chart, .tile, .progress, .pick')].map(it => it.getBoundingClientRect());
+    return one.scrollWidth > one.clientWidth + 1 && one.clientWidth || box.right > room.right + 1;
+  }).map(one => one.textContent)"""
+COVERED = """() => {
+  const over = document.getElementById('stale').getBoundingClientRect();
+  return [...document.querySelectorAll('.bar, #now, .progress, .tile, #halt, .gentle button, .chart')]
+    .map(one => [one.id || one.className, one.getBoundingClientRect()])
+    .filter(([, box]) => box.top < over.bottom - 1 && box.bottom > over.top + 1)
+    .filter(([, box]) => box.left < over.right - 1 && box.right > over.left + 1)
+    .map(([name]) => name);
+}"""
 WRITTEN = """() => {
   window.written = [];
   const plain = CanvasRenderingContext2D.prototype.fillText;
@@ -75,6 +91,35 @@ def test_what_is_written_along_an_axis_fits_it_and_every_axis_has_numbers_on_it(
         assert {text: share for text, share in written.items() if share > 1.0} == {}, name
         assert "θ̃ about its mean, arcsec at the output" in written
         assert {"2", "4"} <= set(written) or {"1", "2"} <= set(written), f"orders have no numbers on {name}"
+
+
+def test_no_name_number_or_legend_is_cut_off_on_any_screen(page: Page, station: Puppet) -> None:
+    _running(station)
+    in_state(page, "running")
+    t, n = np.linspace(0.0, 60.0, 2000), 2000
+    rows = {"motor_angle": 150_000.0 - 60 * t, "speed": -0 * t - 599.6, "tau_m": 0 * t - 4.6, "tau_l": 0 * t - 44.05}
+    station.show({"t": t, **rows, "kinematic_error": np.zeros(n), "following": np.zeros(n)})
+    page.wait_for_selector("[data-tile=speed]:has-text('599.6')")
+    for name, (width, height) in {**SCREENS, **NARROW}.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(200)
+        assert page.evaluate(CUT, WORDS) == [], name
+
+
+@pytest.mark.parametrize("fault", [None, "following error 12.4 deg"])
+def test_what_says_stale_covers_nothing_and_moves_no_halt(page: Page, station: Puppet, fault: str | None) -> None:
+    station.tell(state="fault" if fault else "running", bench=BENCH, run=RUN, fault=fault)
+    in_state(page, "fault" if fault else "running")
+    for name, (width, height) in {**SCREENS, **NARROW}.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_selector("#stale", state="hidden")
+        before = page.locator("#halt").bounding_box()
+        station.silent = True
+        page.wait_for_selector("#stale", state="visible")
+        assert page.evaluate(COVERED) == [], name
+        assert page.evaluate(SCROLLS) == [False, False], name
+        assert page.locator("#halt").bounding_box() == before, name
+        station.silent = False
 
 
 def test_every_button_and_field_is_large_enough_for_a_finger(page: Page, station: Puppet) -> None:
