@@ -72,6 +72,7 @@ def test_mdf4_has_every_channel_with_unit_and_meaning_and_marks_what_was_not_mea
             np.testing.assert_array_equal(signal.samples, values[there], err_msg=name)
             np.testing.assert_array_equal(signal.timestamps, expected(ROWS)["t"][there])
             assert (signal.unit, signal.comment) == (CHANNEL[name].unit, CHANNEL[name].meaning)
+        assert mdf.groups[0].channels[mdf.masters_db[0]].name == "t"  # as in every other export
         assert mdf.header.description.startswith("SIMULATED") is run.simulated
         assert (mdf.header.author, mdf.header.subject) == ("N. N.", "SN0042")
         assert mdf.header.start_time.isoformat() == STARTED

@@ -18,6 +18,8 @@ from rig.runfile.run import Run
 VERSION = "4.10"  # what CANape, DIAdem and MDA of the last ten years read
 COMPRESSION = 2  # transposed deflate: a quarter of the size
 
+MASTER = ("t", 1)  # name of the time channel as in every other export (asammdf would say `time`); 1: it is a time
+
 Column = tuple[Array, Array]  # values, and where they are invalid
 
 
@@ -48,7 +50,8 @@ def _head(mdf: Any, run: Run) -> None:
 
 def _signal(run: Run, name: str, t: Array, column: Column) -> Any:
     values, invalid = column
-    return Signal(values, t, run.unit(name), name, comment=run.meaning(name), invalidation_bits=invalid)
+    said = {"comment": run.meaning(name), "master_metadata": MASTER}
+    return Signal(values, t, run.unit(name), name, invalidation_bits=invalid, **said)
 
 
 def _blocks(run: Run, names: list[str]) -> Iterator[tuple[Array, list[Column]]]:
