@@ -17,6 +17,7 @@ from rig.commands.ask_twin import understood
 from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
 from sim.wire.control import describe, perform
+from sim.wire.faults import fault_verbs
 from sim.wire.reactor import Reactor
 from sim.wire.verbs import plant_verbs
 from tests.drivers.virtual import wired
@@ -26,7 +27,9 @@ from tests.drivers.virtual import wired
 def twin(tmp_path: Path) -> Iterator[Assembly]:
     """A twin whose command channel is `control` in the test's folder; one line a client."""
     assembly = wired().twin
-    verbs = {**plant_verbs(assembly, Reactor(assembly.agenda)), "help": lambda: describe(verbs)}
+    faults = fault_verbs(assembly, Reactor(assembly.agenda), {}, {})
+    own = plant_verbs(assembly, Reactor(assembly.agenda), faults["faults"])
+    verbs = {**own, **faults, "help": lambda: describe(verbs)}
     door = socket.socket(socket.AF_UNIX)
     door.bind(str(tmp_path / "control"))
     door.listen()
@@ -63,6 +66,15 @@ def test_an_output_left_locked_by_a_run_that_died_is_freed(
     assert not twin.world.plant.locked
     assert ask(tmp_path, "lock") == 0
     assert twin.world.plant.locked
+
+
+def test_status_says_which_faults_stand(twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ask(tmp_path, "status") == 0
+    assert "faults         none" in capsys.readouterr().out
+    assert ask(tmp_path, "sto", "active=true") == 0
+    assert ask(tmp_path, "frozen", 'device="encoder"') == 0
+    assert ask(tmp_path, "status") == 0
+    assert "faults         sto active=true; frozen device=encoder" in capsys.readouterr().out
 
 
 def test_values_are_told_with_their_units_and_an_error_code_as_a_run_says_it(

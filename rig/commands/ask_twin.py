@@ -17,7 +17,7 @@ at a twin that runs already, the one whose command channel is --control:
   hdrig twin lock              fit it; refused while the output turns
   hdrig twin hang 3            hang 3 N·m on the output, positive pulls forward; hang 0 takes the weight off
   hdrig twin reassemble 0.1    wave generator out and in again, 0.1 mm from its depth
-  hdrig twin status            bus, nodes, drive, output; truth: what really happens now, SI
+  hdrig twin status            bus, nodes, drive, output, faults that stand; truth: what really happens now, SI
   hdrig twin stop              end it
   hdrig twin heal              end every fault that was made
   hdrig twin help              all it can be asked for, faults among them; as hdrig twin sto active=true"""
@@ -54,6 +54,8 @@ def told(key: str, value: Any) -> str:
     """One value of an answer for a person, with its unit; an error code as manuals write it, 8130h."""
     if key == "error_code" and isinstance(value, int):
         return f"{value:04X}h" if value else "none"
+    if key == "faults" and isinstance(value, list):
+        return "; ".join(map(str, value)) or "none"
     if key == "load" and isinstance(value, float):
         return f"{100 * value:.1f} % of the bus"
     return f"{value:.6g} {UNITS[key]}" if key in UNITS and isinstance(value, float) else str(value)

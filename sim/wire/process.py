@@ -72,10 +72,8 @@ class Process:
             self._odrive(doors.odrive)
         if doors.serial is not None:
             self._serial(doors.serial, doors.torque_rate)
-        verbs = {
-            **plant_verbs(self.assembly, self.reactor),
-            **fault_verbs(self.assembly, self.reactor, self.serial, self._sensors),
-        }
+        faults = fault_verbs(self.assembly, self.reactor, self.serial, self._sensors)
+        verbs = {**plant_verbs(self.assembly, self.reactor, faults["faults"]), **faults}
         self._add(Control(self.reactor, doors.control, verbs))
         self._tell("control", f'{doors.control}, one JSON object a line, for example {{"do": "help"}}')
 

@@ -43,6 +43,11 @@ class Spoiler:
         """What arrives in place of `data`: (s later, bytes) for each."""
         return [(0.0, data)]
 
+    @property
+    def sound(self) -> bool:
+        """Whether nothing is wrong, or no longer."""
+        return type(self) is Spoiler
+
 
 @final
 class SerialLine(Source):

@@ -41,6 +41,10 @@ class Cut(Spoiler):
     def __init__(self, size: int, count: float = math.inf) -> None:
         self.size, self.count = size, count
 
+    @property
+    def sound(self) -> bool:
+        return self.count <= 0
+
     def spoil(self, data: bytes) -> Parts:
         if self.count <= 0:
             return [(0.0, data)]

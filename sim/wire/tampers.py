@@ -26,6 +26,11 @@ class Selective(Tamper, ABC):
         self.done = self.count <= 0
         return self.act(frame)
 
+    def __str__(self) -> str:
+        which = "" if self.identifier is None else f" identifier=0x{self.identifier:x}"
+        left = f" count={self.count:g}" if math.isfinite(self.count) else ""
+        return f"{type(self).__name__.lower()}{which}{left}"
+
     @abstractmethod
     def act(self, frame: Frame) -> Arrivals:
         """What arrives in place of one it acts on."""

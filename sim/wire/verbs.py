@@ -9,8 +9,8 @@ from sim.wire.control import Verb
 from sim.wire.reactor import Reactor
 
 
-def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
-    """load, lock, unlock, reassemble, truth, status, stop."""
+def plant_verbs(assembly: Assembly, reactor: Reactor, faults: Verb = dict) -> dict[str, Verb]:
+    """load, lock, unlock, reassemble, truth, status, stop. `faults`: the verb that lists what stands, for status."""
     world, agenda, bus = assembly.world, assembly.agenda, assembly.bus
 
     def load(tau_ext: float) -> None:
@@ -39,7 +39,7 @@ def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
         return {"t": world.t, **world.truth()._asdict(), "simulated": True}
 
     def status() -> dict[str, Any]:
-        """Bus, nodes and process; late: the longest that an event waited for the processor since last asked [s]"""
+        """Bus, nodes, process, standing faults; late: the longest that an event waited since last asked [s]"""
         late, reactor.late = reactor.late, 0.0
         return {
             "t": agenda.now,
@@ -51,6 +51,7 @@ def plant_verbs(assembly: Assembly, reactor: Reactor) -> dict[str, Verb]:
             "output": "locked" if world.plant.locked else "free",
             "nmt": {node.id: node.state.name for node in assembly.nodes},
             "late": late,
+            **(faults() or {}),
         }
 
     def stop() -> None:

@@ -24,7 +24,8 @@ class Operator:
     def __init__(self) -> None:
         self.host = host("twin.torque_noise=0.0", "twin.sensor_noise=0.0")
         reactor = Reactor(self.host.twin.agenda)
-        self.verbs = {**plant_verbs(self.host.twin, reactor), **fault_verbs(self.host.twin, reactor, {}, {})}
+        faults = fault_verbs(self.host.twin, reactor, {}, {})
+        self.verbs = {**plant_verbs(self.host.twin, reactor, faults["faults"]), **faults}
         self.host.put(2, 0x1801, 1, "I", 0x40000282)
         self.host.start()
         self.host.wait(0.01)
@@ -91,6 +92,43 @@ def test_frames_of_the_wrong_length(op: Operator) -> None:
     op.do("resize", identifier=0x282, size=3)
     assert {len(bytes.fromhex(data)) for data in op.syncs()} == {3}
     assert not op.ask("resize", size=9)["ok"]
+
+
+MADE: dict[str, tuple[str, dict[str, Any]]] = {
+    "drop identifier=0x282": ("drop", {"identifier": 0x282}),
+    "resize count=5": ("resize", {"size": 3, "count": 5}),
+    "cut station=host 1": ("cut", {}),
+    "sto active=true": ("sto", {"active": True}),
+    "trip again=true": ("trip", {"code": 0x8611, "again": True}),
+    "mode_stuck active=true": ("mode_stuck", {}),
+    "slow_sdo device=encoder seconds=0.3": ("slow_sdo", {"device": "encoder", "seconds": 0.3}),
+    "double: node 2 is there twice": ("double", {"device": "encoder"}),
+    "send: 1 strange station(s) on the bus": ("babble", {}),
+    "frozen device=drive": ("frozen", {"device": "drive"}),
+    "overload device=torque": ("overload", {}),
+    "broken_cable active=true": ("broken_cable", {}),
+}
+
+
+@pytest.mark.parametrize("said", MADE)
+def test_status_lists_the_fault_that_stands_until_it_is_healed(op: Operator, said: str) -> None:
+    assert op.do("status")["faults"] == []
+    verb, arguments = MADE[said]
+    op.do(verb, **arguments)
+    assert op.do("status")["faults"] == op.do("faults")["faults"] == [said]
+    op.do("heal")
+    assert op.do("status")["faults"] == []
+
+
+def test_a_fault_that_was_taken_back_or_has_used_up_its_count_no_longer_stands(op: Operator) -> None:
+    op.do("sto")
+    op.do("drop", identifier=0x282, count=2)
+    op.do("cut", station="host 1")
+    op.do("sto", active=False)
+    op.do("join", station="host 1")
+    assert op.do("status")["faults"] == ["drop identifier=0x282 count=2"]
+    op.syncs(4)
+    assert op.do("status")["faults"] == []
 
 
 def test_a_cut_cable_and_the_old_frames_after_it(op: Operator) -> None:

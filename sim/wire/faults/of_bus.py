@@ -32,6 +32,12 @@ class BusFaults:
             ghost.leave()
         self._ghosts = []
 
+    def standing(self) -> list[str]:
+        """What is not sound: the cable of a node, or of a host, that is out; a station more; tampering that goes on."""
+        out = [f"cut station={port.name}" for port in self._bus.ports if not port.connected]
+        sending = [f"send: {len(self._ghosts)} strange station(s) on the bus"] if self._ghosts else []
+        return [*out, *sending, *(str(tamper) for tamper in self._bus.tampers if not tamper.done)]
+
     def drop(self, identifier: Number = None, count: float = math.inf) -> None:
         """Frames are lost"""
         self._tamper(Drop(_which(identifier), count))

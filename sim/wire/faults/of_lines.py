@@ -10,6 +10,8 @@ from sim.wire.faults.words import named
 from sim.wire.pty import SerialLine, Spoiler
 from sim.wire.spoilers import Cut, Garbage, Glued, Mute, Torn
 
+VERBS: dict[type[Spoiler], str] = {Cut: "shortened"}  # the others are called as their class
+
 
 @final
 class LineFaults:
@@ -23,6 +25,10 @@ class LineFaults:
         for line in self._lines.values():
             line.spoiler, line.latency = Spoiler(), 0.0
             line.plug()
+
+    def standing(self) -> list[str]:
+        """What is not sound, line by line."""
+        return [f"{fault} line={name}" for name, line in self._lines.items() for fault in _wrong(line)]
 
     def unplug(self, line: str) -> None:
         """The plug is pulled"""
@@ -62,3 +68,9 @@ class LineFaults:
 
     def _line(self, name: str) -> SerialLine:
         return named(self._lines, name, "serial line")
+
+
+def _wrong(line: SerialLine) -> list[str]:
+    spoiled = "" if line.spoiler.sound else VERBS.get(type(line.spoiler), type(line.spoiler).__name__.lower())
+    found = ("" if line.present else "unplug", spoiled, f"latency seconds={line.latency:g}" if line.latency else "")
+    return [fault for fault in found if fault]

@@ -36,6 +36,22 @@ class NodeFaults:
         if drive.sto_active:
             drive.sto(False, False)
 
+    def standing(self) -> list[str]:
+        """What `heal` would end."""
+        drive = self._assembly.drive
+        slow = [
+            f"slow_sdo device={name} seconds={node.sdo_turnround:g}"
+            for name, node in self._nodes().items()
+            if node.sdo_turnround != SDO_TURNROUND
+        ]
+        flags = {
+            "sto active=true": drive.sto_active,
+            "mode_stuck active=true": drive.mode_stuck,
+            "trip again=true": drive.incurable,
+        }
+        doubles = [f"double: node {node.id} is there twice" for node in self._doubles]
+        return [*(name for name, there in flags.items() if there), *slow, *doubles]
+
     def reboot(self, device: str) -> None:
         """Its power fails for a moment: mapping and, without a battery, position are lost"""
         self._node(device).power_up()
@@ -82,13 +98,12 @@ class NodeFaults:
         """SDO answers take so long"""
         self._node(device).sdo_turnround = float(seconds)
 
+    def _nodes(self) -> dict[str, Node]:
+        a = self._assembly
+        return {"drive": a.drive, "encoder": a.encoder, "torque": a.torque}
+
     def _node(self, device: str) -> Node:
-        nodes: dict[str, Node] = {
-            "drive": self._assembly.drive,
-            "encoder": self._assembly.encoder,
-            "torque": self._assembly.torque,
-        }
-        return named(nodes, device, "device")
+        return named(self._nodes(), device, "device")
 
     def _entry(self, device: str, index: int | str, sub: int) -> Entry:
         try:

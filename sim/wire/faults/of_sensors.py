@@ -28,6 +28,11 @@ class SensorFaults:
             self._put(device, None)
         self._assembly.torque.broken = False
 
+    def standing(self) -> list[str]:
+        """What is not sound."""
+        wrong = [f"{_said(sensor.fault)} device={name}" for name, sensor in self._sensors().items() if sensor.fault]
+        return [*wrong, *(["broken_cable active=true"] if self._assembly.torque.broken else [])]
+
     def frozen(self, device: str) -> None:
         """The value stays what it is"""
         self._put(device, Frozen())
@@ -71,3 +76,7 @@ class SensorFaults:
         """So that what freezes freezes now, not when a host next asks."""
         self._assembly.world.advance_to(self._assembly.agenda.now)
         sensor.read()
+
+
+def _said(fault: Fault) -> str:
+    return type(fault).__name__.lower()
