@@ -45,12 +45,12 @@ class Trapezoid:
     speed: float  # rad/s, > 0
     acceleration: float  # rad/s², > 0
 
-    @property
+    @cached_property
     def peak(self) -> float:
         """Speed really reached [rad/s]: short moves never get to `speed`."""
         return min(self.speed, math.sqrt(abs(self.distance) * self.acceleration))
 
-    @property
+    @cached_property
     def duration(self) -> float:
         """s"""
         if self.peak == 0.0:  # nowhere to go, or so little that the square root of it vanishes
@@ -81,12 +81,12 @@ class Ramp:
     end: float  # rad/s
     acceleration: float  # rad/s², > 0
 
-    @property
+    @cached_property
     def duration(self) -> float:
         """s until the end speed is reached."""
         return abs(self.end - self.start) / self.acceleration
 
-    @property
+    @cached_property
     def travel(self) -> float:
         """rad, signed, until then."""
         return 0.5 * (self.start + self.end) * self.duration

@@ -69,7 +69,7 @@ def errors(folder: Path) -> list[Any]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("point", "made"), [(second_run, 1), (hanging, 2)])
+@pytest.mark.parametrize(("point", "made"), [pytest.param(second_run, 1, marks=pytest.mark.long), (hanging, 2)])
 def test_kill_9_at_any_moment_leaves_a_campaign_that_goes_on(
     point: Callable[[Book], bool], made: int, tmp_path: Path
 ) -> None:

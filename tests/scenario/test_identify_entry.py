@@ -36,6 +36,9 @@ with = { cycles = 1, rate = 3.0, rates = [1.0] }
 """
 
 
+pytestmark = pytest.mark.xdist_group("identify entry")  # the campaign is made once, not once for every worker
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The campaign `hdrig run identify` makes, shortened."""

@@ -48,6 +48,7 @@ def test_a_straight_spring_is_found_with_its_stiffness(tmp_path: Path) -> None:
     assert found["hysteresis_loss"].ci95[1] - found["hysteresis_loss"].ci95[0] < 0.1, "arcmin: two counts, 0.086"
 
 
+@pytest.mark.long
 def test_three_lines_are_found_with_their_knots(tmp_path: Path) -> None:
     found = figures(tmp_path, LINES)
     for name, true in (("stiffness_K1", 7160), ("stiffness_K2", 9500), ("stiffness_K3", 12_500)):
@@ -56,6 +57,7 @@ def test_three_lines_are_found_with_their_knots(tmp_path: Path) -> None:
     assert abs(found["knot_T2"].value - 10.0) < 0.3
 
 
+@pytest.mark.long
 def test_a_cubic_spring_is_found_with_both_coefficients(tmp_path: Path) -> None:
     found = figures(tmp_path, [STIFFNESS + "cubic=2.3e9"])
     assert "a cubic describes it better" in found["sentence"]

@@ -27,7 +27,9 @@ def test_default_gains_hunt_at_a_stribeck_speed_of_1_5_and_the_run_is_rejected_w
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("omega_s", [0.3, 1.5, 4.0])
+@pytest.mark.parametrize(
+    "omega_s", [pytest.param(0.3, marks=pytest.mark.long), 1.5, pytest.param(4.0, marks=pytest.mark.long)]
+)
 def test_the_gains_it_finds_give_a_smooth_slow_run(
     omega_s: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -19,11 +19,12 @@ from rig.runfile.recover import recover
 from rig.runfile.verify import verify
 
 # a shared machine stalls for tens of ms: the drive of these tests is patient, what is tested is the order of events
-WALL = ["run", "kinematic-error", "--clock", "wall", "--set", "twin.watchdog=1.0"]
+STILL = ["standstill", "--with", "duration=1000"]  # nothing to prove first: 10 s less to wait for
+WALL = ["--clock", "wall", "--set", "twin.watchdog=1.0"]
 
 
-def start(root: Path, *more: str) -> subprocess.Popen[str]:
-    args = [sys.executable, "-m", "rig.cli", *WALL, "--out", str(root), *more]
+def start(root: Path, *procedure: str) -> subprocess.Popen[str]:
+    args = [sys.executable, "-m", "rig.cli", "run", *(procedure or ["kinematic-error"]), *WALL, "--out", str(root)]
     return subprocess.Popen(args, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -52,7 +53,7 @@ def events(folder: Path) -> list[dict[str, str]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sig", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sig", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long)])
 def test_one_signal_stops_the_motor_and_finishes_the_run(sig: signal.Signals, tmp_path: Path) -> None:
     process = start(tmp_path)
     folder = wait_for(tmp_path, "kinematic-error", process)
@@ -75,7 +76,7 @@ def test_one_signal_stops_the_motor_and_finishes_the_run(sig: signal.Signals, tm
     "signals",
     [
         (signal.SIGINT, signal.SIGTERM),  # another signal: two of one kind may merge into one
-        (signal.SIGQUIT,),
+        pytest.param((signal.SIGQUIT,), marks=pytest.mark.long),
     ],
 )
 def test_two_signals_or_ctrl_backslash_take_the_torque_off_at_once_and_keep_the_run(
@@ -105,8 +106,8 @@ def test_a_signal_during_the_proof_ends_everything_with_the_operators_exit_code(
 
 @pytest.mark.slow
 def test_kill_9_loses_nothing_and_recover_says_interrupted(tmp_path: Path) -> None:
-    process = start(tmp_path)
-    folder = wait_for(tmp_path, "kinematic-error", process, rows_bytes=200_000)
+    process = start(tmp_path, *STILL)
+    folder = wait_for(tmp_path, "standstill", process, rows_bytes=200_000)
     process.kill()
     killed = time.monotonic()
     process.communicate()
@@ -125,8 +126,8 @@ def test_kill_9_loses_nothing_and_recover_says_interrupted(tmp_path: Path) -> No
 
 @pytest.mark.slow
 def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(tmp_path: Path) -> None:
-    process = start(tmp_path)
-    folder = wait_for(tmp_path, "kinematic-error", process)
+    process = start(tmp_path, *STILL)
+    folder = wait_for(tmp_path, "standstill", process)
     os.kill(recorder_of(process.pid), signal.SIGKILL)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 5, err

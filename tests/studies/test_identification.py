@@ -24,6 +24,7 @@ def outcomes() -> list[Outcome]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_four_random_rigs_are_found_within_loose_bounds(outcomes: list[Outcome]) -> None:
     bounds = {
         "K": 0.005, "J_l": 0.01, "J_m": 0.02, "B_sp": 0.06, "B_sum": 0.03, "B_l": 0.03, "tau_c": 0.01, "F_cl": 0.01,
@@ -37,6 +38,7 @@ def test_four_random_rigs_are_found_within_loose_bounds(outcomes: list[Outcome])
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_their_intervals_hold_the_truth_about_as_often_as_they_say(outcomes: list[Outcome]) -> None:
     inside = [abs(v - t) <= h for o in outcomes for v, h, t in o.figures.values()]
     series = np.concatenate([np.abs(o.series_error) <= o.series_half for o in outcomes])
@@ -45,6 +47,7 @@ def test_their_intervals_hold_the_truth_about_as_often_as_they_say(outcomes: lis
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_table_has_a_line_for_every_parameter_and_a_share_covered(outcomes: list[Outcome]) -> None:
     lines = table(outcomes)
     assert sum(line.startswith("| K ") for line in lines) == 1

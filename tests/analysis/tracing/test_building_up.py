@@ -19,6 +19,7 @@ from tests.blind.generate import write_case
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_what_is_done_with_before_the_equations_begin_is_named(tmp_path: Path) -> None:
     write_case(Request("single", 11, "paper", "presliding_friction", "dahl", 4.0), tmp_path, "case")
     hidden = json.loads((tmp_path / "truth" / "case.json").read_text())["hidden"][0]["parameters"]

@@ -104,7 +104,7 @@ def test_a_campaign_of_one_angle_and_no_torque_is_refused_in_words(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lacking", ["tau_l", "theta_l"])
+@pytest.mark.parametrize("lacking", ["tau_l", pytest.param("theta_l", marks=pytest.mark.long)])
 def test_one_run_may_lack_a_channel(tmp_path: Path, shared: Path, lacking: str) -> None:
     names = [f"{kind}_{k}" for kind in ("slow_ke", "load_10nm", "speed_120rpm", "speed_400rpm") for k in (1, 2)]
     reduced(tmp_path, shared / "cases" / "open-3", names[1:], ())

@@ -90,6 +90,7 @@ SOME = ("slow_ke_1", "slow_ke_2", "load_5nm_1", "load_5nm_2", "load_20nm_1", "lo
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_constant_that_is_off_is_a_gain_and_no_missing_effect(shared: Path, tmp_path: Path) -> None:
     def weaker(c: Columns, began: float) -> Columns:
         return {"tau_m": 0.96 * c["tau_m"]}

@@ -20,6 +20,7 @@ T = np.arange(0.0, 60.0, 0.004)
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_housing_that_moves_is_named_where_only_lock_tests_show_it(tmp_path: Path, shared: Path) -> None:
     def moving(c: Columns, began: float) -> Columns:
         turned = COMPLIANCE * c["tau_l"]

@@ -17,6 +17,7 @@ from tests.blind.generate import write_case
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_load_angle_read_late_is_named_though_every_run_has_a_zero_of_its_own(tmp_path: Path) -> None:
     write_case(Request("single", 7, "paper_once", "channel_time_skew", "load_late", 3.0), tmp_path, "case")
     hidden = json.loads((tmp_path / "truth" / "case.json").read_text())["hidden"][0]["parameters"]

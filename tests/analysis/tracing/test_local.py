@@ -243,6 +243,7 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none(tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_fitted_run_that_stands_far_above_its_floor_is_said_though_unseen_runs_leave_nothing(
     tmp_path: Path, shared: Path
 ) -> None:

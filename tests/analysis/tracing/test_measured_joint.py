@@ -31,6 +31,7 @@ def test_friction_of_an_order_that_was_put_in_is_given_back(shared: Path, tmp_pa
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_large_runout_is_named_beside_a_rest(shared: Path, tmp_path: Path) -> None:
     verdict = traced(spiked(imported(tmp_path), tmp_path / "spiked", runout, 2e-3))["verdict"]
     assert verdict["status"] == "unknown_effect"

@@ -85,6 +85,7 @@ def test_what_follows_the_clock_makes_the_floor_and_is_told(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_seal_that_rubs_within_every_run_is_told(tmp_path: Path, shared: Path) -> None:
     verdict = spiked(tmp_path, shared / "cases" / "open-1", dragging).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "time_periodic")
@@ -114,6 +115,7 @@ def test_a_cable_that_pulls_along_the_way_gone_is_told(tmp_path: Path, shared: P
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_effect_that_stays_below_the_floor_is_named_when_it_is_plain(tmp_path: Path, shared: Path) -> None:
     found = spiked(tmp_path, shared / "cases" / "open-1", loaded)
     assert found.verdict.effects == ("load_dependent_friction",)
