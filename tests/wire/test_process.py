@@ -203,12 +203,15 @@ def test_canopen_maps_a_pdo_and_reads_it_on_sync(network: canopen.Network) -> No
 
 def test_time_stamps_are_those_of_the_modelled_bus(twin: Twin) -> None:
     with twin.bus() as sender, twin.bus() as listener:
-        for _ in range(5):
-            sender.send(can.Message(arbitration_id=0x2AA, data=b"\x55" * 8, is_extended_id=False))
-        messages = [listener.recv(PATIENCE) for _ in range(5)]
-        stamps = [message.timestamp for message in messages if message is not None]
-        gaps = [b - a for a, b in itertools.pairwise(stamps)]
-        assert len(gaps) == 4
+        gaps: list[float] = []
+        while not gaps or min(gaps) > 112e-6:  # a sender that was held up queues no two in a row
+            for _ in range(5):
+                sender.send(can.Message(arbitration_id=0x2AA, data=b"\x55" * 8, is_extended_id=False))
+            messages = [listener.recv(PATIENCE) for _ in range(5)]
+            stamps = [message.timestamp for message in messages if message is not None]
+            gaps += [b - a for a, b in itertools.pairwise(stamps)]
+            assert len(gaps) % 4 == 0
+            assert len(gaps) < 4000
         assert min(gaps) == pytest.approx(111e-6, abs=1e-6)  # none can be closer: 111 bits at 1 Mbit/s
         assert abs(stamps[-1] - time.time()) < PATIENCE
 

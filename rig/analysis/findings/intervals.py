@@ -37,6 +37,18 @@ def t95(dof: float) -> float:
     return z + first / n + second / n**2 + third / n**3
 
 
+def rms_of_pieces(squares: Array, rows: Array) -> tuple[float, float]:
+    """(rms, half width of its 95 % interval) of pieces with a sum of `squares` (n,) over `rows` (n,) each.
+
+    Rows need not be independent, pieces are taken to be; the half of a single piece is NaN.
+    """
+    mean, n = float(squares.sum()) / max(float(rows.sum()), 1.0), squares.size
+    if n < 2 or mean <= 0.0:
+        return float(np.sqrt(max(mean, 0.0))), float("nan") if n < 2 else 0.0
+    spread = float(np.std(squares / np.maximum(rows, 1), ddof=1))
+    return float(np.sqrt(mean)), t95(n - 1) * spread / np.sqrt(n) / (2.0 * float(np.sqrt(mean)))
+
+
 def neighbour_correlation(series: list[Array]) -> float:
     """Correlation of neighbouring rows, one figure for all columns.
 

@@ -128,12 +128,14 @@ def _figures(found: Findings, result: Inertia, coasts: list[Coast], b: float, u_
     )
     way = np.array([c.direction for c in coasts])
     if (way > 0).sum() > 1 and (way < 0).sum() > 1:
-        both = [float(held[way == d].mean()) for d in (1, -1)]
-        found.exact(
+        forward, reverse = held[way > 0], held[way < 0]
+        u = np.sqrt(forward.var(ddof=1) / forward.size + reverse.var(ddof=1) / reverse.size)
+        found.figure(
             "holding_torque_difference",
             "Torque forward less reverse",
-            both[0] - both[1],
+            float(forward.mean() - reverse.mean()),
             "N·m",
+            t95(n - 2) * float(u),
             "Difference of the means of both directions: friction that depends on direction, or a torque zero.",
         )
 

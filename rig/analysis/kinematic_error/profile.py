@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rig.analysis.findings.intervals import inflation, neighbour_correlation, t95
+from rig.analysis.findings.intervals import inflation, neighbour_correlation, rms_of_pieces, t95
 from rig.analysis.findings.result import Array
 from rig.analysis.orders.align import Complex
 from rig.analysis.orders.revolutions import GRID, StrokeResult, filled
@@ -38,7 +38,7 @@ class Profile:
     curve_forward: Array | None  # (G,)
     curve_reverse: Array | None
     floor: float  # arcsec², variance of the averaged curve that comes from the scatter of the revolutions
-    residual_rms: float  # arcsec, of single rows
+    residual_rms: tuple[float, float]  # arcsec, of single rows, and half of its 95 % interval
 
     @property
     def terms(self) -> int:
@@ -173,7 +173,6 @@ def combine(strokes: list[StrokeResult], added: Array) -> Profile:
     odd = 0.5 * (means[0] - means[1]) if len(used) == 2 else None
     u = np.sqrt(variance * share)
     k = even.size // 2
-    rows = sum(s.residual_rows for s in strokes)
     return Profile(
         cosine=even[:k],
         sine=even[k:],
@@ -188,7 +187,9 @@ def combine(strokes: list[StrokeResult], added: Array) -> Profile:
         curve_forward=_mean_curve(sides[0]),
         curve_reverse=_mean_curve(sides[1]),
         floor=floor,
-        residual_rms=float(np.sqrt(sum(s.residual_square for s in strokes) / max(rows, 1))),
+        residual_rms=rms_of_pieces(
+            np.concatenate([s.residual_square for s in strokes]), np.concatenate([s.residual_rows for s in strokes])
+        ),
     )
 
 

@@ -28,8 +28,12 @@ def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
     how = "Whole motor turns used; half a turn is cut at each reversal and where the run began or ended at rest."
     found.exact("revolutions_forward", "Revolutions forward", p.forward, "1", how)
     found.exact("revolutions_reverse", "Revolutions reverse", p.reverse, "1", how)
-    how = "Single rows less trend and series of their own revolution: quantisation, noise, orders above the last."
-    found.exact("residual_rms", "Residual of the series, rms", p.residual_rms, "arcsec", how)
+    how = (
+        "Single rows less trend and series of their own revolution: quantisation, noise, orders above the last; "
+        "interval from the scatter of the revolutions."
+    )
+    rms, half = p.residual_rms
+    found.figure("residual_rms", "Residual of the series, rms", rms, "arcsec", half, how)
     if np.isfinite(ke.speed_rpm):
         speeds = np.abs(np.concatenate([s.speed_rpm for s in ke.strokes]))
         half = Z95 * float(speeds.std()) / np.sqrt(speeds.size)

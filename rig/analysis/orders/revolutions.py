@@ -34,8 +34,8 @@ class StrokeResult:
     position: Array  # (G,) sum of the rows' place in the turn, 0..1
     rows: Array  # (G,) rows in each bin
     curves: Array  # (R, G) the same, each revolution by itself
-    residual_square: float  # arcsec², Σ over the rows of what no term explains
-    residual_rows: int
+    residual_square: Array  # (R,) arcsec², Σ over the rows of each revolution of what no term explains
+    residual_rows: Array  # (R,)
     trend: Array  # Legendre coefficients over the stroke, arcsec, constant included
 
 
@@ -82,17 +82,17 @@ def _curves(
     return curves, (total, position, rows)
 
 
-def _each(pieces: list[Sums], trend: Array, degree: int, order0: list[int]) -> tuple[Array, float]:
-    """Coefficients of every revolution once the stroke's trend is off its sums, (R, 1 + 2·terms), and what is left."""
+def _each(pieces: list[Sums], trend: Array, degree: int, order0: list[int]) -> tuple[Array, Array]:
+    """Coefficients of every revolution less the stroke's trend, (R, 1 + 2·terms), and what is left, (R,)."""
     slow = slice(1, degree + 1)
-    coefficients, residual_square = np.empty((len(pieces), len(order0))), 0.0
+    coefficients, residual_square = np.empty((len(pieces), len(order0))), np.empty(len(pieces))
     for r, piece in enumerate(pieces):
         moment = piece.moment - piece.gram[:, slow] @ trend[1:]
         square = piece.square - 2.0 * float(trend[1:] @ piece.moment[slow])
         square += float(trend[1:] @ piece.gram[slow, slow] @ trend[1:])
         own = Sums(piece.gram[np.ix_(order0, order0)], moment[order0], square, piece.count)
         coefficients[r] = own.solve()
-        residual_square += own.residual(coefficients[r])
+        residual_square[r] = own.residual(coefficients[r])
     return coefficients, residual_square
 
 
@@ -175,6 +175,6 @@ def analyse_stroke(motion: Motion, stroke: Stroke, terms: int) -> StrokeResult:
         rows=rows,
         curves=curves,
         residual_square=residual_square,
-        residual_rows=sum(piece.count for piece in pieces),
+        residual_rows=np.array([piece.count for piece in pieces], dtype=np.float64),
         trend=trend,
     )

@@ -227,8 +227,11 @@ def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated
 
 
 @pytest.mark.slow
-def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none(tmp_path: Path, shared: Path) -> None:
-    names = ("slow_ke_1", "slow_ke_2", "load_10nm_1", "load_10nm_2", "speed_200rpm_1", "speed_200rpm_2")
+@pytest.mark.parametrize("times", [2, pytest.param(1, marks=pytest.mark.long)], ids=["repeated", "once"])
+def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none_or_nothing_was_repeated(
+    tmp_path: Path, shared: Path, times: int
+) -> None:
+    names = [f"{kind}_{k + 1}" for kind in ("slow_ke", "load_10nm", "speed_200rpm") for k in range(times)]
     campaign = shared / "cases" / "open-1"
     hit = started(campaign / "load_10nm_1")
 

@@ -54,8 +54,7 @@ def test_an_export_read_again_is_as_simulated_as_the_run_was(
     foreign: Foreign, tmp_path: Path, kind: str, backend: str, again: str
 ) -> None:
     file = exported(tmp_path / "first", kind, backend)
-    mapping = MAPPING.replace('column = "t"', 'column = "time"') if kind == "mdf4" else MAPPING
-    run = Run.open(import_file(file, foreign.mapping(mapping), foreign.out))
+    run = Run.open(import_file(file, foreign.mapping(MAPPING), foreign.out))
     assert run.manifest["backend"] == again
     assert run.simulated is (backend == "sim")
     assert (origin(run.manifest["backend"]).mark == "SIMULATED") is (backend == "sim")

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.floor.repeats import alike, repeats
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.held_out import unseen
@@ -20,13 +20,15 @@ from rig.model.effect import Array
 def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
     """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and its
     RMS over the floor, overall. Where no held-out run has any, of the fitted runs' excess, as far as they
-    have repeats that show none of it: it is read from single runs in any case, and nothing is foretold."""
+    have repeats that show none of it, or nothing was repeated: it is read from single runs in any case, and nothing is
+    foretold."""
     held, out = unseen(s, p.held_out), {}
+    alone = not repeats(p.eq.runs, p.split.fitted)
     for name, mine in p.own.made.items():
         if keys := [key for key in held.y if key in mine]:
             out[name] = _taken(p, s, held, name, keys, p.held_out.floors)
         else:
-            keys = [key for key in s.design.y if key in mine and _has_repeat_without(p, key, mine)]
+            keys = [key for key in s.design.y if key in mine and (alone or _has_repeat_without(p, key, mine))]
             out[name] = _taken(p, s, s.design, name, keys, p.held_out.seen)
     return out
 
