@@ -161,17 +161,7 @@ def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
     if t is None or t.size < 3:
         said = abs(stated(run.manifest, "sample_rate_hz", RATE))
         return np.arange(rows) / said, 1 / said, False
-    return t, _between(np.diff(t)), True
-
-
-def _between(steps: Array) -> float:
-    """The time between rows by which `steps` (n,) of t go on, once or, where a row was lost, twice and more. Of a clock
-    that jitters it is the sampling period, which a median misses by a few in 100 000: enough to lose the phase of a
-    wave that sampling folded over."""
-    usual = float(np.median(steps))
-    joined = steps[steps <= GAP * usual]
-    periods = float(np.rint(joined / usual).sum()) if usual > 0 else 0.0
-    return float(joined.sum()) / periods if periods > 0 else usual
+    return t, float(np.median(np.diff(t))), True
 
 
 def _refuse_ratio(ratio: float) -> None:
