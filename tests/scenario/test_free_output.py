@@ -95,7 +95,7 @@ def test_the_slow_run_beside_is_taken_by_itself_and_one_of_another_power_up_is_t
 
 
 FIVE = [  # K, J_l, speeds: natural frequencies 12, 18, 25, 40, 60 Hz; the stiffer, the faster one has to look
-    (1630.0, 0.32, "60,40,25,15,9.6"),
+    pytest.param(1630.0, 0.32, "60,40,25,15,9.6", marks=pytest.mark.long),
     pytest.param(3668.0, 0.32, "80,50,30,18,12", marks=pytest.mark.long),
     (7160.0, 0.32, "100,70,45,28,15"),
     pytest.param(18112.0, 0.32, "160,110,70,40,15", marks=pytest.mark.long),

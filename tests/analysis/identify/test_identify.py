@@ -219,6 +219,7 @@ def test_a_campaign_of_an_independent_plant_gives_its_true_parameters(shared: Pa
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_encoder_late_by_a_millisecond_spoils_nothing(shared: Path) -> None:
     true = json.loads((shared / "cases" / "TRUTH.json").read_text())["open-4"]
     p = of_case(shared / "cases" / "open-4").parameters

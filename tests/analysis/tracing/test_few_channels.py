@@ -53,7 +53,7 @@ def checked(found: Trace) -> Trace:
 @pytest.mark.parametrize(
     ("drop", "said"),
     [
-        (("tau_l",), "No shaft torque"),
+        pytest.param(("tau_l",), "No shaft torque", marks=pytest.mark.long),
         pytest.param(("theta_l",), "No load angle", marks=pytest.mark.long),
         (("theta_m", "tau_m"), "No motor angle"),
         (("t",), "No run has a time column"),

@@ -101,6 +101,7 @@ def test_an_order_that_is_none_of_the_gears_is_told_where_nothing_was_repeated(t
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_scale_that_is_stitched_is_told_where_nothing_was_repeated(tmp_path: Path, shared: Path) -> None:
     verdict = spiked(tmp_path, shared / "cases" / "open-1", stitched, NO_REPEATS).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "load_angle")
