@@ -125,9 +125,10 @@ def test_kill_9_loses_nothing_and_recover_says_interrupted(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(tmp_path: Path) -> None:
-    process = start(tmp_path, *STILL)
-    folder = wait_for(tmp_path, "standstill", process)
+@pytest.mark.parametrize("procedure", [STILL, pytest.param(["kinematic-error"], marks=pytest.mark.long)])
+def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(procedure: list[str], tmp_path: Path) -> None:
+    process = start(tmp_path, *procedure)
+    folder = wait_for(tmp_path, procedure[0], process)
     os.kill(recorder_of(process.pid), signal.SIGKILL)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 5, err

@@ -42,11 +42,11 @@ def rms_of_pieces(squares: Array, rows: Array) -> tuple[float, float]:
 
     Rows need not be independent, pieces are taken to be; the half of a single piece is NaN.
     """
-    mean, n = float(squares.sum()) / max(float(rows.sum()), 1.0), squares.size
-    if n < 2 or mean <= 0.0:
-        return float(np.sqrt(max(mean, 0.0))), float("nan") if n < 2 else 0.0
-    spread = float(np.std(squares / np.maximum(rows, 1), ddof=1))
-    return float(np.sqrt(mean)), t95(n - 1) * spread / np.sqrt(n) / (2.0 * float(np.sqrt(mean)))
+    rms, n = float(np.sqrt(max(squares.sum(), 0.0) / max(rows.sum(), 1.0))), squares.size
+    if n < 2:
+        return rms, float("nan")
+    spread = float(np.std(squares / np.maximum(rows, 1.0), ddof=1))
+    return rms, t95(n - 1) * spread / float(np.sqrt(n)) / (2.0 * rms) if rms > 0.0 else 0.0
 
 
 def neighbour_correlation(series: list[Array]) -> float:

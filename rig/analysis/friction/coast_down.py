@@ -136,7 +136,8 @@ def _figures(found: Findings, result: Inertia, coasts: list[Coast], b: float, u_
             float(forward.mean() - reverse.mean()),
             "N·m",
             t95(n - 2) * float(u),
-            "Difference of the means of both directions: friction that depends on direction, or a torque zero.",
+            "Difference of the means of both directions: friction that depends on direction, or a torque zero; "
+            "interval from the scatter of the coasts.",
         )
 
 

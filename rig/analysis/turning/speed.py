@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from rig.analysis.findings.collected import Findings
-from rig.analysis.findings.intervals import rms_of_pieces, t95
-from rig.analysis.findings.result import Array
+from rig.analysis.findings.intervals import t95
 from rig.analysis.motion.source import Motion
 from rig.analysis.motion.speed import motor_speed
 from rig.analysis.motion.strokes import Stroke
+from rig.analysis.sensors.standstill import floor_of
 from rig.core.quantiles import Z95
 from rig.core.units import RPM
 
-PIECES = 20  # of a stroke, each long enough to be taken as independent of the others
 JITTER = 0.01  # of the speed window: more makes a ripple of its own
 
 
@@ -32,13 +31,14 @@ def add_speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) ->
         )
     if turns.size >= 8:
         middle = 0.5 * (motion.t[edges][1:] + motion.t[edges][:-1])
-        change, half = _drift(middle, turns)
+        (slope, _), cov = np.polyfit(middle - middle[0], turns, 1, cov=True)
+        span = float(middle[-1] - middle[0])
         found.figure(
             "speed_drift",
             "Speed change over the stroke",
-            change,
+            float(slope) * span,
             "rpm",
-            half,
+            t95(turns.size - 2) * float(np.sqrt(cov[0, 0])) * span,
             "Line through the speeds of the turns, end to end; interval from their scatter about it.",
         )
     fine = motor_speed(motion.t[s.start : s.stop], motion.theta_m[s.start : s.stop], step=0.004)
@@ -46,23 +46,9 @@ def add_speed_figures(found: Findings, motion: Motion, strokes: list[Stroke]) ->
     if jitter > JITTER * fine.window:
         found.cannot.append(f"Speed ripple: the rows' times jitter by {1000 * jitter:.2g} ms, which looks like ripple.")
     elif fine.omega.size > 16:
-        ripple, half = _ripple(fine.omega / RPM)
+        speed = fine.omega / RPM
         how = (
             f"1 σ of the speed over {1000 * fine.window:.0f} ms windows: ripple with the angle, wander, count noise; "
-            "interval from the scatter of its pieces."
+            "interval from the scatter of pieces."
         )
-        found.figure("speed_ripple", "Speed ripple", ripple, "rpm", half, how)
-
-
-def _drift(t: Array, speed: Array) -> tuple[float, float]:
-    """Change of the line through (t, speed) from end to end, and half of its 95 % interval."""
-    (slope, level), n, span = np.polyfit(t - t.mean(), speed, 1), t.size, float(t[-1] - t[0])
-    rest = speed - level - slope * (t - t.mean())
-    u = np.sqrt(float(rest @ rest) / (n - 2) / float(np.sum((t - t.mean()) ** 2)))
-    return float(slope) * span, t95(n - 2) * float(u) * span
-
-
-def _ripple(speed: Array) -> tuple[float, float]:
-    """1 σ of a speed, and half of its 95 % interval from the scatter of its pieces."""
-    pieces = np.array_split((speed - speed.mean()) ** 2, PIECES)
-    return rms_of_pieces(np.array([p.sum() for p in pieces]), np.array([p.size for p in pieces], dtype=np.float64))
+        found.figure("speed_ripple", "Speed ripple", float(np.std(speed)), "rpm", floor_of(speed, None).u_rms, how)

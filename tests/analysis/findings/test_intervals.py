@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.findings.intervals import against_limit, amplitude_interval, inflation, neighbour_correlation, t95
+from rig.analysis.findings.intervals import (
+    against_limit,
+    amplitude_interval,
+    inflation,
+    neighbour_correlation,
+    rms_of_pieces,
+    t95,
+)
 from rig.analysis.findings.result import Verdict
 
 
@@ -14,6 +21,23 @@ from rig.analysis.findings.result import Verdict
 )
 def test_student_factor_is_that_of_the_tables(dof: float, table: float) -> None:
     assert np.isclose(t95(dof), table, rtol=1e-3)
+
+
+def test_the_rms_of_pieces_is_held_by_its_interval_as_often_as_it_says() -> None:
+    rng = np.random.default_rng(2)
+    held = []
+    for _ in range(400):
+        x = 0.3 * np.sqrt(rng.gamma(20.0, 1 / 20.0, (27, 1))) * rng.standard_normal((27, 500))  # pieces differ a little
+        value, half = rms_of_pieces((x**2).sum(1), np.full(27, 500.0))
+        held.append(abs(value - 0.3) <= half)
+    assert 0.91 <= np.mean(held) <= 0.98
+
+
+def test_of_a_single_piece_the_rms_is_known_and_its_interval_is_not() -> None:
+    value, half = rms_of_pieces(np.array([8.0]), np.array([2.0]))
+    assert value == 2.0
+    assert np.isnan(half)
+    assert rms_of_pieces(np.zeros(3), np.ones(3)) == (0.0, 0.0)
 
 
 def test_independent_revolutions_are_not_said_to_correlate() -> None:

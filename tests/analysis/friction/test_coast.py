@@ -48,6 +48,17 @@ def test_inertia_and_friction_lie_within_their_intervals_and_within_a_few_per_ce
         assert e.value == pytest.approx(true, rel=within), name
 
 
+@pytest.mark.slow
+def test_both_directions_differ_by_no_more_than_their_interval_says() -> None:
+    held = []
+    for seed in range(24):
+        figures = {e.name: e for e in analyse(made(4, seed)).estimates}
+        low, high = figures["holding_torque_difference"].ci95
+        held.append(low <= 0.0 <= high)
+        assert 0.0 < high - low < 0.1 * TAU_C
+    assert sum(held) >= 19, "24 of 95 %"
+
+
 def test_the_declared_inertia_is_compared_and_a_wrong_one_is_told() -> None:
     right = {"J_m": 1.1e-3, "J_l": 0.32, "K": 7160.0, "B_sp": 3.6}
     for declared, agrees in ((right, True), (right | {"J_l": 0.64}, False)):

@@ -23,11 +23,11 @@ def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
     have repeats that show none of it, or nothing was repeated: it is read from single runs in any case, and nothing is
     foretold."""
     held, out = unseen(s, p.held_out), {}
-    alone = not repeats(p.eq.runs, p.split.fitted)
     for name, mine in p.own.made.items():
         if keys := [key for key in held.y if key in mine]:
             out[name] = _taken(p, s, held, name, keys, p.held_out.floors)
         else:
+            alone = not repeats(p.campaign.runs, range(len(p.campaign.runs)))  # whole runs: parts of one are alike
             keys = [key for key in s.design.y if key in mine and (alone or _has_repeat_without(p, key, mine))]
             out[name] = _taken(p, s, s.design, name, keys, p.held_out.seen)
     return out
