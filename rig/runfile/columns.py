@@ -114,5 +114,21 @@ def as_float(column: pa.ChunkedArray) -> Array:
     to cast, Arrow imports all it can compute.
     """
     plain = column.type in _TYPES.values() and not column.null_count
-    whole = column if plain else column.cast(pa.float64(), safe=False).fill_null(np.nan)
-    return np.concatenate([np.empty(0), *(np.from_dlpack(chunk) for chunk in whole.chunks)])  # a copy: the caller's own
+    if plain:
+        parts = [np.from_dlpack(chunk) for chunk in column.chunks]
+    else:
+        parts = [_null_as_nan(chunk) for chunk in column.cast(pa.float64(), safe=False).chunks]
+    return np.concatenate([np.empty(0), *parts])  # a copy: the caller's own
+
+
+def _null_as_nan(chunk: pa.Array) -> Array:
+    """Numbers of float64, shape (n,). Not by fill_null: what it fills with looks for pandas too."""
+    last = chunk.offset + len(chunk)
+    validity, values = chunk.buffers()
+    if values is None or chunk.null_count == len(chunk):
+        return np.full(len(chunk), np.nan)
+    found = np.frombuffer(values, np.float64, last)[chunk.offset :]
+    if not chunk.null_count:
+        return found
+    there = np.unpackbits(np.frombuffer(validity, np.uint8), count=last, bitorder="little")[chunk.offset :]
+    return np.where(there, found, np.nan)

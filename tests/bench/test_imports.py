@@ -54,6 +54,7 @@ def test_rows_are_written_and_read_without_a_look_for_pandas(tmp_path: Path) -> 
         "from rig.runfile.journal import JournalReader, JournalWriter\n"
         "kinds = {'float64': 'f8', 'int64': 'i8', 'uint32': 'i8'}\n"
         "rows = np.zeros(3, [(c.name, kinds[c.dtype]) for c in CHANNELS])\n"
+        "rows['tau_l'][1], rows['theta_ref'] = np.nan, np.nan\n"
         f"folder = pathlib.Path({str(tmp_path)!r})\n"
         "journal = JournalWriter(folder, schema('sim'), first=0)\n"
         "journal.append(columns_of_rows(rows))\n"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
-from scipy.special import ndtri
 
 from rig.analysis.findings.result import Array, Estimate
 from rig.core.quantiles import Z95
@@ -79,4 +79,4 @@ def _watched(estimates: list[Estimate]) -> Watched:
 def _widened(sentinels: int) -> float:
     """How many times wider than 95 % the intervals are taken: every pair of every figure is a chance to be wrong."""
     pairs = len(WATCHED) * sentinels * (sentinels - 1) / 2
-    return float(ndtri(0.5 + 0.5 * (1.0 - 1.0 / ONCE_IN) ** (1.0 / pairs))) / Z95
+    return NormalDist().inv_cdf(0.5 + 0.5 * (1.0 - 1.0 / ONCE_IN) ** (1.0 / pairs)) / Z95
