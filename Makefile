@@ -6,13 +6,17 @@ BIN := .venv/bin
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test inner long blind bench pictures lint install lock clean
+.PHONY: demo test pytest inner long blind bench pictures lint install lock clean
 
 demo: .venv/ready
 	$(BIN)/hdrig demo
 
-test: .venv/ready-dev lint
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not long"
+test: .venv/ready-dev  ## types are checked beside the tests
+	$(MAKE) -j2 lint pytest
+
+# a worker more than two cores: some tests wait, for the time at the rig or for another process
+pytest: .venv/ready-dev
+	$(BIN)/python -m pytest -n 3 --dist loadgroup -m "not long"
 
 inner: .venv/ready-dev  ## the fast part of the tests: a minute on an idle machine
 	$(BIN)/python -m pytest -n 2 -m "not slow and not long"
@@ -50,7 +54,7 @@ install: .venv/ready
 	touch $@
 
 .venv/ready-dev: .lock/test.txt .venv/ready
-	$(BIN)/python -m pip install --quiet --require-hashes -r .lock/test.txt
+	$(BIN)/python -m pip install --quiet --no-compile --require-hashes -r .lock/test.txt
 	touch $@
 
 lock:  ## renew the pinned versions (needs uv)

@@ -45,7 +45,7 @@ def test_rows_are_numbered_once_and_in_order() -> None:
     assert numbers == sorted(set(numbers))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_kernel_and_floor_follow_the_same_equations() -> None:
     """Through a reversal of the slow run: a thousandth of its kinematic error apart, the floor at 16 steps a tick."""
     slow = SlowRun.of(30.0)

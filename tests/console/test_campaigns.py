@@ -17,7 +17,7 @@ from tests.console.hand import Hand
 SWEEP = {"weights": [0.0, 3.0], "amplitude_deg": 540.0, "frequency": 0.1}  # 36 rpm, 10 s of rig time each
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_sweep_from_the_page_keeps_its_note_in_every_run_and_ends_with_its_page(tmp_path: Path) -> None:
     with Hand(tmp_path) as hand:
         hand.connect()

@@ -71,7 +71,7 @@ def test_the_flexible_part_at_speed_is_that_of_the_plant_and_of_linear_theory(
     assert revolutions == 60
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_slow_run_beside_is_taken_by_itself_and_one_of_another_power_up_is_turned(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -95,15 +95,15 @@ def test_the_slow_run_beside_is_taken_by_itself_and_one_of_another_power_up_is_t
 
 
 FIVE = [  # K, J_l, speeds: natural frequencies 12, 18, 25, 40, 60 Hz; the stiffer, the faster one has to look
-    pytest.param(1630.0, 0.32, "60,40,25,15,9.6", marks=pytest.mark.long),
-    pytest.param(3668.0, 0.32, "80,50,30,18,12", marks=pytest.mark.long),
+    (1630.0, 0.32, "60,40,25,15,9.6"),
+    (3668.0, 0.32, "80,50,30,18,12"),
     (7160.0, 0.32, "100,70,45,28,15"),
-    pytest.param(18112.0, 0.32, "160,110,70,40,15", marks=pytest.mark.long),
-    pytest.param(7160.0, 0.0516, "220,150,100,50,15", marks=pytest.mark.long),
+    (18112.0, 0.32, "160,110,70,40,15"),
+    (7160.0, 0.0516, "220,150,100,50,15"),
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("K", "J_l", "speeds"), FIVE)
 def test_the_speed_that_is_slow_enough_is_that_of_linear_theory_on_five_gears(
     K: float, J_l: float, speeds: str

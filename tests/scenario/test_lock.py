@@ -75,6 +75,7 @@ def test_a_hysteretic_spring_has_its_loss_and_its_lines(tmp_path: Path) -> None:
         assert abs(found[name].value / true - 1) < 0.02, name
 
 
+@pytest.mark.long
 def test_a_viscous_spring_is_told_from_a_hysteretic_one_though_the_motor_sticks(tmp_path: Path) -> None:
     found = figures(tmp_path, ["gear.B_sp=2000"])
     assert "The loop is viscous:" in found["loop_viscous"].how

@@ -113,7 +113,7 @@ def test_what_stands_inside_too_is_left_and_the_range_is_a_word_beside_it() -> N
     assert undecided(p, UNKNOWN, AFTER, None) == (UNKNOWN, True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_clean_campaign_asked_for_speeds_it_was_not_fitted_at_is_no_unknown_effect(
     tmp_path: Path, shared: Path
 ) -> None:

@@ -10,8 +10,8 @@ from tests.blind.cases import Request
 from tests.blind.generate import write_case
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("plan", ["no_torque_sensor", pytest.param("one_direction", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("plan", ["no_torque_sensor", "one_direction"])
 def test_nothing_is_missing_from_a_rig_that_is_the_papers(tmp_path: Path, plan: str) -> None:
     write_case(Request("clean", 5, plan), tmp_path, "case")
     verdict = trace(tmp_path / "case").verdict
