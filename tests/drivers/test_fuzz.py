@@ -3,8 +3,8 @@
 Frames are late, lost, doubled, out of order, truncated, or somebody else's; the drive trips, loses its enable, reboots.
 Whatever happens, no torque is commanded outside a run, none beyond the limit, none after a trip; a fault is left by a
 reset alone; nothing but a sentence is ever raised. HDRIG_FUZZ says how many examples are tried: with 2400 it was run on
-20 November 2026 at commit e34dcae, niced on a busy machine (load 5 to 15): 221 436 steps, 1 203 220 ticks, 6762 runs and
-2574 faults in 74 min of wall time, 12 min of processor time, and no promise was broken.
+20 November 2026 at commit e34dcae, niced on a busy machine (load 5 to 15): 221 436 steps, 1 203 220 ticks, 6762 runs
+and 2574 faults in 74 min of wall time, 12 min of processor time, and no promise was broken.
 """
 
 from __future__ import annotations
