@@ -23,6 +23,7 @@ from rig.core.errors import NotReady
 MOST = 8  # PDOs looked at each way
 EACH_SYNC, AFTER_CHANGE = 1, 0  # transmission types
 AT_ONCE = 255  # of an RPDO: taken when it comes
+AGAIN = 0.1  # s without a first reading until the next SYNC asks for it
 LATCHED: Callable[[Frame], float] = attrgetter("latched")
 ARRIVED: Callable[[Frame], float] = attrgetter("arrived")
 
@@ -150,11 +151,17 @@ class Inputs:
         return f"of {self.node.who} {told}" if told else ""
 
     def first(self, seconds: float) -> None:
-        """Throw away what came before, ask by a SYNC, wait. Raises NotReady when nothing comes."""
+        """Throw away what came before, ask by a SYNC, wait; ask again: a node that was started just now may have missed
+        the first. Raises NotReady when nothing comes."""
+        bus = self.node.bus
         for identifier in self.identifiers:
-            self.node.bus.frames.pop(identifier, None)
-        self.node.bus.sync()
-        if not self.node.bus.wait(seconds, lambda: self.there):
+            bus.frames.pop(identifier, None)
+        until = bus.clock.now() + seconds
+        while (left := until - bus.clock.now()) > 0.0:
+            bus.sync()
+            if bus.wait(min(AGAIN, left), lambda: self.there) or bus.dead:
+                break
+        if not self.there:
             unasked = any(one.time is ARRIVED for one in self._layouts)
             why = "does it tell changes only? Then set its event timer 180xh:5" if unasked else "is it filtered?"
             raise NotReady(f"{self.node.who} sent no PDOs within {seconds:g} s: {why}")

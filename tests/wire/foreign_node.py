@@ -34,6 +34,7 @@ class Ways:
     heartbeat: bool = True  # has 1017h
     beats: bool = True  # and really does
     guarding_only: bool = False  # answers remote frames at 700h + node with a toggling state, no heartbeat
+    missed: int = 0  # SYNCs it does not answer after it was started
     emergencies: tuple[int, ...] = ()  # codes sent when it becomes operational, one after the other
     mute: bool = False  # no SDO answers at all
     short_answers: bool = False  # SDO answers of 4 bytes
@@ -83,6 +84,7 @@ class ForeignNode:
         self._sent: dict[int, bytes] = {}
         self._due: dict[int, float] = {}
         self._beat = 0.0
+        self._missed = 0
         self._bus = can.Bus(interface="virtual", channel=self.channel)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._live, daemon=True)
@@ -138,6 +140,8 @@ class ForeignNode:
                 self.toggle ^= 0x80
         elif identifier == 0 and data[1:] in (b"\0", bytes((self.node,))):
             self._command(data[0])
+        elif identifier == 0x80 and self._missed < self.ways.missed:
+            self._missed += self.state == OPERATIONAL
         elif identifier == 0x80:
             for n in self._running():
                 if self.number(0x1800 + n, 2) == 1:

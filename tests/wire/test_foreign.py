@@ -96,6 +96,13 @@ def test_an_ordinary_encoder_is_mapped_to_sync_and_read() -> None:
     assert encoder.trouble == ""
 
 
+def test_a_node_that_misses_the_first_sync_after_its_start_is_asked_again() -> None:
+    encoder, node = meet(Cia406, ENCODER, tpdos=[POSITION], ways=Ways(missed=2))
+    node.objects[0x6004, 0] = struct.pack("<I", 1024)
+    encoder.connect()
+    assert encoder.read().counts == 1024
+
+
 def test_an_event_timer_from_the_factory_is_switched_off_and_its_frames_are_no_second_node() -> None:
     encoder, node = meet(
         Cia406, ENCODER, tpdos=[Tpdo(0x180 + NODE, 254, [0x60040020], timer=2)], ways=Ways(timer_too=True)
