@@ -53,7 +53,7 @@ def true_flexible(taken: Taken, orders: int = 15) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("speed_rpm", [310.0, 500.0, -300.0])
+@pytest.mark.parametrize("speed_rpm", [310.0, *(pytest.param(s, marks=pytest.mark.long) for s in (500.0, -300.0))])
 def test_the_flexible_part_at_speed_is_that_of_the_plant_and_of_linear_theory(
     campaign: tuple[Rig, Taken], speed_rpm: float
 ) -> None:

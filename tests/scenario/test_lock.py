@@ -36,6 +36,7 @@ def figures(root: Path, overrides: list[str]) -> dict[str, Any]:
     return {e.name: e for e in result.estimates} | {"sentence": result.sentence}
 
 
+@pytest.mark.long
 def test_a_straight_spring_is_found_with_its_stiffness(tmp_path: Path) -> None:
     found = figures(tmp_path, [])
     assert "one line describes it" in found["sentence"]

@@ -148,7 +148,7 @@ def test_energy_ledger_closes_with_everything_on(twin: TwinParameters) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("section", [*SECTIONS, "everything"])
+@pytest.mark.parametrize("section", [*(pytest.param(s, marks=pytest.mark.long) for s in SECTIONS), "everything"])
 def test_substeps_are_short_enough_with_each_of_them_and_converge(calm: TwinParameters, section: str) -> None:
     parameters = having(calm, EVERYTHING if section == "everything" else only(section))
     fine = run_with_reversals(parameters, 32.0, 2000)[1]

@@ -34,7 +34,7 @@ def inside(seed: int, **conditions: Any) -> tuple[np.ndarray, bool]:
         pytest.param({"rate": 250.0, "counts_m": 65_536, "counts_l": 1_296_000}, 16, id="4 ms rows"),
         pytest.param({"cycles": 1}, 24, id="one cycle, six revolutions forward", marks=pytest.mark.long),
         pytest.param({"trend_arcsec": 60.0}, 24, id="eccentric output", marks=pytest.mark.long),
-        pytest.param({"wander_s": 3.0, "wander_arcsec": 0.6}, 24, id="slow friction", marks=pytest.mark.slow),
+        pytest.param({"wander_s": 3.0, "wander_arcsec": 0.6}, 24, id="slow friction", marks=pytest.mark.long),
     ],
 )
 def test_intervals_cover_the_truth_as_often_as_they_say(conditions: Mapping[str, Any], seeds: int) -> None:

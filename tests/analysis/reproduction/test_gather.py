@@ -37,7 +37,7 @@ def entries_of(folder: Path) -> list[Entry]:
     return [e for name in SOME for e in entries((folder / name).resolve())]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_one_process_and_two_and_reading_ahead_give_the_same_figures(found: list[Entry]) -> None:
     one, two = (gather(found, processes=n) for n in (1, 2))
     with Ahead() as ahead:

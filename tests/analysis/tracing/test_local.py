@@ -206,7 +206,7 @@ STEPS = {  # rad that a reading is off by from a moment on, by run
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated(tmp_path: Path, shared: Path) -> None:
     names = ("slow_ke_1", "load_2.5nm_1", "load_10nm_1", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1")
 

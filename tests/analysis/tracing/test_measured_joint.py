@@ -22,7 +22,7 @@ def test_the_weight_is_named_and_what_is_left_goes_with_the_angle_of_the_joint(s
     assert low < 37_000 < high  # N·m/rad, the slope of torsion over torque
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_friction_of_an_order_that_was_put_in_is_given_back(shared: Path, tmp_path: Path) -> None:
     d = traced(spiked(imported(tmp_path), tmp_path / "spiked", friction, 0.3))
     assert set(d["verdict"]["effects"]) == ARM | {"position_dependent_friction"}
@@ -38,7 +38,7 @@ def test_a_large_runout_is_named_beside_a_rest(shared: Path, tmp_path: Path) -> 
     assert set(verdict["effects"]) == ARM | {"output_once_per_rev"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_no_effect_is_named_where_a_channel_it_acts_in_is_not_explained(shared: Path, tmp_path: Path) -> None:
     verdict = traced(spiked(imported(tmp_path), tmp_path / "spiked", steps, 5e-4))["verdict"]
     assert verdict["status"] == "unknown_effect"

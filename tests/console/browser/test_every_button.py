@@ -14,22 +14,26 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
 SHOWN = "button => button.checkVisibility() && !button.closest('[inert]')"
 
 
-@pytest.mark.parametrize("name", SITUATIONS)
-def test_every_button_does_what_the_table_says_or_says_why_not(page: Page, station: Puppet, name: str) -> None:
-    told, expected = SITUATIONS[name]
-    station.tell(**{**AT_REST, **told})
-    page.wait_for_selector(f"html[data-revision='{station.revision}']", state="attached")
-    if "start" in expected:
-        page.wait_for_selector("#start[aria-disabled=false]")  # its parameters have been looked at
-    for what, button in BUTTONS.items():
-        found = page.locator(button.selector)
-        if not found.evaluate(SHOWN):
-            assert what not in expected, f"{what} is hidden"
-        elif what in expected:
-            assert _sent(found, station) == [button.act], what
-        else:
-            assert _sent(found, station) == [], what
-            assert text(page, "#answer") == f"Not possible now: {_why(button, station)}", what
+def test_every_button_does_what_the_table_says_or_says_why_not(page: Page, station: Puppet) -> None:
+    """On one page, from one situation to the next: that of before leaves no button as it was."""
+    for name, (told, expected) in SITUATIONS.items():
+        station.tell(**{**AT_REST, **told})
+        page.wait_for_selector(f"html[data-revision='{station.revision}']", state="attached")
+        if "start" in expected:
+            page.wait_for_selector("#start[aria-disabled=false]")  # its parameters have been looked at
+        for what, button in BUTTONS.items():
+            _press(page, station, f"{name}: {what}", button, what in expected)
+
+
+def _press(page: Page, station: Puppet, which: str, button: Button, expected: bool) -> None:
+    found = page.locator(button.selector)
+    if not found.evaluate(SHOWN):
+        assert not expected, f"{which} is hidden"
+    elif expected:
+        assert _sent(found, station) == [button.act], which
+    else:
+        assert _sent(found, station) == [], which
+        assert text(page, "#answer") == f"Not possible now: {_why(button, station)}", which
 
 
 def _sent(button: Locator, station: Puppet) -> list[str]:
