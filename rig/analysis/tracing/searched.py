@@ -37,10 +37,11 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     give_back()
     again, found = _again(p, found, bank, covered)
     give_back()
-    selected = select(again, found, runs, covered)
+    calm = quiet or is_calm(p)
+    selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
     if not quiet:
         selected = select_further(selected, found, bank, runs, covered)
-    if (quiet or is_calm(p)) and not is_certain(selected):
+    if calm and not is_certain(selected):
         found = Found(start, found.ranking)
         selected = select(p, found, runs, covered)
     del bank  # half a gigabyte, and the report is made by two processes

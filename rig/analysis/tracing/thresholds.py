@@ -46,6 +46,11 @@ FAIR: Final = 0.04  # of an effect's work, in a channel: a fifth of its size; wi
 FAINT: Final = 0.05  # of the floor, RMS: what a run has less of is its columns' own sensor noise, and wants no size
 ALL: Final = 0.95  # of the excess: with so much explained, sizes may be LOOSELY times as unsteady
 LOOSELY: Final = 2.0  # because little is left of the run to tell a size by
+# one-way analysis of variance of the sizes that runs want, where the baseline alone is at the floor
+FREE: Final = 8  # degrees of freedom that repeats must have between them: from fewer no variance is known
+BY_CHANCE: Final = 0.01  # probability above which conditions differ by no more than repeats do
+OF_ONE_SIZE: Final = 2.5  # standard deviations between what unseen runs want and what seen ones do
+PLAIN_AMONG_REPEATS: Final = 50.0  # squared size over variance between repeats: 7 σ; clean campaigns have 30 at most
 SHADOW: Final = 10.0  # times its size: a law is seldom better than a tenth, and what it has wrong looks like another
 FAIRLY: Final = 0.2  # relative: what is fair takes so nearly what it should, in all runs
 PLAINLY: Final = 0.8  # of the excess, for what is plain to see: a law a little off leaves a sixth, mimics a third

@@ -28,6 +28,7 @@ class HeldOut:
     lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
     gains: dict[Key, float]  # what a torque sensor's gain may do along T in a lock test, rad per N·m
     inferred: frozenset[Key] = frozenset()  # blocks that lean on orders of θ̃_p which nobody has read
+    calm: bool = False  # the baseline alone is at the floor
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,8 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, without
+from rig.analysis.tracing.selection.as_repeats import as_repeats
+from rig.analysis.tracing.selection.done import done
 from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.analysis.tracing.thresholds import (
     ABOUT,
@@ -45,7 +47,7 @@ class HeldOutScore:
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
     largest ratio that remains in a channel in which it acts at all, `overall` its RMS over the floor over all runs of
     the channel it does most in. `runs` fitted ones show it, or so many stretches of a lone one, between which its size
-    differs by `stretched`."""
+    differs by `stretched`. `as_repeats`: runs want sizes that differ by no more than those of repeats do."""
 
     name: str
     share: float
@@ -60,13 +62,15 @@ class HeldOutScore:
     overall: float = 0.0
     runs: int = SEVERAL
     stretched: float = 0.0
+    as_repeats: bool = False
 
     @property
     def named(self) -> bool:
         """Whether it may be named."""
-        real = self.size > SMALLEST and REAL < self.true < UNREAL and self.harm < HARMFUL
         loose = LOOSELY if self._explains_all else 1.0
-        real = real and self.unsteady < loose * UNSTEADY and self.apart < loose * APART
+        steady = self.unsteady < loose * UNSTEADY and self.apart < loose * APART
+        one_size = (REAL < self.true < UNREAL and steady) or self.as_repeats
+        real = self.size > SMALLEST and one_size and self.harm < HARMFUL
         # a law that leaves a loud rest may be another's: it must then at least take what it should, in one size
         loud = self.left > EXPLAINED and self.share < MOSTLY
         real = real and (self.fairly or not loud)
@@ -74,8 +78,8 @@ class HeldOutScore:
 
     @property
     def fairly(self) -> bool:
-        """Whether it takes away what it should, and wants one size in all runs, to a fifth."""
-        return abs(self.true - 1.0) < FAIRLY and max(self.unsteady, self.apart) < FAIRLY
+        """Whether it takes away what it should, and wants one size in all runs, to a fifth or as well as repeats do."""
+        return (abs(self.true - 1.0) < FAIRLY and max(self.unsteady, self.apart) < FAIRLY) or self.as_repeats
 
     @property
     def plain(self) -> bool:
@@ -144,6 +148,7 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         overall({key: r**2 * whole[key].size for key, r in size.items()}, d),
         shown,
         stretched,
+        at.calm and as_repeats(s, rest, d, at),
     )
 
 
@@ -188,7 +193,7 @@ def unsteadiness(
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     shown = set()
-    for key, part, f, e in _done(s, rest, d, floors, parts):
+    for key, part, f, e in done(s, rest, d, floors, parts):
         own = float(f @ f)
         if own > FAINT**2 * e.size:
             spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
@@ -201,14 +206,3 @@ def unsteadiness(
     # a channel it hardly shows in says nothing of it: what is left there is something else's
     whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
     return float(whole), float(apart), len(shown)
-
-
-def _done(
-    s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int
-) -> Iterator[tuple[Key, int, Array, Array]]:
-    """Block, part of the run, what the effect does there and what is left with it, both over the floor (n,)."""
-    for key in d.y:
-        e = d.residual(key, s.x) / floors[key]
-        f = d.residual(key, rest.x) / floors[key] - e
-        for part, (mine, left) in enumerate(zip(np.array_split(f, parts), np.array_split(e, parts), strict=True)):
-            yield key, part, mine, left

@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from rig.analysis.tracing.fit.covariance import covariance, scatter
+from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced
-from rig.analysis.tracing.floor.noise import measure, quieter
+from rig.analysis.tracing.floor.noise import Measured, measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
@@ -153,9 +154,14 @@ def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
-    again = replace(p, measured=measured, held_out=held_out_blocks(p.eq, measured, p.split.held_out))
+    again = replace(p, measured=measured, held_out=_held_out(p, p.eq, measured))
     known = repeats(p.eq.runs, runs) or not is_loud(again.held_out, s, unseen(s, again.held_out))
     return again if known else p
+
+
+def _held_out(p: Prepared, eq: Equations, measured: Measured) -> HeldOut:
+    """Those blocks anew, of a campaign that is as calm as it was."""
+    return replace(held_out_blocks(eq, measured, p.split.held_out), calm=p.held_out.calm)
 
 
 def is_loud(at: HeldOut, s: Solution, held: Design) -> bool:
@@ -171,5 +177,5 @@ def _own_kept(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
     left = p.own.without(failing)
     again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
     eq = replace(s.design.eq, own=left.columns())
-    again = replace(again, held_out=held_out_blocks(again.eq, again.measured, p.split.held_out))
+    again = replace(again, held_out=_held_out(p, again.eq, again.measured))
     return again, fit(design(eq, s.design.terms, p.split.fitted))

@@ -1,0 +1,110 @@
+"""Whether the size that single runs want of an effect differs by no more than it does between repeats of one run.
+
+Friction that wanders by some thousandths from run to run gives every run another size of an effect of friction, far
+beyond the noise of its rows. Repeats of one run show how much; what only looks like the effect wants another size in
+every condition, the same in its repeats: a one-way analysis of variance, the conditions being its groups.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import fdtrc
+
+from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.model import Design, Solution
+from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.runs.holdout import whole_run
+from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.selection.done import done
+from rig.analysis.tracing.selection.held_out import HeldOut
+from rig.analysis.tracing.thresholds import BY_CHANCE, FAINT, FAIR, FREE, OF_ONE_SIZE, PLAIN_AMONG_REPEATS
+
+
+@dataclass
+class Condition:
+    """Runs of one condition in one channel: `wanted` beyond the size all have, in units of a row's noise, (runs,)."""
+
+    run: Recording
+    names: set[str] = field(default_factory=set)
+    wanted: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Shown:
+    """One channel: what the effect does there over the floor, squared and summed, in all and in unseen runs; what is
+    left along it in the unseen ones; and the conditions."""
+
+    kappa: float
+    own: float = 0.0
+    unseen: float = 0.0
+    left: float = 0.0
+    conditions: list[Condition] = field(default_factory=list)
+
+
+def as_repeats(s: Solution, rest: Solution, d: Design, at: HeldOut) -> bool:
+    """Whether an effect, `rest` being the fit without it, is plainly there beside what repeats differ by, wants sizes
+    that differ between conditions by no more than repeats do, and one size in runs seen and unseen (of `d`). False
+    where too few runs were repeated to say."""
+    shown = _shown(s, rest, d, at)
+    total = sum(channel.own for channel in shown)
+    if not total:
+        return False
+    fair = [channel for channel in shown if channel.own > FAIR * total]
+    noise = [_between_repeats(channel) for channel in fair]
+    plain = sum(channel.own / n for channel, n in zip(fair, noise, strict=True))
+    return plain > PLAIN_AMONG_REPEATS and all(_is_one_size(c, n) for c, n in zip(fair, noise, strict=True))
+
+
+def _shown(s: Solution, rest: Solution, d: Design, at: HeldOut) -> list[Shown]:
+    shown = {c: Shown(d.eq.noise.kappa[c]) for c in CHANNELS if c in d.eq.noise.kappa}
+    for design, floors, unseen in ((d, at.floors, True), (s.design, at.seen, False)):
+        for (run, c), _, f, e in done(s, rest, design, floors):
+            own, along = float(f @ f), float(f @ e)
+            if own <= FAINT**2 * e.size:
+                continue
+            channel = shown[c]
+            channel.own += own
+            channel.unseen += own if unseen else 0.0
+            channel.left += along if unseen else 0.0
+            _condition(channel.conditions, design.eq.runs[run]).wanted.append(along / np.sqrt(own))
+    return list(shown.values())
+
+
+def _condition(conditions: list[Condition], run: Recording) -> Condition:
+    """The one a run belongs to. Two parts of a run are no repeats of each other."""
+    name = whole_run(run.name)
+    found = next((c for c in conditions if name not in c.names and alike(c.run, run)), None)
+    if found is None:
+        found = Condition(run)
+        conditions.append(found)
+    found.names.add(name)
+    return found
+
+
+def _between_repeats(channel: Shown) -> float:
+    """Variance of what runs want, as their repeats tell it; infinite where they are too few to."""
+    free = _free(channel.conditions)
+    if free < FREE:
+        return float("inf")
+    return max(channel.kappa, _within(channel.conditions) / free)
+
+
+def _is_one_size(channel: Shown, noise: float) -> bool:
+    """Whether chance makes conditions differ as much, and what unseen runs want beside what seen ones do."""
+    groups = len(channel.conditions)
+    if groups < 2 or not channel.unseen:
+        return False
+    between = sum(len(c.wanted) * float(np.mean(c.wanted)) ** 2 for c in channel.conditions) / (groups - 1)
+    chance = float(fdtrc(groups - 1, _free(channel.conditions), between / noise))
+    return chance > BY_CHANCE and abs(channel.left) < OF_ONE_SIZE * np.sqrt(noise * channel.unseen)
+
+
+def _free(conditions: Sequence[Condition]) -> int:
+    return sum(len(c.wanted) - 1 for c in conditions)
+
+
+def _within(conditions: Iterable[Condition]) -> float:
+    return sum(float(np.var(c.wanted)) * len(c.wanted) for c in conditions)
