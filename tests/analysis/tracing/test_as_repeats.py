@@ -10,6 +10,7 @@ import pytest
 
 from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.analysis.tracing.selection import as_repeats as module
+from rig.analysis.tracing.selection import selected
 from rig.analysis.tracing.selection.as_repeats import as_repeats
 from rig.analysis.tracing.selection.score import HeldOutScore
 
@@ -92,3 +93,18 @@ def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:
     assert not HeldOutScore("load_dependent_friction", 0.2, 1.4, 0.8, 1.0, (), as_repeats=True).named  # of the excess
     assert not HeldOutScore("load_dependent_friction", 1.2, 0.3, 0.8, 1.0, (), as_repeats=True).named  # too small
     assert not HeldOutScore("load_dependent_friction", 1.2, 1.4, 0.8, 1.0, (), harm=1.2, as_repeats=True).named
+
+
+def test_what_repeats_vouch_for_may_be_smaller_where_nothing_is_above_the_floor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
+
+    def certain(**said: Any) -> bool:
+        score = HeldOutScore("stribeck_friction", 1.2, 0.6, 0.8, 1.05, (), **said)
+        found: Any = SimpleNamespace(scores=[score], solution=None, loud=False)
+        return selected.is_certain(found)
+
+    assert certain(as_repeats=True)
+    assert certain(as_repeats=True, unsteady=0.65, apart=0.65)
+    assert not certain()

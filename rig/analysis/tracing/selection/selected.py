@@ -24,7 +24,7 @@ from rig.analysis.tracing.selection.elimination import (
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET
+from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET, VOUCHED_FOR
 from rig.model.effect import Array, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -117,10 +117,14 @@ def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach)
 
 def is_certain(selected: Selected) -> bool:
     """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
-    few repeats, and can be too high. Every name must be large, of one size in all runs and what it acts on must be
-    explained, and nothing unnamed be needed beside it."""
+    few repeats, and can be too high. Every name must be large, or repeats vouch for it, of one size in all runs and
+    what it acts on must be explained, and nothing unnamed be needed beside it."""
     plain = selected.scores and not confounders_in(selected.solution) and not selected.loud
-    return bool(plain) and all(score.size > PLAIN_TO_SEE and score.fairly for score in selected.scores)
+    return bool(plain) and all(_is_plain_to_see(score) for score in selected.scores)
+
+
+def _is_plain_to_see(score: HeldOutScore) -> bool:
+    return score.fairly and score.size > (VOUCHED_FOR if score.as_repeats else PLAIN_TO_SEE)
 
 
 def is_calm(p: Prepared) -> bool:
