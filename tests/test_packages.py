@@ -7,6 +7,8 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
+
 import drivers
 import rig
 import sim
@@ -46,6 +48,7 @@ def named_modules(file: Path) -> set[str]:
     return {text.split(".")[1] for text in texts if re.fullmatch(r"rig(\.\w+)+", text) and is_module(text)}
 
 
+@pytest.mark.slow
 def test_what_is_started_or_loaded_by_name_lies_no_higher_than_who_names_it() -> None:
     high, above = layers(), []
     for file in sorted((ROOT / "rig").rglob("*.py")):

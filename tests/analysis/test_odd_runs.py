@@ -64,6 +64,7 @@ def test_a_ratio_no_gear_has_settles_nothing(ratio: float) -> None:
     assert result.verdict is Verdict.INCONCLUSIVE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("procedure", PROCEDURES)
 @pytest.mark.parametrize("rate", [1e3, 1e4, 1e6])
 @pytest.mark.parametrize("rows", [16, 17, 40, 200])

@@ -27,6 +27,7 @@ def in_fault(rig: Wired) -> None:
     rig.wire.wait_until(rig.wire.now() + 0.01)
 
 
+@pytest.mark.slow
 def test_the_doctor_says_so_of_every_device_and_of_the_bench(rig: Wired, capsys: pytest.CaptureFixture[str]) -> None:
     main(["doctor", "--bench", "twin-can"])
     said = capsys.readouterr().out

@@ -123,6 +123,7 @@ def test_it_survives_the_death_of_every_process() -> None:
         ring.close()
 
 
+@pytest.mark.slow
 def test_a_reader_beside_a_producer_at_full_speed_sees_no_torn_row() -> None:
     command = [sys.executable, "-c", HAMMER, str(HAMMERED)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as hammer:

@@ -26,6 +26,7 @@ def nodes() -> list[Found]:
     return found
 
 
+@pytest.mark.slow
 def test_every_node_is_found_with_profile_identity_and_plate(nodes: list[Found]):
     assert [(n.number, n.profile) for n in nodes] == [(1, 402), (2, 406), (3, 404)]
     assert nodes[0].identity.model == "hdrig twin servo drive"

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from rig.evaluation.run import analyse_folder, changed_journal
 from rig.runfile import manifest
 from rig.runfile.finalise import finalise
 from tests.runfile.rows import new_folder, write_journal
 
 
+@pytest.mark.slow
 def test_a_shortened_journal_is_named_with_the_rows_that_are_gone_and_meets_no_limit(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     write_journal(folder, 0, 300, close=False)

@@ -25,6 +25,7 @@ def scaled(name: str, factor: float) -> pa.Table:
     return table.set_column(i, table.schema.field(i), pc.multiply(table[name], factor))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -44,6 +45,7 @@ def test_a_torque_in_mNm_is_a_check_that_is_not_met(tmp_path: Path, name: str, w
     assert "within_range" in (folder / "result.json").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("bench", "factor"), [(BENCH, 1.0), ("", 1e3), ("[torque_sensor]\nrange = 'wide'", 1e3)])
 def test_nothing_is_said_of_torques_in_range_or_of_a_bench_that_says_none(
     tmp_path: Path, bench: str, factor: float

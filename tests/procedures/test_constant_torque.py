@@ -35,6 +35,7 @@ def test_it_measures_under_one_torque_near_the_speed_and_comes_to_rest(speed_rpm
     assert columns["tau_applied"][-1] == 0.0
 
 
+@pytest.mark.slow
 def test_the_measured_part_is_found_again_from_the_rows() -> None:
     done = taken(speed_rpm=300.0)
     motion = motion_of(done.run)

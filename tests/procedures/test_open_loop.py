@@ -16,6 +16,7 @@ from tests.fakes import SETTING
 BEYOND = "of motor torque, the bench allows 5 N·m"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -68,6 +68,7 @@ def run(
     return Ran(ending, t, motor - motor[0], shaft, asked, notes, left)
 
 
+@pytest.mark.slow
 def test_it_winds_both_ways_to_the_torque_asked_for_and_ends_unwound() -> None:
     done = run(StiffnessLock(**SHORT))
     assert isinstance(done.ending, Ending)

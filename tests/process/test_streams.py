@@ -65,6 +65,7 @@ def test_a_run_whose_stderr_is_closed_runs_and_its_number_is_no_files(tmp_path: 
     assert shut.stdout.splitlines()[-1] == b"/dev/null"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
 def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost(encoding: str) -> None:
     args = [sys.executable, "-c", TEN, "run", "standstill", "--dry-run"]
@@ -78,6 +79,7 @@ def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost
     assert shown[encoding].returncode == shown["utf-8"].returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("args", [["--help"], ["list", "--help"], ["run", "standstill", "--dry-run"]])
 def test_output_for_which_there_is_no_room_is_told_and_the_code_is_2(args: list[str]) -> None:
     with open("/dev/full", "w") as full:

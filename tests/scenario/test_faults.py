@@ -40,6 +40,7 @@ FAULTS: dict[str, tuple[Strike, str, float]] = {
 UNSEEN = {("load encoder frozen", "coming to rest")}  # nothing moves any more
 
 
+@pytest.mark.slow
 def test_a_torque_sensor_that_repeats_itself_is_flagged_and_does_not_stop_the_run() -> None:
     ending, sink, _, _, struck = run_with(lambda rig: setattr(rig.torque_sensor, "fault", Frozen()), 3.0)
     assert ending.status == "completed"

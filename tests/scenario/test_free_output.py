@@ -121,7 +121,7 @@ def test_the_speed_that_is_slow_enough_is_that_of_linear_theory_on_five_gears(
     assert min(abs(best / (0.993 * g) - 1.0) for g in grid) < 0.01, "one of the speeds run"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_full_turn_finds_what_was_planted_once_per_output_turn_and_on_the_flexspline() -> None:
     lines = "twin.effects.error_lines."
     rig = Rig((lines + "output_deg=0.002", lines + "flexspline_deg=0.0005"))

@@ -45,6 +45,7 @@ def test_the_run_folder_is_complete_and_keeps_its_promises(slow_run: Path) -> No
     assert manifest["proof"]["ratio"] == pytest.approx(50.0, rel=0.01)
 
 
+@pytest.mark.slow
 def test_samples_are_one_a_millisecond_with_asked_and_applied_torque(slow_run: Path) -> None:
     table = pq.read_table(slow_run / "samples.parquet")
     t = table["t"].to_numpy()

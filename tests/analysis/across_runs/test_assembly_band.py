@@ -38,6 +38,7 @@ def estimate(result: Result, name: str) -> Estimate:
     return next(e for e in result.estimates if e.name == name)
 
 
+@pytest.mark.slow
 def test_the_band_holds_95_of_100_single_fittings() -> None:
     inside = []
     for seed in range(400):
@@ -48,6 +49,7 @@ def test_the_band_holds_95_of_100_single_fittings() -> None:
     assert np.mean(inside) == pytest.approx(0.95, abs=0.03)
 
 
+@pytest.mark.slow
 def test_fitting_anew_alone_passes_for_an_effect_of_the_depth_in_5_of_100() -> None:
     found = [at(cells(runs := swept(seed), repeat(runs)), 0.3, 0.0).beyond for seed in range(400)]
     assert np.mean(found) == pytest.approx(0.05, abs=0.03)

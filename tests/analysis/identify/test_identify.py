@@ -106,6 +106,7 @@ def test_an_encoder_that_reads_late_is_found_and_does_not_pass_for_damping(
     assert found["K"].value == pytest.approx(gear.K, rel=0.005)
 
 
+@pytest.mark.slow
 def test_what_no_run_shows_is_declared_or_assumed_and_said(campaign: list[Recording]) -> None:
     bare = [replace(r, tau_l=None) for r in campaign]
     found = identified(fit(bare, 15), {"declared": {"K": 7160.0, "J_l": 0.3, "J_m": 1e-3}})

@@ -17,6 +17,7 @@ def scaled(run: MadeRun, factor: float) -> MadeRun:
     return replace(run, columns={k: v * factor if k in ("theta_m", "theta_l") else v for k, v in run.columns.items()})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "word"), [(1 / DEG, "in deg?"), (1 / TURN, "in turns?"), (TURN, "2π twice?")])
 @pytest.mark.parametrize("referenced", [True, False])
 def test_a_unit_that_looks_wrong_is_said_instead_of_advice_on_gains(factor: float, word: str, referenced: bool) -> None:
