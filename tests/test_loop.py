@@ -20,6 +20,7 @@ from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
 
+@pytest.mark.slow
 @dataclass(frozen=True)
 class Constant(Procedure):
     """Half a newton metre for two seconds; calls `at` on the world at tick 500."""

@@ -58,6 +58,7 @@ def test_a_run_cut_short_is_no_error(procedure: str, rows: int) -> None:
     assert analyse(MadeRun(columns, {"procedure": procedure, "status": "interrupted"})).sentence
 
 
+@pytest.mark.slow
 def test_counts_alone_are_enough_when_the_encoders_are_declared() -> None:
     whole = at_speed()
     counts = {
@@ -70,6 +71,7 @@ def test_counts_alone_are_enough_when_the_encoders_are_declared() -> None:
     assert abs(amplitude.value - 39.6) < 0.1
 
 
+@pytest.mark.slow
 def test_a_wrapped_angle_is_unwrapped_and_said() -> None:
     whole = at_speed()
     wrapped = {**whole.columns, "theta_m": np.mod(whole.columns["theta_m"], TURN)}
@@ -78,6 +80,7 @@ def test_a_wrapped_angle_is_unwrapped_and_said() -> None:
     assert abs(next(e for e in result.estimates if e.name == "fourier_amplitude_2").value - 39.6) < 0.1
 
 
+@pytest.mark.slow
 def test_a_procedure_without_an_analysis_of_its_own_says_so() -> None:
     whole = at_speed()
     result = analyse(MadeRun(whole.columns, {**whole.manifest, "procedure": "wobble"}))

@@ -48,6 +48,7 @@ def in_one_piece() -> Any:
     return run, analyse(run), motion_of(run)
 
 
+@pytest.mark.slow
 def test_figures_and_curves_of_a_run_are_the_same_in_stretches(in_one_piece: Any, long: None) -> None:
     run, whole, _ = in_one_piece
     found = analyse(run)

@@ -49,6 +49,7 @@ def test_a_bus_that_is_missing_leaves_no_folder(
     assert list(out.rglob("*")) == []
 
 
+@pytest.mark.slow
 def test_a_refusal_before_the_first_row_leaves_no_folder_and_is_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

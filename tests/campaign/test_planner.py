@@ -38,6 +38,7 @@ def fast() -> object:
     return read("twin", ["limits.speed_rpm=1500", "limits.travel_turns=2000"])
 
 
+@pytest.mark.slow
 def test_a_run_into_the_resonance_of_order_2_is_refused_with_speed_and_swing() -> None:
     with pytest.raises(NotReady) as refused:
         campaign(turning(700), bench=fast())  # type: ignore[arg-type]
@@ -59,6 +60,7 @@ def test_a_single_run_into_the_resonance_is_refused_as_well(
     assert ("predicted   the shaft torque swings by ±26.30 N·m" in said.out) is bool(how)
 
 
+@pytest.mark.slow
 def test_a_single_run_through_the_resonance_can_be_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     asked = ["run", "constant-torque", "--with", "speed_rpm=700", "--set", "limits.speed_rpm=1500", "--dry-run"]
     assert main([*asked, "--allow-resonance"]) == 0

@@ -60,6 +60,7 @@ def test_a_word_there_is_not_is_refused_with_what_there_is(tmp_path: Path, words
         asked(**words)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(st.binary(max_size=60) | ANYTHING.map(lambda x: json.dumps(x).encode()))
 def test_no_manifest_ends_the_listing(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
@@ -126,6 +127,7 @@ def test_a_manifest_that_never_ends_keeps_no_listing_waiting(tmp_path: Path) -> 
     assert "1073741824 bytes long" in rows["huge"]
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @example("conditions", {"depth_mm": [float("nan")]})
 @given(st.sampled_from([*MANIFEST, "started_utc", "label", "campaign", "rows", "process", "exit_reason"]), ANYTHING)

@@ -124,6 +124,7 @@ def test_a_resonance_inside_the_asked_speed_is_predicted_announced_and_kept_clea
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_resonance_is_entered_only_by_whoever_asks_for_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked = ("run", "constant-torque", "--with", "speed_rpm=700", *FAST, "--dry-run", "--out", str(tmp_path))
     assert main(list(asked)) == Exit.NOT_READY

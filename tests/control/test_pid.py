@@ -2,6 +2,7 @@
 
 import math
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -28,6 +29,7 @@ def test_the_first_tick_on_the_measured_position_is_bumpless(theta: float, omega
     assert Pid(GAINS, 0.001).step(theta, 0.0, theta, 0.0) == 0.0
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(ANGLE, SPEED, ANGLE, SPEED), min_size=1, max_size=30))
 def test_mirrored_inputs_give_mirrored_torque(inputs: list[tuple[float, float, float, float]]) -> None:
     one, other = Pid(GAINS, 0.001), Pid(GAINS, 0.001)
@@ -66,6 +68,7 @@ def test_placed_poles_lie_where_they_were_asked() -> None:
     assert np.allclose(np.sort(roots), [-120.0, -15.0, -5.0], rtol=1e-9)
 
 
+@pytest.mark.slow
 @given(st.floats(-100.0, 100.0), st.floats(1e-4, 0.1))
 def test_the_speed_filter_settles_on_the_true_speed(speed: float, time_constant: float) -> None:
     f = SpeedFilter(time_constant)

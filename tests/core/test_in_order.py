@@ -16,6 +16,7 @@ from rig.core.errors import DataError
 from rig.core.in_order import Keyed, in_order
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 4), max_size=40), st.booleans())
 def test_the_order_is_that_of_a_sort_in_memory_equal_keys_in_the_order_they_came(
     keys: list[int], reverse: bool
@@ -28,6 +29,7 @@ def test_the_order_is_that_of_a_sort_in_memory_equal_keys_in_the_order_they_came
         assert list(in_order(iter(found), reverse)) == wanted
 
 
+@pytest.mark.slow
 def test_ten_times_as_many_lines_take_little_more_memory() -> None:
     def lines(count: int) -> Iterator[Keyed]:
         return ((k * 7919 % count, f"{k:0200d}") for k in range(count))

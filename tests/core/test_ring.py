@@ -85,6 +85,7 @@ def test_rows_that_are_not_there_yet_are_left_out(ring: Ring) -> None:
     assert len(ring.read(5, 10)) == 0
 
 
+@pytest.mark.slow
 @given(
     st.integers(1, 9),
     st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=30),

@@ -70,18 +70,21 @@ def test_a_harmless_cause_that_is_expected_to_trip_fails_the_drill() -> None:
     assert "expected a trip" in outcome.wrong[0]
 
 
+@pytest.mark.slow
 def test_a_detection_declared_too_fast_fails_the_drill() -> None:
     lost = next(c for c in CAUSES if c.name == "encoder's frames lost")
     outcome = drill(dataclasses.replace(lost, detection=0.0), TRACKING)
     assert any("ms after the cause" in what for what in outcome.wrong)
 
 
+@pytest.mark.slow
 def test_a_fault_that_was_to_be_ridden_out_fails_the_drill_when_it_trips() -> None:
     trips = next(c for c in CAUSES if c.name == "drive trips by itself")
     outcome = drill(dataclasses.replace(trips, expected=Expected.GO_ON), TRACKING)
     assert "expected to go on" in outcome.wrong[0]
 
 
+@pytest.mark.slow
 def test_old_targets_queued_in_a_dead_bus_never_reach_the_drive() -> None:
     rig = CanopenRig()
     heard: list[tuple[float, bytes]] = []

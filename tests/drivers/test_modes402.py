@@ -56,6 +56,7 @@ def test_position_rows_hold_the_angles_asked_for_and_given_to_a_count():
     assert math.isnan(sink.rows[-1][1])  # the torque was off: nothing was asked for
 
 
+@pytest.mark.slow
 def test_a_stop_in_position_mode_brings_the_motor_to_rest_and_then_lets_go():
     w = connected('control.mode="position"')
     interrupts = Interrupts()

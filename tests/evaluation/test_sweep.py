@@ -41,6 +41,7 @@ def silent(text: str) -> None:
     """Nobody asks for progress."""
 
 
+@pytest.mark.slow
 def test_an_assembly_sweep_ends_with_every_depth_and_the_band(swept_folder: Path) -> None:
     made = to_depths(swept_folder, silent)
     assert made.exit == 0

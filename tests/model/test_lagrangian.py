@@ -63,6 +63,7 @@ def test_the_structure_of_equations_6_and_7_follows_from_the_energies() -> None:
     assert sympy.simplify((load - seven).doit()) == 0
 
 
+@pytest.mark.slow
 def test_power_in_is_what_is_stored_and_twice_the_rayleigh_function() -> None:
     motor, load, s = forces()
     t, w, v = s["t"], s["theta_m"].diff(s["t"]), s["theta_l"].diff(s["t"])

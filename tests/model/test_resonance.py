@@ -52,6 +52,7 @@ def test_both_directions_swing_alike_but_for_the_phases_that_damping_shifts() ->
     assert predicted_swing(GEAR, SERIES, -40.0) == pytest.approx(predicted_swing(GEAR, SERIES, 40.0), rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_worst_swing_on_the_way_is_at_a_resonance_and_at_least_that_of_the_speed_itself() -> None:
     swing, omega = worst_swing(GEAR, SERIES, 800 * RPM)
     assert omega / RPM == pytest.approx(755, abs=5)

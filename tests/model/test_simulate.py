@@ -174,6 +174,7 @@ def test_without_torque_friction_brings_it_to_rest_and_keeps_it(gear: Gear) -> N
     assert motion.lost[-1] == pytest.approx(motion.stored[0] - motion.stored[-1], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_load_under_a_known_motion_goes_where_both_together_went(gear: Gear) -> None:
     wave = at_speed(gear, 300 * RPM)
     t = np.arange(0.0, 2.5, 1e-3)

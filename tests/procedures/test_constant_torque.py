@@ -47,6 +47,7 @@ def test_the_measured_part_is_found_again_from_the_rows() -> None:
     assert window.torque == pytest.approx(done.ending.finding.torque)
 
 
+@pytest.mark.slow
 def test_a_torque_that_is_given_is_the_torque_that_is_commanded() -> None:
     done = taken(speed_rpm=310.0, torque=0.435)
     assert done.ending.finding.torque == 0.435

@@ -51,6 +51,7 @@ def test_a_dry_run_tells_where_a_torque_leads_and_not_what_was_asked_for(
     assert "open loop   torque = 0.435 N·m takes the motor to 333 rpm" in said
 
 
+@pytest.mark.slow
 def test_without_declared_friction_the_most_it_can_be_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -89,6 +89,7 @@ def test_a_free_output_is_refused_with_numbers_before_anything_is_wound_up() -> 
     assert np.abs(done.motor).max() < np.radians(4.0)
 
 
+@pytest.mark.slow
 def test_a_gear_far_softer_than_declared_is_refused_unwound() -> None:
     done = run(StiffnessLock(**SHORT), overrides=("twin.effects.stiffness.gap_deg=0.3",))
     assert isinstance(done.ending, NotReady)

@@ -77,6 +77,7 @@ def test_every_row_put_is_in_the_run(tmp_path: Path) -> None:
     assert_prefix(folder, 5000)
 
 
+@pytest.mark.slow
 def test_a_run_without_a_row_is_a_run_without_a_row(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -102,6 +103,7 @@ def test_virtual_time_is_held_while_the_recorder_catches_up(tmp_path: Path) -> N
     assert_prefix(folder, 4000)
 
 
+@pytest.mark.slow
 def test_wall_time_cannot_be_held_and_a_full_ring_ends_the_run(tmp_path: Path) -> None:
     recorder = Recorder(new_folder(tmp_path), WallClock(), capacity=100)
     recorder.start()
@@ -166,6 +168,7 @@ def real_time() -> Iterator[None]:
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
+@pytest.mark.slow
 def test_it_runs_at_normal_priority_even_under_a_real_time_loop(tmp_path: Path) -> None:
     recorder = Recorder(new_folder(tmp_path), WallClock())
     with real_time():
@@ -250,6 +253,7 @@ def test_two_recorders_never_write_one_run(tmp_path: Path) -> None:
     assert first.close() == 10
 
 
+@pytest.mark.slow
 def test_while_it_runs_the_manifest_says_where_the_rows_are(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())
@@ -336,6 +340,7 @@ def test_a_journal_removed_in_mid_run_is_told_and_what_is_in_memory_is_kept(tmp_
     ring.close()
 
 
+@pytest.mark.slow
 def test_the_rows_of_a_run_are_not_taken_by_its_copy(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     recorder = Recorder(folder, WallClock())

@@ -49,6 +49,7 @@ def rig(tmp_path: Path) -> Iterator[Rig]:
     rig.ring.close()
 
 
+@pytest.mark.slow
 def test_a_kill_at_any_moment_finds_all_but_the_last_half_second_in_the_file(rig: Rig) -> None:
     for _ in rig.live(5.0):
         in_file = JournalReader(rig.folder)
@@ -69,6 +70,7 @@ def test_nothing_is_acknowledged_before_it_is_synced(rig: Rig, monkeypatch: pyte
     assert rig.ring.acked > 2000
 
 
+@pytest.mark.slow
 def test_a_producer_faster_than_time_is_followed_by_how_full_the_ring_is(tmp_path: Path) -> None:
     rig, put = Rig(tmp_path, capacity=1000), 0
     for _ in range(50):  # 250 rows a look, and no time passes at all

@@ -79,6 +79,7 @@ def read() -> Reader:
     return Reader(full())
 
 
+@pytest.mark.slow
 def test_every_element_is_closed_and_every_id_is_there_once() -> None:
     assert len(read().ids()) == len(set(read().ids()))
 

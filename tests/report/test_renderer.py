@@ -83,6 +83,7 @@ def farthest(some: made_up.Array, others: made_up.Array) -> float:
     return float(apart.min(axis=1).max())
 
 
+@pytest.mark.slow
 def test_a_word_is_laid_out_once_for_all_figures() -> None:
     measured.cache_clear()
     drawn(figure())

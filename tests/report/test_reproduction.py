@@ -49,6 +49,7 @@ def test_measured_data_do_not(tmp_path: Path) -> None:
     assert "SIMULATED" not in page(tmp_path, "can")
 
 
+@pytest.mark.slow
 def test_every_claim_has_its_sign_and_the_totals_count_them(tmp_path: Path) -> None:
     text = page(tmp_path)
     totals = re.findall(r"<strong>(\d+)</strong>", text)
@@ -80,6 +81,7 @@ def test_the_page_asks_for_nothing_from_outside(tmp_path: Path) -> None:
     assert "<script" not in text
 
 
+@pytest.mark.slow
 def test_the_same_data_give_the_same_page(tmp_path: Path) -> None:
     assert page(tmp_path) == page(tmp_path)
 

@@ -81,6 +81,7 @@ def test_a_file_the_power_cut_filled_with_zeros_ends_where_it_was_whole(tmp_path
         assert rows_of(folder) in (80, 100)  # 100: the zeros happened to be padding, the checksum says so
 
 
+@pytest.mark.slow
 def test_no_damaged_value_passes_for_a_measured_one(tmp_path: Path) -> None:
     folder = new_folder(tmp_path)
     path = write_journal(folder, 0, 100, batch=20)
@@ -141,6 +142,7 @@ def test_anybody_can_read_a_closed_journal_with_its_units(tmp_path: Path) -> Non
     assert table.schema.metadata[b"simulated"] == b"true"
 
 
+@pytest.mark.slow
 @given(st.integers(0, 200), st.integers(0, 200))
 def test_a_batch_has_the_same_checksum_before_and_after_the_file(start: int, rows: int) -> None:
     ring = ring_of(start + rows)

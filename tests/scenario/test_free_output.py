@@ -159,6 +159,7 @@ def test_sentinels_of_an_unchanged_rig_agree_and_more_friction_shows_in_the_torq
     assert torque.change == pytest.approx(0.05, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_standstill_without_torque_and_a_held_one_do_not_move_the_motor() -> None:
     for procedure in (Standstill(duration=4.0), HeldStandstill(duration=4.0)):
         taken = Rig().run(procedure)

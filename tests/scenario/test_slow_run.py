@@ -56,6 +56,7 @@ def test_samples_are_one_a_millisecond_with_asked_and_applied_torque(slow_run: P
     assert table["flags"].to_numpy().min() & 1  # every row says it is simulated
 
 
+@pytest.mark.slow
 def test_the_largest_fourier_coefficients_are_those_of_the_plant(slow_run: Path) -> None:
     result = json.loads((slow_run / "result.json").read_text())
     gear = twin_parameters(read("twin").file).gear

@@ -138,6 +138,7 @@ def test_energy_ledger_closes_with_each_of_them(calm: TwinParameters, section: s
     assert np.all(np.diff(rows[:, 2]) >= -1e-12)  # heat only ever grows
 
 
+@pytest.mark.slow
 def test_energy_ledger_closes_with_everything_on(twin: TwinParameters) -> None:
     plant, rows = run_with_reversals(having(twin, EVERYTHING))
     ledger = plant.ledger()
@@ -176,6 +177,7 @@ def test_elastic_terms_conserve(calm: TwinParameters) -> None:
     assert plant.energy() == pytest.approx(before, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_left_alone_the_rig_only_loses_energy_and_comes_to_rest(calm: TwinParameters) -> None:
     e = EVERYTHING
     passive = dataclasses.replace(

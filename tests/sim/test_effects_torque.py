@@ -38,6 +38,7 @@ def torque_at(parameters: TwinParameters, omega: float, load: float = 0.0, secon
     return float(np.mean(tau[theta > theta[-1] - 2 * math.pi * turns]))
 
 
+@pytest.mark.slow
 def test_friction_grows_with_the_torque_that_is_driven_and_with_that_which_drives(calm: TwinParameters) -> None:
     rubbing = having(with_gear(calm, F_cl=0.0), friction=Friction(by_load=0.25))
     none = torque_at(rubbing, 6.3)
@@ -90,6 +91,7 @@ def test_before_it_slides_friction_gives_way_and_springs_back_in_part(calm: Twin
     assert again == pytest.approx(at_250, rel=1e-3)  # the small loop closes
 
 
+@pytest.mark.slow
 def test_sliding_bristles_are_coulomb_friction(calm: TwinParameters) -> None:
     law = Friction(presliding=calm.gear.tau_c)
     for omega in (6.3, -6.3):
@@ -109,6 +111,7 @@ def test_friction_by_angle_shows_at_standstill_where_it_holds_most(calm: TwinPar
         assert tau == pytest.approx(expected, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_friction_falls_as_the_drive_warms_and_comes_back(calm: TwinParameters) -> None:
     law = Friction(thermal_beta=0.03, thermal_rise=4.0, thermal_time=2.0)
     plant = Plant(having(calm, friction=law))
@@ -126,6 +129,7 @@ def test_friction_falls_as_the_drive_warms_and_comes_back(calm: TwinParameters) 
     assert plant.state[kernel.WARMTH] == 0.0
 
 
+@pytest.mark.slow
 def test_cogging_moves_the_free_motor_and_holds_it_at_its_notches(calm: TwinParameters) -> None:
     loose = with_gear(calm, K=1e-3, B_sp=0.0, B_ml=0.0, B_m=2e-3, **FRICTIONLESS)
     plant = Plant(having(loose, motor=Motor(cogging=0.05, cogging_order=24.0, cogging_phase_deg=30.0)))

@@ -108,6 +108,7 @@ def run_with_reversals(parameters: TwinParameters, refine: float = 1.0) -> tuple
     return plant, heat
 
 
+@pytest.mark.slow
 def test_energy_ledger_closes_over_reversals_and_sticking(twin: TwinParameters) -> None:
     # reached: 2e-8 as the substeps are chosen, 5e-10 with substeps a quarter as long (fourth order: both shrink on)
     plant, _ = run_with_reversals(twin)

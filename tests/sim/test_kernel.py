@@ -55,6 +55,7 @@ def agree(
     assert len(events) >= kinds  # of nine: forward, back and at rest on either side
 
 
+@pytest.mark.slow
 def test_the_error_and_its_slope_are_those_of_the_series(twin: TwinParameters) -> None:
     vector, series = pack(twin, 1.0), twin.gear.kinematic_error
     for theta in np.linspace(-700.0, 700.0, 997):

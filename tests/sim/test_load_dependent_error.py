@@ -43,6 +43,7 @@ def measured(parameters: TwinParameters, load: float) -> float:
     return float(np.hypot(fit[2], fit[17]))
 
 
+@pytest.mark.slow
 def test_the_error_falls_with_load_to_its_plateau(calm: TwinParameters) -> None:
     c2 = float(calm.gear.kinematic_error.amplitude[1])
     shares = [measured(having(calm), load) / c2 for load in (0.0, 2.5, 7.5, 15.0)]

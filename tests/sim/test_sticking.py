@@ -29,6 +29,7 @@ def advance(plant: Plant, seconds: float, tau: float) -> None:
         plant.advance(TICK, tau)
 
 
+@pytest.mark.slow
 def test_below_breakaway_the_motor_does_not_move_at_all(calm: TwinParameters) -> None:
     plant = Plant(calm, theta_m=12.3)
     start = plant.truth()
@@ -38,6 +39,7 @@ def test_below_breakaway_the_motor_does_not_move_at_all(calm: TwinParameters) ->
     assert plant.ledger().motor == 0.0
 
 
+@pytest.mark.slow
 def test_below_its_friction_the_load_does_not_move_at_all(calm: TwinParameters) -> None:
     plant = Plant(calm, theta_m=12.3)
     start = plant.truth()
@@ -151,6 +153,7 @@ def test_the_bench_loop_turns_steadily_through_the_same_friction(twin: TwinParam
     assert np.std(speeds) < 0.1 * asked
 
 
+@pytest.mark.slow
 def test_friction_wanders_by_its_sigma_with_its_correlation_time(twin: TwinParameters) -> None:
     parameters = dataclasses.replace(twin, friction_noise=0.05, friction_noise_s=0.1)
     plant, rng = Plant(parameters), np.random.default_rng(3)

@@ -94,6 +94,7 @@ def test_a_hardening_spring_rings_higher_under_preload(calm: TwinParameters, pre
         assert tangent > 1.8 * calm.gear.K
 
 
+@pytest.mark.slow
 def test_stiffness_by_angle_is_met_at_every_angle(calm: TwinParameters) -> None:
     law = Stiffness(by_angle=0.08, by_angle_deg=30.0)
     for theta in np.linspace(0.0, math.pi, 7):

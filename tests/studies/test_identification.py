@@ -54,6 +54,7 @@ def test_the_table_has_a_line_for_every_parameter_and_a_share_covered(outcomes: 
     assert all(f"| {RIGS} |" in line for line in lines[2:13])
 
 
+@pytest.mark.slow
 def test_a_rigs_number_is_all_that_makes_it() -> None:
     assert random_bench(3).text == random_bench(3).text
     assert random_bench(3).text != random_bench(4).text

@@ -63,6 +63,7 @@ def test_a_different_zero_is_found_and_turned_back(shift_deg: float) -> None:
         assert r["flexible"] == pytest.approx(true, abs=max(0.5 * (r["flexible_hi"] - r["flexible_lo"]) * 1.5, 0.3))
 
 
+@pytest.mark.slow
 def test_one_zero_is_recognised_and_nothing_is_turned() -> None:
     result = analyse(at_speed(32.5), SLOW)
     assert "from one zero" in next(c for c in result.checks if c.name == "alignment").sentence
@@ -76,6 +77,7 @@ def test_without_declared_inertias_the_split_is_made_and_the_prediction_is_missi
     assert rows(result)[1]["flexible"] == pytest.approx(true_flexible(12.57)[1], abs=0.3)
 
 
+@pytest.mark.slow
 def test_a_small_shift_is_no_other_zero_and_is_told() -> None:
     result = analyse(at_speed(32.5, np.radians(3.0)), SLOW)
     check = next(c for c in result.checks if c.name == "alignment")
@@ -83,10 +85,12 @@ def test_a_small_shift_is_no_other_zero_and_is_told() -> None:
     assert "encoders read at different times" in check.sentence
 
 
+@pytest.mark.slow
 def test_without_a_slow_run_it_is_said_what_is_needed() -> None:
     assert any("--reference" in sentence for sentence in analyse(at_speed(32.5)).cannot)
 
 
+@pytest.mark.slow
 def test_a_reference_without_a_load_angle_is_no_reference() -> None:
     blind = MadeRun({k: v for k, v in SLOW.columns.items() if k != "theta_l"}, SLOW.manifest)
     result = analyse(at_speed(32.5), blind)

@@ -37,6 +37,7 @@ def made() -> Iterator[tuple[str, str, str | None]]:
                 yield file.name, name, unit
 
 
+@pytest.mark.slow
 def test_every_figure_of_an_analysis_stands_in_the_table_in_its_unit() -> None:
     found = list(made())
     assert len(found) > 50

@@ -59,6 +59,7 @@ def test_both_directions_differ_by_no_more_than_their_interval_says() -> None:
     assert sum(held) >= 19, "24 of 95 %"
 
 
+@pytest.mark.slow
 def test_the_declared_inertia_is_compared_and_a_wrong_one_is_told() -> None:
     right = {"J_m": 1.1e-3, "J_l": 0.32, "K": 7160.0, "B_sp": 3.6}
     for declared, agrees in ((right, True), (right | {"J_l": 0.64}, False)):

@@ -88,6 +88,7 @@ def rubbed(speeds: list[float], fall: float, omega_s: float) -> list[Mean]:
     return out
 
 
+@pytest.mark.slow
 def test_a_fall_of_friction_at_slow_speeds_is_found_with_its_speed() -> None:
     found = motor_friction(rubbed([5, 10, 15, 20, 30, 60, 120, 240, 480], 0.1, 1.4))
     assert found is not None

@@ -165,6 +165,7 @@ def test_a_motor_that_sticks_on_its_counts_widens_the_stiffness_of_a_lock_run() 
     assert np.mean(halves) < 4.0 * 1.96 * np.std(errors)
 
 
+@pytest.mark.slow
 def test_phasor_rows_give_intervals_that_cover() -> None:
     generator, hits = np.random.default_rng(3), 0
     for _ in range(200):

@@ -105,6 +105,7 @@ def test_pieces_that_go_together_make_a_mean_less_certain() -> None:
     assert shared == pytest.approx(1.5**2 / 30, rel=0.2)
 
 
+@pytest.mark.slow
 def test_rows_within_chance_get_no_variance_between_them_and_intervals_that_cover() -> None:
     generator, hits, between = np.random.default_rng(8), 0, 0
     X = np.column_stack((np.linspace(-1, 1, 30), np.ones(30)))

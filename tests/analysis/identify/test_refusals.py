@@ -35,6 +35,7 @@ def test_runs_of_two_zeros_of_the_motor_encoder_are_not_identified_together() ->
         refuse_other_zeros([one, other])
 
 
+@pytest.mark.slow
 def test_runs_of_one_zero_are() -> None:
     refuse_other_zeros([slow(1, "one"), slow(2, "other"), further(slow(3, "hardly moved"), np.deg2rad(0.2))])
 

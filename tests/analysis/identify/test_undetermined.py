@@ -40,6 +40,7 @@ def single(alone: Recording) -> Identified:
     return identified(fit([alone], 15), {"declared": DECLARED})
 
 
+@pytest.mark.slow
 def test_one_run_at_one_speed_says_which_parameters_it_leaves_open(single: Identified) -> None:
     assert single.undetermined == ("J_m", "B_m", "B_l", "tau_c", "F_cl")
     assert all(single.parameters[name].origin != "measured" for name in single.undetermined)
@@ -71,6 +72,7 @@ def test_a_mode_made_with_a_declared_inertia_is_not_measured_and_has_no_interval
         assert "made with J_m, not determined" in single.parameters[name].note
 
 
+@pytest.mark.slow
 def test_the_gear_file_says_it_too(single: Identified) -> None:
     file = single.gear_file("A1", True, "a test")
     first = gearfile.loads(gearfile.dumps(file), "gear.toml").cannot[0]

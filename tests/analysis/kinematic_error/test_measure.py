@@ -161,6 +161,7 @@ def test_a_ratio_off_by_half_a_per_cent_is_doubted(made: MadeRun) -> None:
     assert "declared 50.25" in result.sentence
 
 
+@pytest.mark.slow
 def test_a_gear_wound_up_along_the_angle_is_no_other_ratio(made: MadeRun) -> None:
     """A weight on an arm: θ_l follows τ_l/K, and without that torque it would look like another ratio."""
     K = 7160.0
@@ -171,6 +172,7 @@ def test_a_gear_wound_up_along_the_angle_is_no_other_ratio(made: MadeRun) -> Non
     assert analyse(MadeRun({**bent, "tau_l": tau_l}, manifest)).verdict is not Verdict.INCONCLUSIVE
 
 
+@pytest.mark.slow
 def test_what_inertia_adds_is_taken_off_when_it_is_declared() -> None:
     """At J_l/K a hundred times the twin's, order 2 is seen 2 % too large: (1 − r²)·seen must give the truth back."""
     K, J_l = 7160.0, 32.0

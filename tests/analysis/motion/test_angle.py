@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -11,6 +12,7 @@ from rig.analysis.motion.angle import is_wrapped, measured_ratio, unwrap
 from rig.core.units import TURN
 
 
+@pytest.mark.slow
 @given(
     hnp.arrays(np.int64, st.integers(2, 200), elements=st.integers(-8_388_000, 8_388_000)),
     st.integers(-(2**23), 2**23 - 1),

@@ -36,6 +36,7 @@ def test_every_revolution_is_a_turn_long_and_half_a_turn_away_from_a_reversal() 
             assert min(abs(theta[row] - theta[a]), abs(theta[row] - theta[b])) >= 0.489 * TURN
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     pivots=st.lists(st.floats(0.6, 9.0), min_size=1, max_size=6),

@@ -124,6 +124,7 @@ def test_a_claim_is_ruled_by_its_numbers(claim: Callable[[], Claim], ruling: Rul
     assert found.rule or not found.numbers
 
 
+@pytest.mark.slow
 def test_the_true_gear_explains_what_speed_adds_and_a_gear_of_half_the_stiffness_does_not() -> None:
     assert figure_7.explained(split(310.0), "model").ruling is TICK
     soft = figure_7.explained(split(310.0, replace(GEAR, K=3500.0)), "model")
@@ -183,6 +184,7 @@ def test_runs_of_one_kind_give_their_figures_and_dashes_for_the_rest() -> None:
     assert "turn.model" not in made["Figure 11 b"].curves
 
 
+@pytest.mark.slow
 def test_load_and_depth_come_out_of_whole_runs() -> None:
     kept = {0.0: 1.0, 2.0: 0.8, 7.5: 0.6, 15.0: 0.59}
     runs = [slow(k, load) for load, k in kept.items()]

@@ -31,6 +31,7 @@ def sticking(apart: float) -> MadeRun:
     return MadeRun(columns, {**about, "encoders": {"motor_counts_per_rev": COUNTS}})
 
 
+@pytest.mark.slow
 def test_a_motor_that_stands_half_a_count_apart_looks_like_a_loop_and_the_interval_knows() -> None:
     found = figures(analyse(sticking(0.5)))
     loss, energy = found["hysteresis_loss"], found["hysteresis_energy"]

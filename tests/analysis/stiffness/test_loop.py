@@ -14,6 +14,7 @@ from tests.analysis.synthetic import MadeRun
 FORCE = sum(most for _, most in SLIP)
 
 
+@pytest.mark.slow
 def test_the_hysteresis_loss_is_the_gap_the_slipping_elements_leave() -> None:
     found = figures(analyse(LockedGear(slip=SLIP).run()))["hysteresis_loss"]
     true = 2 * FORCE / K / ARCMIN
@@ -27,12 +28,14 @@ def test_with_a_bent_spring_the_gap_is_that_over_its_slope_at_zero() -> None:
     assert abs(found.value / (2 * FORCE / 5000.0 / ARCMIN) - 1) < 0.05
 
 
+@pytest.mark.slow
 def test_the_energy_per_cycle_is_what_the_elements_lose() -> None:
     gear = LockedGear(slip=SLIP)
     true = sum(4 * most * (gear.reach - most / stiffness) for stiffness, most in SLIP)
     assert abs(figures(analyse(gear.run()))["hysteresis_energy"].value / (true * 1e3) - 1) < 0.05
 
 
+@pytest.mark.slow
 def test_hysteresis_is_as_wide_at_any_rate() -> None:
     result = analyse(LockedGear(slip=SLIP).run())
     found = figures(result)
@@ -41,6 +44,7 @@ def test_hysteresis_is_as_wide_at_any_rate() -> None:
     assert "The loop is hysteretic:" in found["loop_viscous"].how
 
 
+@pytest.mark.slow
 def test_a_viscous_loop_grows_with_the_rate() -> None:
     found = figures(analyse(LockedGear(drag=4000.0).run()))
     assert abs(found["loop_viscous"].value / 4000.0 - 1) < 0.05
@@ -48,6 +52,7 @@ def test_a_viscous_loop_grows_with_the_rate() -> None:
     assert "The loop is viscous:" in found["loop_viscous"].how
 
 
+@pytest.mark.slow
 def test_both_together_are_told_apart() -> None:
     found = figures(analyse(LockedGear(slip=SLIP, drag=2000.0).run(seed=2)))
     assert abs(found["loop_viscous"].value / 2000.0 - 1) < 0.1
@@ -55,6 +60,7 @@ def test_both_together_are_told_apart() -> None:
     assert "hysteretic and viscous" in found["loop_viscous"].how
 
 
+@pytest.mark.slow
 def test_one_rate_tells_neither_from_the_other_and_says_so() -> None:
     result = analyse(LockedGear(slip=SLIP, rates=(1.0,)).run())
     assert "loop_viscous" not in figures(result)

@@ -45,6 +45,7 @@ def test_one_line_is_found_to_do_and_every_stiffness_is_its_slope() -> None:
         assert abs(found[name].value / K - 1) < 0.005, name
 
 
+@pytest.mark.slow
 def test_three_lines_are_found_with_their_knots() -> None:
     result = analyse(bent().run())
     found = figures(result)

@@ -88,6 +88,7 @@ def test_a_run_without_time_still_has_its_spring() -> None:
     assert any(s.startswith("Creep") for s in result.cannot)
 
 
+@pytest.mark.slow
 def test_the_figures_have_their_curves() -> None:
     curves = analyse(LockedGear(slip=((500.0, 0.5),)).run()).curves
     assert {"lock.windup", "lock.fit_torque", "tangent.measured", "loop.half_width", "creep.time"} <= set(curves)

@@ -10,6 +10,7 @@ from rig.analysis.tracing.fit.channels import ORDERS, is_measured, series, slope
 from rig.model.effect import MEASURED
 
 
+@pytest.mark.slow
 def test_the_series_is_cosine_and_sine_of_each_order_in_turn() -> None:
     theta = np.linspace(-7, 7, 50)
     values = series(theta)

@@ -81,6 +81,7 @@ def test_noise_has_no_line() -> None:
     assert look(residuals(lambda w: 0.0)) is None
 
 
+@pytest.mark.slow
 def test_friction_that_wanders_has_most_of_its_power_at_the_lowest_frequencies_and_no_line() -> None:
     rng = np.random.default_rng(11)
     for _ in range(4):

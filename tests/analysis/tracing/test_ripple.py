@@ -21,6 +21,7 @@ def seen(
     return Seen(speed, load, start, phasors, NOISE)
 
 
+@pytest.mark.slow
 def test_constant_load_and_speed_parts_and_the_lag_come_back(rng: np.random.Generator):
     two, seven = _laws("tau_l", [seen(rng, v, load, lag=4e-4) for v in SPEEDS for load in (0.5, 20.0)], True)
     assert (two.order, seven.order) == (2, 7)
@@ -45,6 +46,7 @@ def test_without_time_nothing_is_said_of_speed(rng: np.random.Generator):
         assert r.per_speed_squared is None
 
 
+@pytest.mark.slow
 def test_a_ripple_that_falls_from_day_to_day_is_told_and_a_steady_one_is_not(rng: np.random.Generator):
     days = [seen(rng, v, 1.0, day * DAY, gain=1 - 0.02 * day) for day in range(5) for v in SPEEDS]
     two, seven = _laws("tau_l", days, True)
@@ -59,6 +61,7 @@ def test_noise_alone_has_no_orders(rng: np.random.Generator):
     assert _laws("tau_l", quiet, True) == []
 
 
+@pytest.mark.slow
 def test_every_law_is_a_sentence_with_units(rng: np.random.Generator):
     for r in _laws("tau_l", [seen(rng, v, load, lag=4e-4) for v in SPEEDS for load in (0.5, 20.0)], True):
         assert "N·m" in r.sentence()

@@ -164,6 +164,7 @@ def test_waves_that_follow_a_thermometer_live_in_the_temperature(
     assert said(at, 0.8 * above * waves(at) + rng.normal(0, 1, above.size)) == "temperature"
 
 
+@pytest.mark.slow
 def test_waves_that_are_smaller_for_a_while_after_each_reversal_live_in_memory() -> None:
     rng = np.random.default_rng(9)
     at = coordinates(rng)
@@ -248,6 +249,7 @@ def triangle(x: np.ndarray) -> np.ndarray:
     return np.abs(np.mod(x - 1, 4) - 2) - 1
 
 
+@pytest.mark.slow
 def test_a_channel_that_coefficients_shared_with_another_one_bend_is_straight_beside_a_baseline_of_its_own() -> None:
     """A seventh wave of θ̃_p that the motor's torque asks for and the angle does not."""
     rng = np.random.default_rng(9)

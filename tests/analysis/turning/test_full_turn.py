@@ -32,6 +32,7 @@ def figure(result: Result, name: str) -> Estimate:
     return next(e for e in result.estimates if e.name == name)
 
 
+@pytest.mark.slow
 def test_planted_lines_lie_within_their_intervals() -> None:
     planted = {0.02: 3.0, 1.02: 0.5, 2.04: 1.5, 4.08: 0.4}
     result = analyse(made(1, planted))
@@ -53,6 +54,7 @@ def test_absent_lines_are_told_from_zero_no_more_often_than_chance_allows() -> N
     assert resolved <= 3, "5 % of 16 are expected"
 
 
+@pytest.mark.slow
 def test_what_repeats_with_the_output_is_in_the_accuracy_and_not_in_the_paper_s_peak_to_peak() -> None:
     result = analyse(made(3, {0.02: 20.0}))
     maker, paper = figure(result, "transmission_accuracy"), figure(result, "kinematic_error_peak_to_peak")

@@ -106,6 +106,7 @@ def away_from_whole(periods: float) -> bool:
     return periods < 1.0 or 1e-3 < periods % 1.0 < 1.0 - 1e-3
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.one_of(st.floats(0.0, 0.75), st.floats(1.01, 40.0)).filter(away_from_whole), max_size=60),
     st.integers(1, 9),

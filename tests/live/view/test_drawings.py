@@ -99,6 +99,7 @@ def test_a_trail_goes_through_its_points_and_its_colour_tells_the_way() -> None:
     assert all(len(line) > 10 for lines in pieces for line in lines)
 
 
+@pytest.mark.slow
 def test_a_trail_is_bounded_however_long_the_run() -> None:
     canvas, drawing = Kept(), Trail(STRIBECK, 50.0, "")
     rng = np.random.default_rng(2)

@@ -213,6 +213,7 @@ def test_rivals_are_both_called_so_and_the_deciding_run_is_given(pages: dict[str
     assert "separates quadratic drag from thermal friction drift" in words
 
 
+@pytest.mark.slow
 def test_what_has_a_name_beside_a_rest_is_not_headed_as_unexplained() -> None:
     trace = made_up.unknown()
     in_part = replace(trace, verdict=replace(trace.verdict, effects=("cogging_torque",)))
@@ -245,6 +246,7 @@ def test_effects_fitted_in_each_run_are_not_passed_off_as_unseen() -> None:
     assert "read from that run itself" not in read(bare(made_up.explained())).words
 
 
+@pytest.mark.slow
 def test_simulated_runs_are_called_so_whatever_their_manifests_say() -> None:
     source = Provenance({"slow_ke_1": {"backend": "can"}})
     assert "SIMULATED" in read(bare(made_up.explained()), source).words

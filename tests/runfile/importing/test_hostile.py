@@ -158,6 +158,7 @@ def test_a_header_of_many_megabytes(foreign: Foreign) -> None:
     assert "damaged or cut short and cannot be read as CSV: header: field larger than field limit" in said
 
 
+@pytest.mark.slow
 def test_a_table_of_many_thousand_columns_is_only_a_table(foreign: Foreign) -> None:
     data = columns() | {f"spare_{i}": np.zeros(400, dtype=np.int64) for i in range(3000)}
     assert foreign.imported(foreign.file(data)).rows == 400

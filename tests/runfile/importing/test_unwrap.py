@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +20,7 @@ def journeys(draw: st.DrawFn) -> tuple[np.ndarray, int]:
     return np.cumsum([start, *steps], dtype=np.int64), modulus
 
 
+@pytest.mark.slow
 @given(journeys(), st.booleans())
 def test_what_a_counter_lost_by_wrapping_comes_back_exactly(journey: tuple[np.ndarray, int], signed: bool) -> None:
     true, modulus = journey
