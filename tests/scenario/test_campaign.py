@@ -118,7 +118,7 @@ def test_ctrl_c_once_stops_the_run_properly_and_the_campaign_is_resumable(tmp_pa
     assert errors(root) == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_quick_plan_runs_to_its_end_and_says_what_it_measured(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

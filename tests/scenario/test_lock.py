@@ -66,6 +66,7 @@ def test_a_cubic_spring_is_found_with_both_coefficients(tmp_path: Path) -> None:
     assert abs(found["cubic_k3"].value / 2.3e9 - 1) < 0.03
 
 
+@pytest.mark.long
 def test_a_hysteretic_spring_has_its_loss_and_its_lines(tmp_path: Path) -> None:
     loop = ["twin.effects.hysteresis.torque=0.5", "twin.effects.hysteresis.twist_deg=0.02"]
     found = figures(tmp_path, [*LINES, *loop])

@@ -23,15 +23,17 @@ def _said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "alike", lambda a, b: bool(a.said == b.said))
 
 
-def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]]) -> Any:
-    """Runs by condition, name and the size they want of an effect whose fitted size is 1; noise of a row: 1 floor."""
+def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: bool = False) -> Any:
+    """Runs by condition, name and the size they want of an effect whose fitted size is 1; noise of a row: 1 floor. With
+    a `lone` channel that one run of each condition has."""
     f = [rng.standard_normal(ROWS) for _ in sizes]
     left = [(size - 1.0) * one + rng.standard_normal(ROWS) for one, (_, _, size) in zip(f, sizes, strict=True)]
     runs = [SimpleNamespace(said=condition, name=name) for condition, name, _ in sizes]
+    once = [(i, "A") for i, run in enumerate(runs) if lone and run.name.endswith(".0")]
     return SimpleNamespace(
-        y=dict.fromkeys((i, "M") for i in range(len(sizes))),
+        y=dict.fromkeys([*((i, "M") for i in range(len(sizes))), *once]),
         residual=lambda key, which: left[key[0]] + (f[key[0]] if which == "without" else 0.0),
-        eq=SimpleNamespace(noise=SimpleNamespace(kappa={"M": 1.0}), runs=runs),
+        eq=SimpleNamespace(noise=SimpleNamespace(kappa={"M": 1.0, "A": 1.0}), runs=runs),
     )
 
 
@@ -42,6 +44,7 @@ def said(
     unseen: float = 1.0,
     repeats: int = 3,
     parts: bool = False,
+    lone: bool = False,
 ) -> bool:
     """Of an effect that every condition shows in another size by `law`, every run by `wander`; the last repeat of each
     is unseen. With `parts` the repeats are parts of one run."""
@@ -51,8 +54,8 @@ def said(
         for r, drawn in enumerate(wander * rng.standard_normal(repeats))
     ]
     last = [one for k, one in enumerate(shown) if k % repeats == repeats - 1]
-    held = design(rng, [(c, name, size * unseen) for c, name, size in last])
-    fitted = design(rng, [one for k, one in enumerate(shown) if k % repeats != repeats - 1 or repeats == 1])
+    held = design(rng, [(c, name, size * unseen) for c, name, size in last], lone)
+    fitted = design(rng, [one for k, one in enumerate(shown) if k % repeats != repeats - 1 or repeats == 1], lone)
     keys: Any = SimpleNamespace(floors=dict.fromkeys(held.y, 1.0), seen=dict.fromkeys(fitted.y, 1.0))
     whole: Any = SimpleNamespace(x="with", design=fitted)
     rest: Any = SimpleNamespace(x="without")
@@ -79,6 +82,11 @@ def test_without_repeats_nothing_is_said_and_parts_of_a_run_are_none(rng: np.ran
     assert not said(rng, 0.0, repeats=1)
     assert said(rng, 0.1, repeats=2)
     assert not said(rng, 0.1, repeats=2, parts=True)
+
+
+def test_a_channel_that_was_measured_once_in_every_condition_leaves_it_unsaid(rng: np.random.Generator) -> None:
+    assert said(rng, 0.1)
+    assert not said(rng, 0.1, lone=True)
 
 
 def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:

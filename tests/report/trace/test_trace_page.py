@@ -307,7 +307,7 @@ def test_runs_in_folders_of_their_day_are_found_as_the_trace_finds_them(tmp_path
     assert provenance(tmp_path, {}, "").manifests == {"0718-log": {"backend": "imported"}}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> None:
     written = page.write(tmp_path, made_up.explained(), made_up.source())
     text = written.read_text()

@@ -47,12 +47,14 @@ class Shown:
 def as_repeats(s: Solution, rest: Solution, d: Design, at: HeldOut) -> bool:
     """Whether an effect, `rest` being the fit without it, is plainly there beside what repeats differ by, wants sizes
     that differ between conditions by no more than repeats do, and one size in runs seen and unseen (of `d`). False
-    where too few runs were repeated to say."""
+    where too few runs were repeated to say, in any channel it does a fair part of its work in."""
     shown = _shown(s, rest, d, at)
     total = sum(channel.own for channel in shown)
     if not total:
         return False
     fair = [channel for channel in shown if channel.own > FAIR * total]
+    if min(_free(channel.conditions) for channel in fair) < FREE:
+        return False
     noise = [_between_repeats(channel) for channel in fair]
     plain = sum(channel.own / n for channel, n in zip(fair, noise, strict=True))
     return plain > PLAIN_AMONG_REPEATS and all(_is_one_size(c, n) for c, n in zip(fair, noise, strict=True))
@@ -85,11 +87,8 @@ def _condition(conditions: list[Condition], run: Recording) -> Condition:
 
 
 def _between_repeats(channel: Shown) -> float:
-    """Variance of what runs want, as their repeats tell it; infinite where they are too few to."""
-    free = _free(channel.conditions)
-    if free < FREE:
-        return float("inf")
-    return max(channel.kappa, _within(channel.conditions) / free)
+    """Variance of what runs want, as their repeats tell it."""
+    return max(channel.kappa, _within(channel.conditions) / _free(channel.conditions))
 
 
 def _is_one_size(channel: Shown, noise: float) -> bool:
