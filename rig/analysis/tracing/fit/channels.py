@@ -16,7 +16,8 @@ A only when the torque sensor sits behind the mesh's own drag; it is known to be
 
 A sensor that is not there takes one equation away, and what it would have said is put into the others:
 
-no torque sensor   T = J_l·ω̇_l − τ_ext from L with the inertia declared, and what else L says stands in A and M
+no torque sensor   T = J_l·ω̇_l − τ_ext from L with the inertia declared, and what else L says stands in A and M;
+                   of a locked output T = K·(θ̃ − θ̃_p), and what else A says stands in M
 no load angle      θ_l = θ_m/N − θ̃ from A, in L: J_l·(ω̇_m/N − d²θ̃/dt²)
 no motor angle     θ_m = N·(θ_l + θ̃) from A, in M: J_m·N·(ω̇_l + d²θ̃/dt²)
 no time            rows have no known distance: whatever is a rate belongs to each run alone
@@ -132,9 +133,11 @@ class Rows:
 
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel; one angle will do for a torque. Where the motor turns back,
-    what stands in for a torque sensor lacks the load's friction, which turns over later."""
+    what stands in for a torque sensor lacks the load's friction, which turns over later; and of a lock test without one
+    the angles are spent on its torque."""
     turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
-    return turns and NEEDS[channel] <= run.knows
+    spent = channel == "A" and run.is_wound and not run.look.held_load
+    return turns and not spent and NEEDS[channel] <= run.knows
 
 
 def rows(run: Recording, channel: str) -> Rows:
@@ -144,18 +147,24 @@ def rows(run: Recording, channel: str) -> Rows:
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
     shared, z = shared_columns(run, channel, at), z[keep]
-    own = _gain(run)[keep] if channel == "M" and run.locked and "tau_l" in run.has else np.zeros((len(z), 0))
+    own = _own(run)[keep] if channel == "M" and run.locked else np.zeros((len(z), 0))
     if shared.all():  # most runs: theirs is the bulk of what a trace holds, and is copied no more than it must
         return Rows(y[keep], z, at, keep, theta_m[keep], own)
     places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
     return Rows(y[keep], z[:, shared], places, keep, theta_m[keep], np.hstack([z[:, ~shared], own]))
 
 
-def _gain(run: Recording) -> Array:
+def _own(run: Recording) -> Array:
     """T of a lock test, pieces joined, all rows (n, 1). A torque sensor's gain is good to some tenths of a per cent, a
     motor's torque constant to less, and both drift: at such torques that is several floors of M, and what of it lies
-    along T is each test's own. Left to all it would go into θ̃_p′, which stands before T there."""
-    return joined([run.smoother(piece.tau_l) for piece in run.pieces])[:, None]
+    along T is each test's own. Left to all it would go into θ̃_p′, which stands before T there.
+
+    Without the sensor the friction that is the same all along is the test's own too, (n, 2): a friction that falls
+    with speed or grows with load, and one beside the spring, would all be that much."""
+    gain = joined([run.smoother(piece.tau_l) for piece in run.pieces])
+    if not run.is_wound:
+        return gain[:, None]
+    return np.stack([gain, joined([run.smoother(piece.way) for piece in run.pieces])], 1)
 
 
 def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDArray[np.bool_]:
@@ -176,6 +185,8 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     """Response (n,), baseline columns (n, b) and their places, all rows."""
     make = {"A": _held if run.look.held_load else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
     made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
+    if channel == "M" and run.is_wound:
+        made = [_wound(y, z, piece, run.smoother) for (y, z), piece in zip(made, run.pieces, strict=True)]
     if run.look.gain and channel in "MR" and "tau_l" in run.has:
         made = [(y, z | {"gain": run.smoother(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
@@ -238,6 +249,15 @@ def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
         lever = 1 / s.ratio - s.series_slope
         columns |= {"B_l": f(s.omega_l * lever), "tau_cl": f(s.way * lever)}
     return y, columns
+
+
+def _wound(y: Array, columns: dict[str, Array], s: Signals, f: Smoother) -> Columns:
+    """M where T is K·(θ̃ − θ̃_p): θ̃_p as known is put back, and has its own columns. The load rests: its bearings
+    take nothing."""
+    spring = s.gear.K / s.ratio
+    waves = dict(zip(SERIES, -spring * f(series(s.theta_m)).T, strict=True))
+    columns = {name: column for name, column in columns.items() if name not in ("B_l", "tau_cl")}
+    return y - spring * f(s.series_value), columns | {name: columns[name] + wave for name, wave in waves.items()}
 
 
 def _load(s: Signals, f: Smoother, has: Has) -> Columns:

@@ -69,14 +69,20 @@ FOOTPRINTS: Final[Mapping[Port, Callable[[Array, Signals], Iterator[Mark]]]] = {
 
 
 def footprint(
-    ports: Mapping[Port, Array], s: Signals, f: Smoother, has: frozenset[str], held_load: bool = False
+    ports: Mapping[Port, Array],
+    s: Signals,
+    f: Smoother,
+    has: frozenset[str],
+    held_load: bool = False,
+    is_wound: bool = False,
 ) -> dict[str, Array]:
     """Columns at ports (n, k) → columns in channels (rows, k) of a run that measured the channels `has`; in A those of
-    the load angle alone where `held_load` says so."""
+    the load angle alone where `held_load` says so. Where the torque is that of the wind-up, `is_wound`, the motor has
+    to hold what A says."""
     out: dict[str, Array] = {}
     for port, columns in ports.items():
         for first in FOOTPRINTS[port](columns, s):
-            for channel, column, order in _passed_on(first, s, has):
+            for channel, column, order in _passed_on(first, s, has, is_wound):
                 made = f(column, order)
                 out[channel] = out[channel] + made if channel in out else made
     if held_load and "A" in out:
@@ -84,7 +90,7 @@ def footprint(
     return out | ({"R": out["M"]} if "M" in out else {})
 
 
-def _passed_on(first: Mark, s: Signals, has: frozenset[str]) -> Iterator[Mark]:
+def _passed_on(first: Mark, s: Signals, has: frozenset[str], is_wound: bool) -> Iterator[Mark]:
     """A column, and where else it shows for want of a sensor; a fourth derivative would be noise alone.
 
     Without time a derivative has no size that runs could share.
@@ -93,9 +99,13 @@ def _passed_on(first: Mark, s: Signals, has: frozenset[str]) -> Iterator[Mark]:
     if order and "t" not in has:
         return
     yield first
+    if is_wound:
+        if channel == "A":
+            yield "M", -s.gear.K / s.ratio * column, order
+        return  # the clamp takes what acts on the load
     if channel == "A" and "t" in has and order < HIGHEST - 1:
         if "theta_l" not in has:
-            yield from _passed_on(("L", -s.gear.J_l * column, order + 2), s, has)
+            yield from _passed_on(("L", -s.gear.J_l * column, order + 2), s, has, is_wound)
         if "theta_m" not in has:
             yield "M", s.gear.J_m * s.ratio * column, order + 2
     if channel == "L" and "tau_l" not in has:

@@ -33,7 +33,11 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
         known = inside & _angle_known(piece, run)
         torque_known = run.locked or "tau_l" in run.knows
         return np.asarray(known if torque_known else known & sliding & _load_slides(piece, run))
-    return np.asarray(inside & sliding & _load_slides(piece, run) if channel == "L" else inside & sliding)
+    if channel == "L":
+        sliding &= _load_slides(piece, run)
+    elif run.is_wound:  # the torque is that of A, and a loop in it
+        sliding &= has_turned(piece)[smooth.centres(piece.t.size)]
+    return np.asarray(inside & sliding)
 
 
 def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:

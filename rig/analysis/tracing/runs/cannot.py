@@ -31,6 +31,12 @@ SENSORS: Final = {
 }
 
 
+WOUND: Final = (
+    " In lock tests it is what the spring makes of the wind-up, which the motor has to hold: how steeply, and with "
+    "what friction, is each test's own."
+)
+
+
 def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     """One sentence each, from all runs of a campaign."""
     has = frozenset().union(*(run.has for run in runs))
@@ -50,6 +56,7 @@ def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
         f"No shaft torque: it was taken from a load inertia of {inertia:.3g} kg·m² and the weight as declared. "
         "Stiffness and the motor's torque balance are in proportion to them; friction of the load counts as the "
         "motor's, a torque sensor's own errors cannot be seen, and where the motor turns back nothing is compared."
+        + (WOUND if any(run.is_wound for run in runs) else "")
     ]
 
 

@@ -18,7 +18,7 @@ from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet, smallest_step
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.runs.stand_ins import in_stand_ins, substituted
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, rewound, substituted
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE
 from rig.core.errors import UsageError
 from rig.core.once import Once
@@ -64,6 +64,11 @@ class Recording(Once):
         return self.has | {"theta_l"} if self.locked else self.has
 
     @property
+    def is_wound(self) -> bool:
+        """Whether the shaft torque is what the wind-up of a locked output says, for want of a sensor."""
+        return self.locked and "tau_l" not in self.has
+
+    @property
     def duration(self) -> float:
         """s of recorded motion."""
         return float(sum(piece.t.size * piece.dt for piece in self.pieces))
@@ -82,7 +87,7 @@ class Recording(Once):
     def noisier(self, seed: int) -> Recording:
         """The same with its own sensor noise added once more: what noise does to columns is the difference."""
         rng = np.random.default_rng(seed)
-        return replace(self, pieces=_each(self.pieces, lambda piece: _noisier(piece, self.noise, self.smoother, rng)))
+        return replace(self, pieces=_each(self.pieces, lambda piece: _noisier(piece, self, rng)))
 
     def afresh(self) -> Recording:
         """The same with nothing made of its signals yet: what effects keep there goes when this copy does."""
@@ -91,7 +96,7 @@ class Recording(Once):
     def knowing(self, known: Known) -> Recording:
         """The same with what is known of the gear. What is made of the run itself leans on that where a sensor is
         missing."""
-        made = replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known)))
+        made = replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known, self.is_wound)))
         return made.made_as(self) if self.knows >= MEASURED else made
 
 
@@ -263,13 +268,19 @@ def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tu
     return tuple(out)
 
 
-def _knowing(piece: Signals, known: Known) -> Signals:
+def _knowing(piece: Signals, known: Known, is_wound: bool) -> Signals:
+    if is_wound:
+        tau_l = rewound(piece, known)
+        return replace(
+            piece, gear=known, tau_l=tau_l, torque=flat(tau_l), torque_rate=flat_rate(tau_l, piece.dt, 1)
+        )  # fmt: skip
     return replace(piece, gear=known, torque=piece.torque + piece.gear.torque_zero - known.torque_zero)
 
 
-def _noisier(piece: Signals, noise: Mapping[str, float], smooth: Smoother, rng: np.random.Generator) -> Signals:
-    added = {n: s * rng.standard_normal(piece.t.size) for n, s in noise.items() if hasattr(piece, n)}
-    added |= in_stand_ins(added, piece, smooth.dt)
+def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signals:
+    dt = run.smoother.dt
+    added = {n: s * rng.standard_normal(piece.t.size) for n, s in run.noise.items() if hasattr(piece, n)}
+    added |= in_stand_ins(added, piece, dt, run.locked)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
-    derived = _derived(c, smooth)
+    derived = _derived(c, run.smoother)
     return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})

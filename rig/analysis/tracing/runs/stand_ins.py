@@ -9,33 +9,51 @@ import numpy as np
 from rig.analysis.motion.source import Source
 from rig.analysis.tracing.runs.declared import believed, is_locked
 from rig.analysis.tracing.runs.smoothing import flat_rate
-from rig.model.effect import Array, Signals
+from rig.analysis.tracing.runs.wound import winds, wound_torque
+from rig.model.effect import Array, Known, Signals
 
 
 def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) -> dict[str, Array]:
     """Stand-ins for readings that are not there, so that columns have something to lean on.
 
-    The shaft torque of a free load is what its declared inertia and weight take; one angle is the other's times N, and
-    a locked output rests.
+    The shaft torque of a free load is what its declared inertia and weight take, that of a locked one what the wind-up
+    takes; one angle is the other's times N, and a locked output rests.
     """
     out = dict(c)
     if not np.isfinite(out["theta_m"]).any():
         out["theta_m"] = out["theta_l"] * run.ratio
     if not np.isfinite(out["theta_l"]).any():
         out["theta_l"] = np.zeros_like(out["theta_m"]) if is_locked(run) else out["theta_m"] / run.ratio
-    if not np.isfinite(out["tau_l"]).any() and not is_locked(run):
-        out["tau_l"] = believed(run).J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
+    if np.isfinite(out["tau_l"]).any():
+        return out
+    gear = believed(run)
+    if is_locked(run):
+        torque = wound_torque(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt)
+        if winds(torque, out["tau_m"], out["theta_m"], run.ratio, dt):
+            out["tau_l"] = torque
+    else:
+        out["tau_l"] = gear.J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
     return out
 
 
-def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float) -> dict[str, Array]:
+def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: bool) -> dict[str, Array]:
     """What the noise of readings does to those `substituted` made of them: the torque of a load's inertia has its
-    encoder's noise twice differentiated."""
+    encoder's noise twice differentiated, that of a wind-up both encoders' times the spring."""
     out: dict[str, Array] = {}
     if "theta_m" not in added and "theta_l" in added:
         out["theta_m"] = added["theta_l"] * piece.ratio
     if "theta_l" not in added and "theta_m" in added and np.any(piece.theta_l):
         out["theta_l"] = added["theta_m"] / piece.ratio
-    if "tau_l" not in added and "theta_l" in {*added, *out}:
-        out["tau_l"] = piece.gear.J_l * flat_rate({**added, **out}["theta_l"], dt, 2)
+    if "tau_l" in added:
+        return out
+    angles = {**added, **out}
+    if locked and "theta_m" in angles:
+        out["tau_l"] = piece.gear.K * (angles["theta_m"] / piece.ratio - angles.get("theta_l", 0.0))
+    elif not locked and "theta_l" in angles:
+        out["tau_l"] = piece.gear.J_l * flat_rate(angles["theta_l"], dt, 2)
     return out
+
+
+def rewound(piece: Signals, known: Known) -> Array:
+    """The torque of a wind-up, (n,), with what is known of the spring by now."""
+    return wound_torque(piece.theta_m, piece.theta_l, piece.tau_m, piece.ratio, known, piece.dt)
