@@ -32,7 +32,8 @@ def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> fl
     Where both encoders are homed once and for all, runs at any speed and load share it, and what shifts it from one
     speed to another is an effect.
     """
-    gaps = [offset(s, a, "A") - offset(s, b, "A") for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys]
+    known = [(a, b) for a, b in pairs if (a, "A") in s.keys and (b, "A") in s.keys and _on_one_side(s, a, b)]
+    gaps = [offset(s, a, "A") - offset(s, b, "A") for a, b in known]
     if len(gaps) < ENOUGH:
         return np.inf
     return max(float(np.sqrt(np.mean(np.square(gaps)) / 2)), least)
@@ -40,8 +41,17 @@ def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> fl
 
 def offset(s: Solution, run: int, channel: str) -> float:
     """What the baseline leaves in a channel of one run, in its unit, before any step of its own; repeats share what
-    effects add. From all rows, not from a residual: that has lost as much of it as the offset is believed to wander."""
+    effects add, and what stands in both of them is none of their difference. From all rows, not from a residual: that
+    has lost as much of it as the offset is believed to wander."""
     eq, key = s.design.eq, (run, channel)
     r, own = eq.rows[key], eq.own.get(key, np.zeros((eq.rows[key].y.size, 0)))
+    own = own[:, np.ptp(own, axis=0) > 0] if own.size else own
     z = np.hstack([np.ones((r.y.size, 1)), own])
     return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
+
+
+def _on_one_side(s: Solution, a: int, b: int) -> bool:
+    """Whether both runs, or neither, have a zero of their own in A: a step between them is in their difference."""
+    columns = (s.design.eq.own.get((run, "A"), np.zeros((1, 0))) for run in (a, b))
+    first, second = (bool((np.ptp(x, axis=0) == 0).any()) for x in columns)
+    return first is second

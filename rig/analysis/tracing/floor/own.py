@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution, design
+from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.repeats import repeats
@@ -19,12 +20,13 @@ from rig.model.effect import Array, Parameter
 
 @dataclass(frozen=True)
 class Own:
-    """Columns (n, q) by effect and block, the effects' parameters, and a line beside the motion that is no effect of
-    the library."""
+    """Columns (n, q) by effect and block, the effects' parameters, a line beside the motion that is no effect of the
+    library, and notes on effects in a sentence each."""
 
     made: dict[str, dict[Key, Array]]
     parameters: dict[str, tuple[Parameter, ...]]
     line: Interference | None
+    notes: Mapping[str, str] = field(default_factory=dict)
 
     def columns(self) -> dict[Key, Array]:
         """Of all effects together, and of the line."""
@@ -33,7 +35,7 @@ class Own:
     def without(self, names: Sequence[str]) -> Own:
         """The others."""
         made = {name: columns for name, columns in self.made.items() if name not in names}
-        return Own(made, {name: self.parameters[name] for name in made}, self.line)
+        return replace(self, made=made, parameters={name: self.parameters[name] for name in made})
 
 
 def find(s: Solution, parts: Split) -> Own:
@@ -45,6 +47,7 @@ def find(s: Solution, parts: Split) -> Own:
     everywhere = e | {key: held.residual(key, s.x) for key in held.y}
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
+    notes: dict[str, str] = {}
     shaken = find_vibration(s, e, parts.fitted)
     line = None
     if shaken is not None:
@@ -59,4 +62,8 @@ def find(s: Solution, parts: Split) -> Own:
         if explained(eq, everywhere, columns) > OWN:
             made["missed_counts"] = columns
             words["missed_counts"] = steps.parameters()
-    return Own(made, words, line)
+    elif not steps.rows and (between := find_between(s, whole)):
+        made["missed_counts"] = between.columns(eq)
+        words["missed_counts"] = between.parameters()
+        notes["missed_counts"] = between.sentence(eq)
+    return Own(made, words, line, notes)

@@ -7,7 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-OWN: Final = {"external_vibration": "phase and amplitude of the vibration", "missed_counts": "instants of the steps"}
+OWN: Final = {
+    "external_vibration": "phase and amplitude of the vibration",
+    "missed_counts": "instants of the steps or zero after them",
+}
 
 
 def of_each_run(effects: Iterable[str]) -> str:

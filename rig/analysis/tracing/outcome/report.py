@@ -86,6 +86,7 @@ def report(
         next_run=conclusion.next_run,
         notes=(
             *beside_the_numbers(named),
+            *(p.own.notes[name] for name in named if name in p.own.notes),
             *([one_way] if one_way else []),
             *(r.sentence() for r in ripple),
             *p.campaign.notes,

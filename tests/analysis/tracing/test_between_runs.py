@@ -1,0 +1,93 @@
+"""A step of the zeros between two runs: counts that were lost while nobody recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.floor import between_runs as module
+from rig.analysis.tracing.floor.between_runs import Between, find_between
+from rig.analysis.tracing.floor.offsets import own_angle
+
+ARCSEC = np.pi / 180 / 3600
+RUNS, LASTS, EVERY, AT = 20, 10.0, 40.0, 9  # s
+STEP, WANDER = 9.0 * ARCSEC, 0.3 * ARCSEC
+
+
+def found(
+    monkeypatch: pytest.MonkeyPatch, zeros: Sequence[float], pause: float = 0.0, conditions: int = 5
+) -> Between | None:
+    """Of runs with those zeros [rad], one every EVERY s and a `pause` before run AT; conditions come in turn."""
+    begun = [EVERY * i + (pause if i >= AT else 0.0) for i in range(len(zeros))]
+    runs = [
+        SimpleNamespace(start=t, locked=False, said=i % conditions, pieces=[SimpleNamespace(t=[t, t + LASTS])])
+        for i, t in enumerate(begun)
+    ]
+    rows = {(i, "A"): SimpleNamespace(y=np.zeros(50)) for i in range(len(zeros))}
+    s: Any = SimpleNamespace(design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)))
+    monkeypatch.setattr(module, "offset", lambda _, run, channel: zeros[run])
+    monkeypatch.setattr(module, "alike", lambda a, b: a.said == b.said)
+    return find_between(s, range(len(zeros)))
+
+
+def stepped(rng: np.random.Generator, size: float = STEP) -> np.ndarray:
+    """Zeros that wander a little, and from run AT on by `size` more."""
+    return WANDER * rng.standard_normal(RUNS) + np.where(np.arange(RUNS) >= AT, size, 0.0)
+
+
+def test_every_run_from_the_step_on_has_a_zero_of_its_own(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    between = found(monkeypatch, stepped(rng))
+    assert between
+    assert between.runs == tuple(range(AT, RUNS))
+    assert between.size == pytest.approx(STEP, abs=2 * between.half_width)
+    assert between.half_width < 0.05 * STEP
+    named: Any = SimpleNamespace(runs=[SimpleNamespace(name=f"run {i}") for i in range(RUNS)])
+    assert "between the runs run 8 and run 9" in between.sentence(named)
+    eq: Any = SimpleNamespace(rows={(i, "A"): SimpleNamespace(y=np.zeros(7)) for i in range(RUNS)})
+    assert {key: x.tolist() for key, x in between.columns(eq).items()}[AT, "A"] == [[1.0]] * 7
+
+
+def test_the_interval_of_its_size_covers(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
+    hits = [abs(b.size - STEP) < b.half_width for _ in range(200) if (b := found(monkeypatch, stepped(rng)))]
+    assert len(hits) == 200
+    assert 0.88 <= np.mean(hits) <= 0.99
+
+
+def test_zeros_that_wander_or_drift_or_warm_up_are_no_step(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    t = np.arange(RUNS)
+    for zeros in (0.0 * t, STEP * t / RUNS, STEP * (1 - np.exp(-t / 4.0)), STEP * np.sign(np.sin(t))):
+        assert not any(found(monkeypatch, zeros + WANDER * rng.standard_normal(RUNS)) for _ in range(20))
+    assert not any(found(monkeypatch, stepped(rng, 3 * WANDER)) for _ in range(20))
+
+
+def test_after_a_longer_break_somebody_may_have_homed_the_encoder(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    assert found(monkeypatch, stepped(rng), pause=100.0) is None
+
+
+def test_without_a_condition_on_both_sides_it_may_be_the_condition(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    assert found(monkeypatch, stepped(rng), conditions=RUNS) is None
+    assert found(monkeypatch, stepped(rng)[AT - 2 : AT + 3]) is None, "of five runs none is told apart"
+
+
+def test_repeats_on_either_side_of_a_step_do_not_tell_how_zeros_wander() -> None:
+    y = {0: 0.0, 1: 1e-6, 2: 5e-5, 3: 5.1e-5, 4: 5e-5, 5: 5.1e-5, 6: 0.0, 7: 5e-5}
+    rows = {(i, "A"): SimpleNamespace(y=np.full(9, zero), z=np.zeros((9, 1)), at=(0,)) for i, zero in y.items()}
+    own = {(i, "A"): np.ones((9, 1)) for i, zero in y.items() if zero > 2e-5}
+    eq = SimpleNamespace(rows=rows, own=own)
+    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), keys=list(rows), x=np.zeros(1))
+    pairs = [(0, 1), (2, 3), (4, 5), (6, 7)]
+    assert own_angle(s, pairs, 1e-9) == pytest.approx(1e-6 / np.sqrt(2))
+    eq.own = {}
+    assert own_angle(s, pairs, 1e-9) > 1e-5
