@@ -93,12 +93,14 @@ def _between_repeats(channel: Shown) -> float:
 
 def _is_one_size(channel: Shown, noise: float) -> bool:
     """Whether chance makes conditions differ as much, and what unseen runs want beside what seen ones do."""
-    groups = len(channel.conditions)
-    if groups < 2 or not channel.unseen:
+    groups, seen = len(channel.conditions), channel.own - channel.unseen
+    if groups < 2 or not channel.unseen or not seen:
         return False
     between = sum(len(c.wanted) * float(np.mean(c.wanted)) ** 2 for c in channel.conditions) / (groups - 1)
     chance = float(fdtrc(groups - 1, _free(channel.conditions), between / noise))
-    return chance > BY_CHANCE and abs(channel.left) < OF_ONE_SIZE * np.sqrt(noise * channel.unseen)
+    # what the seen ones want is the size itself, and no surer than they are
+    spread = np.sqrt(noise * channel.unseen * channel.own / seen)
+    return chance > BY_CHANCE and abs(channel.left) < OF_ONE_SIZE * spread
 
 
 def _free(conditions: Sequence[Condition]) -> int:

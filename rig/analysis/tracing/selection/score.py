@@ -148,7 +148,7 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         overall({key: r**2 * whole[key].size for key, r in size.items()}, d),
         shown,
         stretched,
-        at.calm and as_repeats(s, rest, d, at),
+        (at.calm or not at.loud(whole, MISSING)) and as_repeats(s, rest, d, at),
     )
 
 

@@ -65,7 +65,7 @@ def decide(
     best = where[0]
     shared = [name for name in names if name not in p.own.made and name not in _of_the_same_order(s, best)]
     told = line is None and (known or total <= EXPLAINED)
-    taken = _share(*_most(p, before, after))
+    taken = min(_share(*_most(p, before, after)), _share_of_all(p, before, after))
     stand = _standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
@@ -133,15 +133,26 @@ def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if not (LIBRARY[name].remembers or LIBRARY[name].backbone))
 
 
+def _pairs(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> list[tuple[float, float]]:
+    """RMS over floor without and with what was found, by channel."""
+    keys = [[k for k in after if k[1] == c] for c in CHANNELS]
+    return [(p.held_out.ratio(before, mine), p.held_out.ratio(after, mine)) for mine in keys if mine]
+
+
 def _most(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
     """RMS over floor without and with what was found, of the channel that gains most."""
-    keys = [[k for k in after if k[1] == c] for c in CHANNELS]
-    pairs = [(p.held_out.ratio(before, mine), p.held_out.ratio(after, mine)) for mine in keys if mine]
-    return max(pairs, key=lambda pair: pair[0] - pair[1])
+    return max(_pairs(p, before, after), key=lambda pair: pair[0] - pair[1])
+
+
+def _share_of_all(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> float:
+    """Of the excess over the floor in all channels, what has gone: a law that explains one channel while far more is
+    left in the others may be a shadow there of what those show."""
+    pairs = _pairs(p, before, after)
+    return sum(max(b**2 - a**2, 0.0) for b, a in pairs) / max(sum(max(b**2 - 1.0, 0.0) for b, _ in pairs), 1e-9)
 
 
 def _share(before: float, after: float) -> float:
-    """Of the excess over the floor, what has gone."""
+    """Of the excess over the floor in a channel, what has gone."""
     return (before**2 - after**2) / max(before**2 - 1.0, 1e-9)
 
 
