@@ -135,3 +135,11 @@ def walk(path: str) -> made_up.Array:
         if command == "m":
             start, command = here, "l"
     return np.array(out)
+
+
+def test_what_no_font_has_is_drawn_as_a_blank(recwarn: pytest.WarningsRecorder) -> None:
+    made = Figure(figsize=(3, 2), dpi=72)
+    made.add_axes((0.1, 0.1, 0.8, 0.8)).set_title("a\trun\x07")
+    text = drawn(made)
+    assert "\t" not in text.split("a")[-1]
+    assert not [w for w in recwarn if "Glyph" in str(w.message)]

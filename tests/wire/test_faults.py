@@ -145,6 +145,11 @@ def test_a_cut_cable_and_the_old_frames_after_it(op: Operator) -> None:
     assert "no station" in op.ask("cut", station="moon")["error"]
 
 
+def test_without_a_host_there_is_none_to_cut_off(op: Operator) -> None:
+    op.host.port.leave()
+    assert op.ask("cut")["error"].endswith("no host is on the bus, which could be cut off")
+
+
 def test_a_cut_node_is_silent(op: Operator) -> None:
     op.do("cut", station="node 2")
     assert op.syncs() == []

@@ -7,7 +7,7 @@ import numpy as np
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.angle import measured_ratio
 from rig.analysis.motion.source import Motion
-from rig.core.units import DEG
+from rig.core.units import DEG, TURN
 
 SAME = 0.01  # relative: no wind-up and no kinematic error over a stroke of half an output turn is more
 NEAR = 0.001  # the same where θ_l misses by more than a kinematic error can:
@@ -34,6 +34,9 @@ def disagreement(motion: Motion, turns: float | None = None) -> str:
         return ""
     if abs(turns / motion.ratio + 1.0) < SAME:
         return "The load angle runs against the motor: flip the sign of one encoder, θ̃ is twice the motion until then."
+    if not np.ptp(motion.theta_l):
+        gone = float(np.ptp(motion.theta_m)) / TURN
+        return f"The load angle does not move while the motor goes {gone:.3g} turns: θ̃ means nothing."
     return (
         f"The encoders say {turns:.5g} motor turns per load turn, the manifest says {motion.ratio:g}: θ̃ means nothing."
     )

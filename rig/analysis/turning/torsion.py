@@ -65,6 +65,8 @@ def steady_part(motion: Motion, sweep: slice) -> slice:
         return sweep
     speed = np.diff(progress[marks]) / np.diff(t[marks])
     good = np.flatnonzero(np.abs(speed / np.median(speed) - 1.0) <= STEADY)
+    if not good.size:  # speeds so uneven that their middle is none of them, as around a hole
+        return sweep
     return slice(sweep.start + int(marks[good[0]]), sweep.start + int(marks[good[-1] + 1]))
 
 

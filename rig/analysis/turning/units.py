@@ -15,28 +15,30 @@ from rig.core.numbers import number
 from rig.core.units import DEG, TURN
 
 FACTORS = (
-    (1 / DEG, "180/π: is theta_m in deg"),
-    (DEG, "π/180: was theta_m turned from deg into rad twice"),
-    (1 / TURN, "1/(2π): is theta_m in turns"),
-    (TURN, "2π: was theta_m multiplied by 2π twice"),
-    (60.0, "60: is theta_m in sixtieths of what it should be, or t in min"),
-    (1 / 60, "1/60: is a rate per minute read as one per second"),
+    (1 / DEG, "theta_m", "180/π: is theta_m in deg"),
+    (DEG, "theta_m", "π/180: was theta_m turned from deg into rad twice"),
+    (1 / TURN, "theta_m", "1/(2π): is theta_m in turns"),
+    (TURN, "theta_m", "2π: was theta_m multiplied by 2π twice"),
+    (60.0, "theta_m", "60: is theta_m in sixtieths of what it should be, or t in min"),
+    (1 / 60, "theta_m", "1/60: is a rate per minute read as one per second"),
+    (1e-3, "t", "1/1000: is t in ms"),
+    (1e3, "t", "1000: was t turned from ms into s twice"),
 )
 NEAR = 0.03  # share by which a speed may differ from that of a wrong unit: a loop follows better than that
 
 
 def wrong_unit(motion: Motion, strokes: list[Stroke], reference: Array | None, conditions: Mapping[str, Any]) -> str:
-    """Says which unit theta_m seems to be in, where its strokes are faster or slower than commanded by the factor of a
-    unit; "" where they are not. Commanded is what `reference` [rad], shape (n,), does, without it
+    """Says which unit theta_m or t seems to be in, where its strokes are faster or slower than commanded by the factor
+    of a unit; "" where they are not. Commanded is what `reference` [rad], shape (n,), does, without it
     `conditions["speed_rpm"]`."""
     asked = abs(number(conditions.get("speed_rpm")))
     if reference is not None and np.isfinite(reference).all():
         asked = nominal_rpm(motion, strokes, reference)
     rpm = nominal_rpm(motion, strokes, None)
-    for factor, what in FACTORS:
+    for factor, whose, what in FACTORS:
         if asked > 0 and abs(rpm / asked / factor - 1) < NEAR:
             return (
-                f"The unit of theta_m looks wrong: it turns at {rpm:.4g} rpm and {asked:.4g} rpm were commanded, a "
-                f"factor of {what}? Expected rad."
+                f"The unit of {whose} looks wrong: the motor turns at {rpm:.4g} rpm and {asked:.4g} rpm were "
+                f"commanded, a factor of {what}? Expected {'s' if whose == 't' else 'rad'}."
             )
     return ""

@@ -4,8 +4,9 @@ measured anew for every figure, and paths of six decimals to be read and rounded
 from __future__ import annotations
 
 import io
+import re
 from functools import lru_cache
-from typing import Any
+from typing import Any, Final
 
 from matplotlib.backends.backend_svg import RendererSVG
 from matplotlib.figure import Figure
@@ -14,6 +15,8 @@ from matplotlib.path import Path
 from matplotlib.textpath import text_to_path
 
 from rig.report.figures.paths import steps
+
+CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 
 
 def drawn(figure: Figure) -> str:
@@ -36,6 +39,10 @@ class _Renderer(RendererSVG):  # type: ignore[misc]  # no types come with the ba
     def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> tuple[float, float, float]:
         return super().get_text_width_height_descent(s, prop, ismath) if ismath else measured(s, prop)
 
+    def draw_text(self, gc: Any, x: float, y: float, s: str, *rest: Any, **named: Any) -> None:
+        """No font has a tab or a line feed, which the name of a folder may have."""
+        super().draw_text(gc, x, y, CONTROL.sub(" ", s), *rest, **named)
+
     def _convert_path(
         self, path: Any, transform: Any = None, clip: Any = None, simplify: bool | None = None, sketch: Any = None
     ) -> str:
@@ -53,5 +60,6 @@ def measured(text: str, font: FontProperties) -> tuple[float, float, float]:
     """Width, height and descent [pt]. To lay out a word costs more than all else that is done to draw it, and a page
     has each figure in two widths: most of its words and numbers stand in both.
     """
-    size: tuple[float, float, float] = text_to_path.get_text_width_height_descent(text, font, False)
+    plain = CONTROL.sub(" ", text)
+    size: tuple[float, float, float] = text_to_path.get_text_width_height_descent(plain, font, False)
     return size

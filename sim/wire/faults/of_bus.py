@@ -130,6 +130,8 @@ class BusFaults:
     def _stations(self, name: str) -> list[Port]:
         ports = self._bus.ports
         found = [p for p in ports if p.name == name or (name == "hosts" and not p.name.startswith("node"))]
+        if not found and name == "hosts":
+            raise UsageError("no host is on the bus, which could be cut off")
         if not found:
             raise UsageError(f"no station '{name}'; expected hosts, {', '.join(port.name for port in ports)}")
         return found

@@ -9,6 +9,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from rig.analysis.tracing.floor import own
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.prepared import prepare
@@ -120,3 +121,16 @@ def test_two_gears_are_no_campaign(tmp_path: Path, shared: Path) -> None:
         (tmp_path / name / "manifest.json").write_text(json.dumps(manifest))
     with pytest.raises(UsageError, match=r"2 gears \(A, B\), expected one"):
         trace(tmp_path)
+
+
+@pytest.mark.slow
+def test_without_time_nothing_shakes_at_a_frequency(
+    tmp_path: Path, open_1: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    for name in ("find_vibration", "find_interference"):
+        monkeypatch.setattr(own, name, lambda *_, name=name: asked.append(name))
+    prepare(read_campaign(reduced(tmp_path / "timeless", open_1, FEW, ("t",))), ())
+    assert asked == []
+    prepare(read_campaign(reduced(tmp_path / "timed", open_1, FEW, ())), ())
+    assert set(asked) == {"find_vibration", "find_interference"}

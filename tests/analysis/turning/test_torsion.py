@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from rig.analysis import Result, analyse
 from rig.analysis.motion.angle import unwrap
+from rig.analysis.motion.source import Motion
+from rig.analysis.turning.torsion import steady_part
 from rig.core.units import TURN
 from tests.analysis.synthetic import MadeRun, count
 
@@ -108,3 +111,11 @@ def test_only_a_run_that_could_be_about_stiffness_says_that_it_shows_none(torque
     assert said["constant_torque"] == said["kinematic_error"] == []
     assert len(said["other"]) == 1
     assert "a lock test shows it (hdrig run stiffness-lock)" in said["other"][0]
+
+
+def test_of_turns_at_two_speeds_and_none_between_all_are_taken() -> None:
+    speed = np.repeat([1.0, 10.0], 5)  # turns per s: the middle is none of them
+    theta = TURN * np.arange(0.0, 10.05, 0.01)
+    t = np.interp(theta, TURN * np.arange(12), np.concatenate([[0.0], np.cumsum(1 / np.append(speed, 10.0))]))
+    motion = SimpleNamespace(theta_m=theta, t=t)
+    assert steady_part(cast("Motion", motion), slice(0, theta.size)) == slice(0, theta.size)

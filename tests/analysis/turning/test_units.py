@@ -30,10 +30,21 @@ def test_a_unit_that_looks_wrong_is_said_instead_of_advice_on_gains(factor: floa
     assert analyse(made).verdict is Verdict.MEASURED
     result = analyse(scaled(made, factor))
     assert result.verdict is Verdict.FAIL
-    assert result.sentence.startswith("The unit of theta_m looks wrong: it turns at ")
+    assert result.sentence.startswith("The unit of theta_m looks wrong: the motor turns at ")
     assert f"{rpm:.4g} rpm were commanded" in result.sentence
     assert word in result.sentence
     assert "Kp" not in result.sentence
+
+
+@pytest.mark.slow
+def test_milliseconds_taken_for_seconds_are_named_as_such() -> None:
+    made = slow_run(1, amplitude_turns=12.0)
+    columns = {k: v for k, v in made.columns.items() if k != "theta_ref"} | {"t": 1e3 * made.columns["t"]}
+    conditions = {"speed_rpm": 4 * 12.0 * 0.01 * 60}
+    result = analyse(replace(made, columns=columns, manifest={**made.manifest, "conditions": conditions}))
+    assert result.verdict is Verdict.FAIL
+    assert result.sentence.startswith("The unit of t looks wrong: the motor turns at ")
+    assert "1/1000: is t in ms? Expected s." in result.sentence
 
 
 def test_a_gap_is_named_with_its_channel_and_rows() -> None:

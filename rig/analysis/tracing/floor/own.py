@@ -48,12 +48,13 @@ def find(s: Solution, parts: Split) -> Own:
     made: dict[str, dict[Key, Array]] = {}
     words: dict[str, tuple[Parameter, ...]] = {}
     notes: dict[str, str] = {}
-    shaken = find_vibration(s, e, parts.fitted)
+    timed = all("t" in eq.runs[i].has for i in parts.fitted)  # else nothing has a frequency
+    shaken = find_vibration(s, e, parts.fitted) if timed else None
     line = None
     if shaken is not None:
         made["external_vibration"] = shaken.columns
         words["external_vibration"] = shaken.parameters()
-    else:
+    elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
     steps = find_steps(eq, everywhere, compliance)
     whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]

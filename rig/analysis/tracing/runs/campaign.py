@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -11,6 +12,7 @@ import numpy as np
 
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
+from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
@@ -21,6 +23,7 @@ from rig.model.effect import Moved
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
+HELD = 3.0  # ° of the output in a lock test: a soft housing gives a tenth of that
 SAMPLES = ("samples.*", "journal-*.arrows")
 DAY = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]"  # a folder of the runs of one day
 LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
@@ -64,7 +67,7 @@ def read_campaign(folder: Path) -> Campaign:
     """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
     places = folders_of_runs(folder)
     opened, out = _open(places)
-    nameless = _nameless(folder)
+    nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
     _refuse_other_gears(folder.name, opened)
@@ -74,7 +77,7 @@ def read_campaign(folder: Path) -> Campaign:
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, folder.name)
-    for sort in (_odd, _lacking, _same_gear):
+    for sort in (_odd, _lacking, _same_gear, _odd_torques):
         runs, odd = sort(runs)
         out += odd
     runs, carrying = weighed(runs)
@@ -109,6 +112,12 @@ def _nameless(folder: Path) -> list[Said]:
     ]
 
 
+def _closed(folder: Path) -> list[Said]:
+    """Folders nobody may look into: whether they hold a run is not known."""
+    closed = [p.name for p in sorted(folder.iterdir()) if p.is_dir() and not os.access(p, os.R_OK | os.X_OK)]
+    return [left_out(name, "it cannot be read: permission denied") for name in closed]
+
+
 def _record(run: Run, start: float) -> Recording | Said:
     try:
         made = record(run, start)
@@ -117,14 +126,28 @@ def _record(run: Run, start: float) -> Recording | Said:
     if not made.pieces:
         return left_out(run.name, "no 0.1 s of it without a gap")
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
+    if made.locked and (went := _output_went(made)) > HELD:
+        return left_out(run.name, f"it says its output is locked, and its load angle goes {went:.3g}°")
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
         return left_out(run.name, f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one")
     return made
 
 
+def _output_went(run: Recording) -> float:
+    """Range of the load angle as read, °; 0 where it was not."""
+    read = [np.ptp(p.theta_l) for p in run.pieces] if "theta_l" in run.has else [0.0]
+    return float(np.rad2deg(max(read)))
+
+
 def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Runs whose angles are not what the others' are are left out."""
     wrong = {r.name: said for r in runs if (said := odd_angles(r)) is not None}
+    return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
+
+
+def _odd_torques(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """Runs whose torque is read otherwise than that of the others are left out."""
+    wrong = {r.name: said for r in runs if (said := odd_torques(r, runs)) is not None}
     return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
 
 

@@ -1,0 +1,74 @@
+"""A run whose torque is read otherwise than that of its repeats is left out, and said to be; the others stay."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.runs import odd_torques as module
+from rig.analysis.tracing.runs.odd_torques import odd_torques
+
+N, SPEEDS = 400, (12.0, 20.0, -20.0, 31.0)
+
+
+@pytest.fixture(autouse=True)
+def _said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "alike", lambda a, b: bool(a.said == b.said))
+
+
+def run(rng: np.random.Generator, speed: float, locked: bool = False, **as_read: Any) -> Any:
+    """One at a steady speed [rad/s], friction of the motor and of the load; `as_read` changes a torque."""
+    torques = {
+        "tau_m": (0.3 + 2e-3 * abs(speed)) * np.sign(speed) + 0.02 * rng.standard_normal(N),
+        "tau_l": 0.5 * np.sign(speed) + 0.1 * rng.standard_normal(N),
+    }
+    torques |= {name: change(torques[name]) for name, change in as_read.items()}
+    piece = SimpleNamespace(omega_m=np.full(N, speed), **torques)
+    return SimpleNamespace(
+        said=speed, locked=locked, procedure="constant_torque", has={"tau_m", "tau_l"}, pieces=(piece,)
+    )
+
+
+def campaign(rng: np.random.Generator) -> list[Any]:
+    return [run(rng, speed) for speed in SPEEDS for _ in range(2)]
+
+
+@pytest.mark.parametrize(
+    ("as_read", "words"),
+    [
+        ({"tau_m": lambda x: 1000 * x}, "its τ_m is .* times that of its repeats"),
+        ({"tau_l": lambda x: x / 1000}, "its τ_l is one .*th of that of its repeats"),
+        ({"tau_m": lambda x: -x}, "its τ_m has the other sign"),
+        ({"tau_l": lambda x: 0 * x + 1.5}, "its τ_l is 1.5 N·m throughout"),
+    ],
+)
+def test_the_one_that_is_off_is_told_and_none_of_the_others(
+    rng: np.random.Generator, as_read: dict[str, Any], words: str
+) -> None:
+    others = campaign(rng)
+    odd = run(rng, SPEEDS[0], **as_read)
+    runs = [*others, odd]
+    assert re.search(words, odd_torques(odd, runs) or "")
+    assert [odd_torques(r, runs) for r in others] == [None] * len(others)
+
+
+def test_runs_that_read_as_they_do_are_not_odd_whatever_load_or_lock(rng: np.random.Generator) -> None:
+    loaded = [run(rng, speed, tau_l=lambda x: x + 40.0, tau_m=lambda x: x + 0.8) for speed in (1.0, 1.0)]
+    locked = [run(rng, 0.1, locked=True, tau_l=lambda x: 300 * x) for _ in range(2)]
+    runs = [*campaign(rng), *loaded, *locked]
+    assert [odd_torques(r, runs) for r in runs] == [None] * len(runs)
+
+
+def test_without_a_repeat_a_size_or_a_sign_tells_nothing(rng: np.random.Generator) -> None:
+    runs = [run(rng, speed) for speed in SPEEDS]
+    odd = run(rng, 5.0, tau_m=lambda x: -1000 * x)
+    assert odd_torques(odd, [*runs, odd]) is None
+
+
+def test_where_most_runs_read_nothing_none_is_odd_for_it(rng: np.random.Generator) -> None:
+    runs = [run(rng, speed, tau_l=lambda x: 0 * x) for speed in SPEEDS]
+    assert [odd_torques(r, runs) for r in runs] == [None] * len(runs)
