@@ -159,12 +159,14 @@ def _own(run: Recording) -> Array:
     motor's torque constant to less, and both drift: at such torques that is several floors of M, and what of it lies
     along T is each test's own. Left to all it would go into θ̃_p′, which stands before T there.
 
-    Without the sensor the friction that is the same all along is the test's own too, (n, 2): a friction that falls
-    with speed or grows with load, and one beside the spring, would all be that much."""
+    Without the sensor the friction that is the same all along is the test's own too, (n, 3): a friction that falls
+    with speed or grows with load, and one beside the spring, would all be that much. And so is a constant: the clamp
+    turns the output a little."""
     gain = joined([run.smoother(piece.tau_l) for piece in run.pieces])
     if not run.is_wound:
         return gain[:, None]
-    return np.stack([gain, joined([run.smoother(piece.way) for piece in run.pieces])], 1)
+    way = joined([run.smoother(piece.way) for piece in run.pieces])
+    return np.stack([gain, way, np.ones_like(way)], 1)
 
 
 def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDArray[np.bool_]:

@@ -111,14 +111,14 @@ class Equations:
 
     def without_offset(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) with as much of its mean gone as the run's offset is its own; all of it in A of a locked
-        run, whose clamp turns the output a little, and in M where A is spent on the torque."""
+        run, whose clamp turns the output a little."""
         return np.asarray(x - self.share_of_mean(key, x.shape[0]) * x.mean(0))
 
     def share_of_mean(self, key: Key, n: int) -> float:
         """How much of the mean of `n` rows of a block is the run's own: all of a load's torque where nobody says what
         hung on it."""
         run, channel = key
-        free = channel == ("M" if self.runs[run].is_wound else "A") and self.runs[run].locked
+        free = channel == "A" and self.runs[run].locked
         free = free or (channel == "L" and not self.runs[run].load_known)
         return 1.0 if free else self.noise.pull(channel, n)
 

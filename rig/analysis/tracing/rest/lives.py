@@ -16,16 +16,19 @@ from rig.model.effect import Array
 SOME: Final = 0.3  # share of the excess that a coordinate must predict
 MORE: Final = 0.15  # share by which two together must beat the better one alone
 LOUD: Final = 1.3  # squared residual over squared floor of a channel: less is no excess to share out
+FAINTER: Final = 0.05  # of the loudest channel's excess: less is what that one's cause makes in another
 MOST: Final = 3  # coordinates that are told
 
 
 def lives_in(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> tuple[str, ...]:
     """Coordinates that predict residuals `e` in rows they were not fitted to; () when nothing is left.
 
-    The best one of each channel that has something left, the loudest channel first, then the second ones. A fixed
-    frequency is `time_periodic`.
+    The best one of each channel that has something left, the loudest channel first, then the second ones; none of one
+    beside which another has far more left. A fixed frequency is `time_periodic`.
     """
-    loud = [channel for channel, square in loudness(e, floors).items() if square >= LOUD]
+    over = loudness(e, floors)
+    least = max(LOUD, 1 + FAINTER * (max(over.values(), default=0.0) - 1))
+    loud = [channel for channel, square in over.items() if square >= least]
     ranks = zip_longest(*(_in_channel(eq, e, floors, channel) for channel in loud))
     return tuple(dict.fromkeys(name for rank in ranks for name in rank if name))[:MOST]
 
