@@ -84,6 +84,11 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
             ["run", "kinematic-error", "--with", "amplitude_deg=720 deg"],
             ["amplitude_deg = 720 deg: expected a number in deg, without the unit, for example "],
         ),
+        (
+            ["run", "kinematic-error", "--with", "amplitude_deg=9rad"],
+            ["amplitude_deg = 9rad: expected a number in deg"],
+        ),
+        (["run", "kinematic-error", "--with", "frequency=0,01"], ["frequency = 0,01: expected a decimal point, 0.01"]),
         (["run", "jog", "--clock", "virtual", "--bench", "twin-can", "--dry-run"], ["virtual clock exists only on"]),
         (["tune", "--write", "nowhere/x.toml"], ["nowhere is no folder"]),
         (["analyse", "nowhere"], ["nowhere", "does not exist"]),

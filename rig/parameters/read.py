@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
@@ -19,6 +20,10 @@ WORDS = {
     bool: "true or false",
     tuple: "a list of numbers",
 }
+
+
+DECIMAL_COMMA: Final = re.compile(r"[-+]?\d+,\d+")
+WITH_MORE: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
 
 def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
@@ -42,16 +47,17 @@ def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
 
 
 def _refuse_unit(kind: type[Any], field: Field[Any], raw: Any) -> None:
-    """Raises UsageError for a number with something behind it, where a number is wanted."""
-    number, space, behind = raw.strip().partition(" ") if isinstance(raw, str) else ("", "", "")
-    if not space or not isinstance(field.default, float | int) or isinstance(field.default, bool):
+    """Raises UsageError for a number with something behind it, or with a decimal comma, where a number is wanted."""
+    if not isinstance(raw, str) or not isinstance(field.default, float | int) or isinstance(field.default, bool):
         return
-    try:
-        float(number)
-    except ValueError:
+    if DECIMAL_COMMA.fullmatch(raw.strip()):
+        raise UsageError(
+            f"{field.name} = {raw.strip()[:60]}: expected a decimal point, {raw.strip().replace(',', '.')}"
+        )
+    if (found := WITH_MORE.fullmatch(raw.strip())) is None:
         return
     unit = next(one.unit for one in told(kind) if one.name == field.name)
-    wanted = f"a number in {unit}, without the unit" if unit else f"a number alone, without '{behind.strip()[:20]}'"
+    wanted = f"a number in {unit}, without the unit" if unit else f"a number alone, without '{found[1][:20]}'"
     raise UsageError(f"{field.name} = {raw.strip()[:60]}: expected {wanted}, for example {field.default}")
 
 
