@@ -17,6 +17,7 @@ from rig.model.waves import sums
 
 SLIDING: Final = 0.5  # of the median speed: slower, and the motor's friction has no sure sign
 FEWEST: Final = 50  # rows
+NOTHING: Final = 1e-9  # rad or N·m: what rounding leaves where one angle stands in for the other
 SOFTEST, STIFFEST = 0.3, 3.0  # of the torque that K has: further off, and the motor winds another spring
 
 
@@ -28,8 +29,8 @@ def wound_torque(theta_m: Array, theta_l: Array, tau_m: Array, ratio: float, gea
 
 
 def winds(torque: Array, tau_m: Array, theta_m: Array, ratio: float, dt: float) -> bool:
-    """Whether the motor holds about N times what the wind-up says, N·m, (n,): what it winds otherwise is another
-    spring."""
+    """Whether the motor holds about an Nth of the `torque` that the wind-up says, N·m, (n,): what it winds otherwise is
+    another spring."""
     line = _line(torque, flat_rate(theta_m, dt, 1), tau_m)
     return line is not None and SOFTEST < line[0] * ratio < STIFFEST
 
@@ -38,7 +39,7 @@ def _line(wound: Array, rate: Array, tau_m: Array) -> tuple[float, float] | None
     """Of the motor's torque less its friction by what is `wound` (n,): how steep, and where it is nothing."""
     sliding = np.abs(rate) > SLIDING * float(np.median(np.abs(rate)))
     n = np.count_nonzero(sliding)
-    if n < FEWEST or not (np.isfinite(wound).all() and np.isfinite(tau_m).all() and np.ptp(wound) > 0):
+    if n < FEWEST or not (np.isfinite(wound).all() and np.isfinite(tau_m).all() and np.ptp(wound) > NOTHING):
         return None
     middle = float(np.mean(wound[sliding]))
     columns = np.stack([wound[sliding] - middle, np.sign(rate[sliding]), np.ones(n)], 1)
