@@ -269,10 +269,8 @@ def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tu
 
 
 def _knowing(piece: Signals, known: Known, is_wound: bool) -> Signals:
-    if is_wound and np.isfinite(piece.tau_l).all():
-        tau_l = rewound(piece, known)
-        rate = flat_rate(tau_l, piece.dt, 1)
-        return replace(piece, gear=known, tau_l=tau_l, torque=flat(tau_l), torque_rate=rate)
+    if is_wound:
+        return rewound(piece, known)
     return replace(piece, gear=known, torque=piece.torque + piece.gear.torque_zero - known.torque_zero)
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from rig.analysis.motion.source import Source
 from rig.analysis.tracing.runs.declared import believed, is_locked
-from rig.analysis.tracing.runs.smoothing import flat_rate
-from rig.analysis.tracing.runs.wound import winds, wound_torque
+from rig.analysis.tracing.runs.smoothing import flat, flat_rate
+from rig.analysis.tracing.runs.wound import wound
 from rig.model.effect import Array, Known, Signals
 
 
@@ -28,9 +29,8 @@ def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) 
         return out
     gear = believed(run)
     if is_locked(run):
-        torque = wound_torque(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt)
-        if winds(torque, out["tau_m"], out["theta_m"], run.ratio, dt):
-            out["tau_l"] = torque
+        told = wound(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt)
+        out["tau_l"] = out["tau_l"] if told is None else told.torque
     else:
         out["tau_l"] = gear.J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
     return out
@@ -54,6 +54,11 @@ def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: 
     return out
 
 
-def rewound(piece: Signals, known: Known) -> Array:
-    """The torque of a wind-up, (n,), with what is known of the spring by now."""
-    return wound_torque(piece.theta_m, piece.theta_l, piece.tau_m, piece.ratio, known, piece.dt)
+def rewound(piece: Signals, known: Known) -> Signals:
+    """With the torque of the wind-up, and the spring it was told by, as far as the gear is `known` by now."""
+    told = wound(piece.theta_m, piece.theta_l, piece.tau_m, piece.ratio, known, piece.dt)
+    if told is None or not np.isfinite(piece.tau_l).all():
+        return replace(piece, gear=known)
+    gear = replace(known, K=told.K)
+    rate = flat_rate(told.torque, piece.dt, 1)
+    return replace(piece, gear=gear, tau_l=told.torque, torque=flat(told.torque), torque_rate=rate)

@@ -7,6 +7,7 @@ The clamp turns the output a little, so φ_0 is each test's own: where the motor
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,31 +18,32 @@ from rig.model.waves import sums
 
 SLIDING: Final = 0.5  # of the median speed: slower, and the motor's friction has no sure sign
 FEWEST: Final = 50  # rows
-NOTHING: Final = 1e-9  # rad or N·m: what rounding leaves where one angle stands in for the other
-SOFTEST, STIFFEST = 0.3, 3.0  # of the torque that K has: further off, and the motor winds another spring
+NOTHING: Final = 1e-9  # rad: what rounding leaves where one angle stands in for the other
+SOFTEST, STIFFEST = 0.3, 3.0  # of the declared K: further off, and the motor winds another spring
 
 
-def wound_torque(theta_m: Array, theta_l: Array, tau_m: Array, ratio: float, gear: Known, dt: float) -> Array:
-    """T, N·m, (n,), from angles and the motor's torque as read; NaN where the motor winds no spring."""
-    wound = theta_m / ratio - theta_l - sums(gear.kinematic_error, theta_m, 0)[0]
-    line = _line(wound, flat_rate(theta_m, dt, 1), tau_m)
-    return np.full(wound.size, np.nan) if line is None else np.asarray(gear.K * (wound - line[1]))
+@dataclass(frozen=True)
+class Wound:
+    """The torque T of a lock test [N·m], (n,), and the spring's K [N·m/rad] by which it was told: as steep as the
+    motor's torque says, so that both are in the motor's units."""
+
+    torque: Array
+    K: float
 
 
-def winds(torque: Array, tau_m: Array, theta_m: Array, ratio: float, dt: float) -> bool:
-    """Whether the motor holds about an Nth of the `torque` that the wind-up says, N·m, (n,): what it winds otherwise is
-    another spring."""
-    line = _line(torque, flat_rate(theta_m, dt, 1), tau_m)
-    return line is not None and SOFTEST < line[0] * ratio < STIFFEST
-
-
-def _line(wound: Array, rate: Array, tau_m: Array) -> tuple[float, float] | None:
-    """Of the motor's torque less its friction by what is `wound` (n,): how steep, and where it is nothing."""
+def wound(theta_m: Array, theta_l: Array, tau_m: Array, ratio: float, gear: Known, dt: float) -> Wound | None:
+    """From angles and the motor's torque as read, (n,); None where the motor winds no spring of about `gear.K`."""
+    error, slope = sums(gear.kinematic_error, theta_m, 0, 1)
+    phi = theta_m / ratio - theta_l - error
+    rate = flat_rate(theta_m, dt, 1)
     sliding = np.abs(rate) > SLIDING * float(np.median(np.abs(rate)))
     n = np.count_nonzero(sliding)
-    if n < FEWEST or not (np.isfinite(wound).all() and np.isfinite(tau_m).all() and np.ptp(wound) > NOTHING):
+    if n < FEWEST or not (np.isfinite(phi).all() and np.isfinite(tau_m).all() and np.ptp(phi) > NOTHING):
         return None
-    middle = float(np.mean(wound[sliding]))
-    columns = np.stack([wound[sliding] - middle, np.sign(rate[sliding]), np.ones(n)], 1)
-    (slope, _, rest), *_ = np.linalg.lstsq(columns, tau_m[sliding], rcond=None)
-    return (float(slope), middle - float(rest / slope)) if slope > 0 else None
+    middle = float(np.mean(phi[sliding]))
+    held = (phi - middle) * (1.0 - ratio * slope)  # the lever by which the torque reaches the motor
+    columns = np.stack([held[sliding], np.sign(rate[sliding]), np.ones(n)], 1)
+    (K, _, rest), *_ = np.linalg.lstsq(columns, ratio * tau_m[sliding], rcond=None)
+    if not SOFTEST < K / gear.K < STIFFEST:
+        return None
+    return Wound(np.asarray(K * (phi - middle) + rest), float(K))
