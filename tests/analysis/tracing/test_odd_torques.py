@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from rig.analysis.tracing.runs import odd_torques as module
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 
+NUMBERS = itertools.count()
 N, SPEEDS = 400, (12.0, 20.0, -20.0, 31.0)
 
 
@@ -29,7 +31,12 @@ def run(rng: np.random.Generator, speed: float, locked: bool = False, **as_read:
     torques |= {name: change(torques[name]) for name, change in as_read.items()}
     piece = SimpleNamespace(omega_m=np.full(N, speed), **torques)
     return SimpleNamespace(
-        said=speed, locked=locked, procedure="constant_torque", has={"tau_m", "tau_l"}, pieces=(piece,)
+        name=f"run {next(NUMBERS)}",
+        said=speed,
+        locked=locked,
+        procedure="constant_torque",
+        has={"tau_m", "tau_l"},
+        pieces=(piece,),
     )
 
 
@@ -52,23 +59,24 @@ def test_the_one_that_is_off_is_told_and_none_of_the_others(
     others = campaign(rng)
     odd = run(rng, SPEEDS[0], **as_read)
     runs = [*others, odd]
-    assert re.search(words, odd_torques(odd, runs) or "")
-    assert [odd_torques(r, runs) for r in others] == [None] * len(others)
+    ((name, said),) = odd_torques(runs).items()
+    assert name == odd.name
+    assert re.search(words, said)
 
 
 def test_runs_that_read_as_they_do_are_not_odd_whatever_load_or_lock(rng: np.random.Generator) -> None:
     loaded = [run(rng, speed, tau_l=lambda x: x + 40.0, tau_m=lambda x: x + 0.8) for speed in (1.0, 1.0)]
     locked = [run(rng, 0.1, locked=True, tau_l=lambda x: 300 * x) for _ in range(2)]
     runs = [*campaign(rng), *loaded, *locked]
-    assert [odd_torques(r, runs) for r in runs] == [None] * len(runs)
+    assert odd_torques(runs) == {}
 
 
 def test_without_a_repeat_a_size_or_a_sign_tells_nothing(rng: np.random.Generator) -> None:
     runs = [run(rng, speed) for speed in SPEEDS]
     odd = run(rng, 5.0, tau_m=lambda x: -1000 * x)
-    assert odd_torques(odd, [*runs, odd]) is None
+    assert odd_torques([*runs, odd]) == {}
 
 
 def test_where_most_runs_read_nothing_none_is_odd_for_it(rng: np.random.Generator) -> None:
     runs = [run(rng, speed, tau_l=lambda x: 0 * x) for speed in SPEEDS]
-    assert [odd_torques(r, runs) for r in runs] == [None] * len(runs)
+    assert odd_torques(runs) == {}

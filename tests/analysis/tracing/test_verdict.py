@@ -13,6 +13,7 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import _share as share
+from rig.analysis.tracing.selection.verdict import _share_of_all as share_of_all
 from rig.analysis.tracing.selection.verdict import _standing as standing
 from rig.analysis.tracing.thresholds import PART
 from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
@@ -69,3 +70,13 @@ def test_a_ripple_of_the_order_that_is_left_in_the_angle_is_no_ripple(left: floa
     s: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
     assert of_the_same_order(s, Home("motor_angle", "A", 0.9, order=left)) == same
     assert of_the_same_order(s, Home("load_angle", "A", 0.9, order=left)) == set()
+
+
+def test_what_explains_one_channel_beside_far_more_in_others_takes_little_of_all() -> None:
+    keys = [(0, c) for c in "AML"]
+    p: Any = SimpleNamespace(held_out=SimpleNamespace(ratio=lambda ratios, mine: ratios[mine[0]]))
+    before: Any = dict(zip(keys, (1.2, 1.26, 1.6), strict=True))
+    one: Any = before | {(0, "A"): 1.0}
+    assert share(1.2, 1.0) > 0.9
+    assert share_of_all(p, before, one) == pytest.approx(0.44 / (0.44 + 0.5876 + 1.56))
+    assert share_of_all(p, before, dict.fromkeys(keys, 1.0)) == pytest.approx(1.0)

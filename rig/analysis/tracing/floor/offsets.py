@@ -45,7 +45,7 @@ def offset(s: Solution, run: int, channel: str) -> float:
     has lost as much of it as the offset is believed to wander."""
     eq, key = s.design.eq, (run, channel)
     r, own = eq.rows[key], eq.own.get(key, np.zeros((eq.rows[key].y.size, 0)))
-    own = own[:, np.ptp(own, axis=0) > 0] if own.size else own
+    own = own[:, np.ptp(own, axis=0) > 0]
     z = np.hstack([np.ones((r.y.size, 1)), own])
     return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
 

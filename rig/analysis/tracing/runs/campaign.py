@@ -141,13 +141,16 @@ def _output_went(run: Recording) -> float:
 
 def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Runs whose angles are not what the others' are are left out."""
-    wrong = {r.name: said for r in runs if (said := odd_angles(r)) is not None}
-    return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
+    return _apart(runs, {r.name: said for r in runs if (said := odd_angles(r)) is not None})
 
 
 def _odd_torques(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Runs whose torque is read otherwise than that of the others are left out."""
-    wrong = {r.name: said for r in runs if (said := odd_torques(r, runs)) is not None}
+    return _apart(runs, odd_torques(runs))
+
+
+def _apart(runs: list[Recording], wrong: Mapping[str, str]) -> tuple[list[Recording], list[Said]]:
+    """The runs but for those that are `wrong`, by name, and why those are."""
     return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
 
 
@@ -164,7 +167,7 @@ def _lacking(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
             if 2 * len(without) < len(mine):
                 said = f"it has no {words}, which {len(mine) - len(without)} of {len(mine)} runs of its kind have"
                 wrong |= {r.name: said for r in without}
-    return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
+    return _apart(runs, wrong)
 
 
 def _same_sensors(runs: list[Recording]) -> list[Recording]:

@@ -6,48 +6,66 @@ Such a run makes repeats differ by more than any effect does: the floor is then 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.floor.repeats import alike
 from rig.analysis.tracing.runs.recording import Recording
-from rig.model.effect import Array
 
 TORQUES: Final = {"tau_m": "τ_m", "tau_l": "τ_l"}
 UNIT: Final = 20.0  # times what repeats read: friction that warms away halves, and the next unit is 100 or 1000
 MOST: Final = 0.8  # of the runs that turn freely: the sign they agree in is right
 
 
-def odd_torques(run: Recording, runs: Sequence[Recording]) -> str | None:
-    """What is wrong with a torque of `run` beside that of the others; None where nothing is, or nothing tells."""
-    if run.procedure == "standstill":
-        return None
+@dataclass(frozen=True)
+class Read:
+    """One torque of one run: RMS and range [N·m], its first reading, and the mean of it times the motor's speed [W],
+    which of what rubs is above zero."""
+
+    run: Recording
+    size: float
+    spread: float
+    first: float
+    power: float
+
+
+def odd_torques(runs: Sequence[Recording]) -> dict[str, str]:
+    """What is wrong with a torque beside that of the other runs of its kind, by the run's name; nothing where none
+    tells."""
+    wrong: dict[str, str] = {}
     for channel, words in TORQUES.items():
-        others = [r for r in runs if r is not run and r.locked is run.locked and channel in r.has]
-        others = [r for r in others if r.procedure != "standstill"]
-        if channel in run.has and others:
-            said = _stuck(run, others, channel) or _unit(run, others, channel) or _sign(run, others, channel)
-            if said:
-                return said.format(words)
-    return None
+        for locked in (False, True):
+            mine = [_read(r, channel) for r in runs if r.locked is locked and channel in r.has]
+            mine = [one for one in mine if one.run.procedure != "standstill"]
+            for one in mine:
+                others = [other for other in mine if other is not one]
+                if others and (said := _said(one, others)):
+                    wrong.setdefault(one.run.name, said.format(words))
+    return wrong
 
 
-def _stuck(run: Recording, others: Sequence[Recording], channel: str) -> str | None:
-    x = _read(run, channel)
-    if np.ptp(x) > 0 or sum(np.ptp(_read(r, channel)) > 0 for r in others) <= len(others) / 2:
+def _said(one: Read, others: Sequence[Read]) -> str | None:
+    like = [other for other in others if alike(one.run, other.run)]
+    return _stuck(one, others) or (_unit(one, like, others) or _sign(one, like, others) if like else None)
+
+
+def _stuck(one: Read, others: Sequence[Read]) -> str | None:
+    if one.spread > 0 or sum(other.spread > 0 for other in others) <= len(others) / 2:
         return None
-    return f"its {{}} is {x[0]:.4g} N·m throughout, that of other runs moves: the sensor hung, or was not connected"
+    return (
+        f"its {{}} is {one.first:.4g} N·m throughout, that of other runs moves: the sensor hung, or was not connected"
+    )
 
 
-def _unit(run: Recording, others: Sequence[Recording], channel: str) -> str | None:
+def _unit(one: Read, like: Sequence[Read], others: Sequence[Read]) -> str | None:
     """Where all repeats read so much less or more, and are nearer to what all runs read."""
-    like = [_size(r, channel) for r in others if alike(run, r)]
-    mine, usual = _size(run, channel), float(np.median([_size(r, channel) for r in others]))
-    if not like or min(mine, usual, *like) <= 0:
+    sizes, usual = np.array([other.size for other in like]), float(np.median([other.size for other in others]))
+    if min(one.size, usual, float(sizes.min())) <= 0:
         return None
-    ratios = np.log(mine / np.array(like))
-    further = abs(np.log(mine / usual)) > max(abs(np.log(size / usual)) for size in like)
+    ratios = np.log(one.size / sizes)
+    further = abs(np.log(one.size / usual)) > float(np.max(np.abs(np.log(sizes / usual))))
     if not further or not (ratios.min() > np.log(UNIT) or ratios.max() < -np.log(UNIT)):
         return None
     times = float(np.exp(np.median(ratios)))
@@ -55,27 +73,20 @@ def _unit(run: Recording, others: Sequence[Recording], channel: str) -> str | No
     return f"its {{}} is {said} that of its repeats, as if in another unit"
 
 
-def _sign(run: Recording, others: Sequence[Recording], channel: str) -> str | None:
+def _sign(one: Read, like: Sequence[Read], others: Sequence[Read]) -> str | None:
     """Where it takes what its repeats and most other runs give, the motor against its friction."""
-    like = [_power(r, channel) for r in others if alike(run, r)]
-    mine, all_ = _power(run, channel), np.array([_power(r, channel) for r in others])
-    if run.locked or not like or float(np.mean(all_ * mine < 0)) < MOST:
+    against = float(np.mean([other.power * one.power < 0 for other in others]))
+    if one.run.locked or against < MOST:
         return None
-    if not all(0.5 < -mine / power < 2.0 for power in like if power) or not all(like):
+    if not all(0.5 * abs(other.power) < abs(one.power) < 2.0 * abs(other.power) for other in like):
+        return None
+    if not all(one.power * other.power < 0 for other in like):
         return None
     return "its {} has the other sign than that of its repeats"
 
 
-def _read(run: Recording, channel: str) -> Array:
-    return np.concatenate([getattr(piece, channel) for piece in run.pieces])
-
-
-def _size(run: Recording, channel: str) -> float:
-    """RMS, N·m."""
-    return float(np.sqrt(np.nanmean(_read(run, channel) ** 2)))
-
-
-def _power(run: Recording, channel: str) -> float:
-    """Mean of torque times the motor's speed, W: of what rubs it is above zero."""
+def _read(run: Recording, channel: str) -> Read:
+    x = np.concatenate([getattr(piece, channel) for piece in run.pieces])
     omega = np.concatenate([piece.omega_m for piece in run.pieces])
-    return float(np.nanmean(_read(run, channel) * omega))
+    size = float(np.sqrt(np.nanmean(x**2)))
+    return Read(run, size, float(np.ptp(x)), float(x[0]), float(np.nanmean(x * omega)))

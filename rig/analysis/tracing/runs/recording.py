@@ -65,8 +65,10 @@ class Recording(Once):
 
     @property
     def is_wound(self) -> bool:
-        """Whether the shaft torque is what the wind-up of a locked output says, for want of a sensor."""
-        return self.locked and "tau_l" not in self.has
+        """Whether the shaft torque is what the wind-up of a locked output says, for want of a sensor: of all rows of a
+        piece or of none."""
+        unread = self.locked and "tau_l" not in self.has
+        return unread and any(bool(np.isfinite(piece.tau_l[0])) for piece in self.pieces)
 
     @property
     def duration(self) -> float:

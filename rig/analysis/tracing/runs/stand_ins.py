@@ -29,8 +29,8 @@ def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) 
         return out
     gear = believed(run)
     if is_locked(run):
-        told = wound(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt)
-        out["tau_l"] = out["tau_l"] if told is None else told.torque
+        if told := wound(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt):
+            out["tau_l"] = told.torque
     else:
         out["tau_l"] = gear.J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
     return out

@@ -1,6 +1,6 @@
 """The shaft torque of a lock test that nobody read: what the spring makes of the wind-up both encoders show.
 
-    T = K·(θ_m/N − θ_l − θ̃_p(θ_m) − φ_0)                                                [ghorbel2001, Eqs. 1 and 5]
+    T = K·(θ_m/N − θ_l − θ̃_p(θ_m) − φ_0)                                                [ghorbel2001, Eqs. 1, 2, 4]
 
 The clamp turns the output a little, so φ_0 is each test's own: where the motor's torque less its friction is nothing.
 """
