@@ -1,10 +1,10 @@
-"""Does a run keep its promises? Its manifest, hashes, rows, time order, gaps, flags, journal and archive, read-only."""
+"""Does a run keep its promises? Manifest, hashes, rows, time order, gaps, flags, values, journal, archive; read-only."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,25 +13,19 @@ from rig.core.errors import HdrigError
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
+from rig.runfile.finding import Finding
 from rig.runfile.journal import JournalReader, journal_files
 from rig.runfile.misfits import misfits
 from rig.runfile.process import is_being_made
 from rig.runfile.promised import time_untold
 from rig.runfile.run import Run
 from rig.runfile.samples import Archive
+from rig.runfile.values import values
 
 GAP = 1.5  # periods between two rows that are still neighbours
 LOST = 1.9  # periods from which a row may really be gone: a late tick alone stays below two
 REFUSED = 1  # ticks without a row: the one in which a procedure refused to go on
 MAKE_UP = 5  # rows within which a late tick has been made up for: the loop counts deadlines, not delays
-
-
-class Finding(NamedTuple):
-    """One thing found. `level` is "error" (a promise is broken), "warning" (look at it) or "note"."""
-
-    level: str
-    check: str
-    sentence: str
 
 
 def verify(folder: Path) -> list[Finding]:
@@ -45,7 +39,7 @@ def verify(folder: Path) -> list[Finding]:
         run = Run.open(folder)
     except HdrigError as error:
         return [*findings, Finding("error", "samples", str(error))]
-    for check in (_rows, _time, _gaps, _flags, _backend, _journal):
+    for check in (_rows, _time, _gaps, _flags, values, _backend, _journal):
         findings += check(run)
     return findings
 

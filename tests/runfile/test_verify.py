@@ -205,7 +205,8 @@ def test_a_folder_of_somebody_else_is_checked_as_far_as_it_goes(tmp_path: Path) 
     about = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
     (tmp_path / "manifest.json").write_text(json.dumps(about))
     pq.write_table(pa.table({"theta_m": np.arange(9.0)}), tmp_path / "samples.parquet")
-    assert [f.level for f in verify(tmp_path)] == ["note"]
+    said = [(f.level, f.check) for f in verify(tmp_path)]
+    assert said == [("note", "hashes"), ("warning", "rows"), ("note", "time")]
 
 
 def test_no_run_folder_at_all_is_refused(tmp_path: Path) -> None:
@@ -325,3 +326,46 @@ def test_time_in_another_unit_is_found(tmp_path: Path) -> None:
     with_column(folder, "t", in_ms)
     said = "t is not in s: its rows are 1 s apart, the manifest says 1000 Hz (0.001 s): it looks like ms, expected s"
     assert ("time", said) in found(folder)
+
+
+def test_values_that_are_no_numbers_are_pointed_out(tmp_path: Path) -> None:
+    folder = foreign(
+        tmp_path, t=np.arange(100) / 1e3, theta_m=np.arange(100.0), tau_l=np.ones(100), at={"tau_l": np.inf}
+    )
+    said = found(folder, "warning")
+    assert [check for check, _ in said] == ["values"]
+    assert said[0][1].startswith("tau_l: of 100 values 1 infinite")
+
+
+def test_null_is_no_finding_and_not_a_number_is(tmp_path: Path) -> None:
+    null = foreign(tmp_path / "null", t=np.arange(100) / 1e3, theta_m=np.arange(100.0), at={"theta_m": None})
+    assert found(null, "warning") == []
+    nan = foreign(tmp_path / "nan", t=np.arange(100) / 1e3, theta_m=np.arange(100.0), at={"theta_m": np.nan})
+    assert "theta_m: of 100 values 1 NaN" in found(nan, "warning")[0][1]
+
+
+def test_time_that_stands_still_and_time_that_is_absent_are_told(tmp_path: Path) -> None:
+    stands = foreign(tmp_path / "stands", t=np.arange(100) // 2 / 1e3, theta_m=np.arange(100.0))
+    assert ("time", "50 of 100 rows have the t of the row before them") in found(stands, "warning")
+    assert [check for check, _ in found(foreign(tmp_path / "none", theta_m=np.arange(100.0)), "note")] == [
+        "hashes",
+        "time",
+    ]
+
+
+def test_a_run_of_no_rows_is_no_sound_one_without_a_word(tmp_path: Path) -> None:
+    folder = foreign(tmp_path, t=np.empty(0), theta_m=np.empty(0))
+    assert [check for check, _ in found(folder, "warning")] == ["rows"]
+
+
+def foreign(folder: Path, at: dict[str, float | None] | None = None, **columns: np.ndarray[Any, Any]) -> Path:
+    """A folder of another logger; value 7 of the columns in `at` is as said there."""
+    folder.mkdir(exist_ok=True)
+    about = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
+    (folder / "manifest.json").write_text(json.dumps(about))
+    lists: dict[str, list[float | None]] = {name: list(values) for name, values in columns.items()}
+    for name, value in (at or {}).items():
+        lists[name][7] = value
+    table = pa.table({name: pa.array(values, pa.float64()) for name, values in lists.items()})
+    pq.write_table(table, folder / "samples.parquet")
+    return folder
