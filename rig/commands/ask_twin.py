@@ -55,7 +55,7 @@ def told(key: str, value: Any) -> str:
     if key == "error_code" and isinstance(value, int):
         return f"{value:04X}h" if value else "none"
     if key == "faults" and isinstance(value, list):
-        return "; ".join(map(str, value)) or "none"
+        return "; ".join(map(str, value)) or "none put in"
     if key == "load" and isinstance(value, float):
         return f"{100 * value:.1f} % of the bus"
     return f"{value:.6g} {UNITS[key]}" if key in UNITS and isinstance(value, float) else str(value)

@@ -46,9 +46,9 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.manifest import utc_now
 
     target = args.out or args.campaign
-    if args.campaign.is_dir():  # a minute of thought is not lost to a wrong name
-        refuse_unwritable(target)
-    refuse_unmatched([run.name for run in folders_of_runs(args.campaign)], args.hold_out)
+    runs = folders_of_runs(args.campaign)  # that it cannot be read is said before that it cannot be written
+    refuse_unwritable(target)  # a minute of thought is not lost to a wrong name
+    refuse_unmatched([run.name for run in runs], args.hold_out)
     if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
     with alone_in(target):

@@ -1,4 +1,4 @@
-"""Does a run keep its promises? Manifest, hashes, rows, time order, gaps, flags, values, journal, archive; read-only."""
+"""Does a run keep its promises? Manifest, hashes, rows, time order, gaps, flags, values, journal and archive."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import pytest
 
 from rig.analysis.tracing.runs import campaign as module
 from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.core.errors import UsageError
 from tests.analysis.tracing.test_few_channels import reduced
 
 RUNS = ("speed_120rpm_1", "speed_120rpm_2", "lock_20_1")
@@ -33,3 +34,9 @@ def test_a_folder_nobody_may_look_into_is_named(tmp_path: Path, shared: Path, mo
     campaign = read_campaign(tmp_path)
     assert campaign.left_out == ("closed",)
     assert "closed was left out: it cannot be read: permission denied." in campaign.notes
+
+
+def test_a_campaign_nobody_may_look_into_is_no_empty_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module.os, "access", lambda path, mode: False)
+    with pytest.raises(UsageError, match="cannot be read: permission denied"):
+        read_campaign(tmp_path)

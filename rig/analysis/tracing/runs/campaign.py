@@ -48,9 +48,12 @@ def looking(campaign: Campaign, looks: Sequence[Look]) -> Campaign:
 
 
 def folders_of_runs(folder: Path) -> list[Path]:
-    """Those directly in `folder`, or in its days, as `hdrig import` lays them. Raises UsageError without any."""
+    """Those directly in `folder`, or in its days, as `hdrig import` lays them. Raises UsageError without any,
+    and for a folder that nobody may look into."""
     if not folder.is_dir():
         raise UsageError(f"{folder} is no folder: expected a campaign, a folder of run folders")
+    if not os.access(folder, os.R_OK | os.X_OK):
+        raise UsageError(f"{folder} cannot be read: permission denied")
     places = sorted(path.parent for path in folder.glob("*/manifest.json"))
     if not places and (folder / "manifest.json").is_file():
         raise UsageError(f"{folder} is a run: expected a campaign, the folder of runs it lies in")
