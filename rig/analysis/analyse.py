@@ -11,6 +11,7 @@ import numpy as np
 
 from rig.analysis.findings.collected import Findings, conclude
 from rig.analysis.findings.result import Result
+from rig.analysis.motion.held import not_held
 from rig.analysis.motion.overview import add_overview
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.speed import Speed, motor_speed
@@ -76,6 +77,8 @@ def _standstill(found: Findings, run: Source, motion: Motion, speed: Speed | Non
 def _lock(found: Findings, run: Source, motion: Motion, reference: Source | None) -> None:
     from rig.analysis.stiffness import add_stiffness
 
+    if not_held(motion.theta_l):
+        return  # `_broken` says so, and a wind-up there is none
     add_stiffness(found, run, motion, reference)
 
 
@@ -166,7 +169,9 @@ def _broken(run: Tame, doubt: str) -> str:
     gone = "" if some is None else rows_gone(run.manifest, some.size)
     if gone:
         gone = f"{gone}, so the figures are from a part of it"
-    found = [said for said in (doubt, gone, time_untold(run.manifest, run.column("t"))) if said]
+    locked = regime_of(run.procedure) is Regime.LOCKED or bool(run.conditions.get("output_locked"))
+    turned = not_held(run.column("theta_l")) if locked else ""
+    found = [said for said in (doubt, gone, time_untold(run.manifest, run.column("t")), turned) if said]
     return f"The samples are not what the manifest says: {'; '.join(found)}." if found else ""
 
 

@@ -116,6 +116,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> tuple[list[Run], list[Record
     gears, another gear ratio than declared, or two zeros of the motor's encoder."""
     from rig.analysis.identify.recording import recording, refuse_another_ratio
     from rig.analysis.identify.zeros import refuse_other_zeros
+    from rig.analysis.motion.held import not_held
 
     runs = [
         one
@@ -133,6 +134,11 @@ def open_runs(folders: Sequence[Path], say: Say) -> tuple[list[Run], list[Record
             words = ", ".join(map(str, sorted(map(str, values))))
             raise DataError(f"these runs are of {len(values)} {what} ({words}): identify one at a time")
     found = [r for one in runs if (r := recording(one)) is not None]
+    no_lock = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}
+    for name, why in no_lock.items():
+        say(f"{name} is left out: {why}")
+    runs = [run for run in runs if run.name not in no_lock]
+    found = [run for run in found if run.name not in no_lock]
     if not found:
         raise DataError("no run here has time and both angles: nothing to identify from")
     refuse_another_ratio(found)

@@ -67,3 +67,15 @@ def test_the_time_of_a_long_run_is_looked_at_in_little_memory() -> None:
         assert tracemalloc.get_traced_memory()[1] < 1e6  # bytes; a copy of the column has 24e6
     finally:
         tracemalloc.stop()
+
+
+def test_a_locked_output_that_turns_has_no_stiffness() -> None:
+    result = analyse(made(procedure="stiffness_lock", limits={"K": "7000.."}))
+    assert result.verdict is Verdict.INCONCLUSIVE
+    assert "it says its output is locked, and its load angle goes" in result.sentence
+    assert not [e.name for e in result.estimates if "stiffness" in e.name or e.name.startswith("K")]
+
+
+def test_any_run_that_says_it_is_locked_has_to_be() -> None:
+    told = made(conditions={"output_locked": True}, limits={PEAK: 1000.0})
+    assert analyse(told).verdict is Verdict.INCONCLUSIVE

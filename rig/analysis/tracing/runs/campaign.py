@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rig.analysis.motion.held import not_held
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.odd_torques import odd_torques
@@ -23,7 +24,6 @@ from rig.model.effect import Moved
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
-HELD = 3.0  # ° of the output in a lock test: a soft housing gives a tenth of that
 SAMPLES = ("samples.*", "journal-*.arrows")
 DAY = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]"  # a folder of the runs of one day
 LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
@@ -129,17 +129,17 @@ def _record(run: Run, start: float) -> Recording | Said:
     if not made.pieces:
         return left_out(run.name, "no 0.1 s of it without a gap")
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
-    if made.locked and (went := _output_went(made)) > HELD:
-        return left_out(run.name, f"it says its output is locked, and its load angle goes {went:.3g}°")
+    if made.locked and (why := _gave_way(made)):
+        return left_out(run.name, why)
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
         return left_out(run.name, f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one")
     return made
 
 
-def _output_went(run: Recording) -> float:
-    """Range of the load angle as read, °; 0 where it was not."""
-    read = [np.ptp(p.theta_l) for p in run.pieces] if "theta_l" in run.has else [0.0]
-    return float(np.rad2deg(max(read)))
+def _gave_way(run: Recording) -> str:
+    """Why this is no lock test, by the load angle as read; "" where it was not, or did not move."""
+    read = [p.theta_l for p in run.pieces] if "theta_l" in run.has else []
+    return next((why for angle in read if (why := not_held(angle))), "")
 
 
 def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
