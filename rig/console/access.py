@@ -68,7 +68,9 @@ class Access:
     def refuse_token(self, given: str | None) -> str:
         """Why `given` is not the token, or ""."""
         if given is None:
-            return "the token is missing: open the address that hdrig serve printed"
+            return (
+                f"the token is missing: open the address that hdrig serve printed; a program sends it as {TOKEN_HEADER}"
+            )
         same = secrets.compare_digest(given.encode(errors="replace"), self.token.encode())
         return "" if same else "the token is wrong: open the address that hdrig serve printed"
 

@@ -66,16 +66,18 @@ class Gate:
         if not isinstance(act, str) or act not in (*ACTS, CONTROL):
             return f"there is no act '{str(act)[:60]}'; expected one of {', '.join((*ACTS, CONTROL))}"
         if not _is_id(asked.get("id")):
-            return "an act needs an id of its own, a UUID"
+            return "an act needs an id of its own: 'id', a UUID"
         if act in ALWAYS and (act != "hold" or self.holds(page)):
             return ""
         if act == CONTROL:
             return ""
         if not self.holds(page):
             return "another page holds control: take it first; stop and halt work from every page"
-        if asked.get("based_on") != self.revision:
+        if "based_on" not in asked:
+            return f"an act needs 'based_on', the revision of the state it was decided on; it is {self.revision}"
+        if asked["based_on"] != self.revision:
             return (
-                f"the state has changed since this page last saw it (revision {str(asked.get('based_on'))[:20]}, it is "
+                f"the state has changed since this page last saw it (revision {str(asked['based_on'])[:20]}, it is "
                 f"{self.revision}): look again, then decide"
             )
         why = allowed.get(act, "it is not known whether that can be done now")

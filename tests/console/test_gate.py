@@ -93,3 +93,11 @@ def test_the_memory_of_ids_is_bounded() -> None:
     for _ in range(2000):
         gate.remember(asked("note"), Answer.yes())
     assert len(gate._answers) == 500
+
+
+def test_what_an_act_lacks_is_named_with_its_key() -> None:
+    gate = Gate()
+    assert "'id', a UUID" in gate.refuse({"act": "tare"}, "page", {"tare": True})
+    act = {"act": "tare", "id": str(uuid.uuid4())}
+    assert "'based_on', the revision" in gate.refuse(act, "page", {"tare": True})
+    assert gate.refuse({**act, "based_on": gate.revision}, "page", {"tare": True}) == ""
