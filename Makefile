@@ -16,6 +16,7 @@ test: .venv/ready-dev  ## types are checked beside the tests
 
 # a worker more than two cores: some tests wait, for the time at the rig or for another process
 pytest: .venv/ready-dev
+	$(BIN)/python -m tests.compiled
 	$(BIN)/python -m pytest -n 3 --dist loadgroup -m "not long"
 
 inner: .venv/ready-dev  ## the fast part of the tests: a minute on an idle machine

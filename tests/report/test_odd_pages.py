@@ -25,16 +25,34 @@ ODD: tuple[Any, ...] = ("\ud800", ["a", {}], 10**400, float("nan"), {"x": {"y": 
 PLAIN = replace(result(), curves={}, tables={})
 
 
-@pytest.mark.slow
+KEYS = (*manifest(), "label", "loop", "proof", "anything")
+
+
+def write_with(folder: Path, key: str, value: Any) -> None:
+    """A page of a manifest that has `value` there, and deeper down."""
+    write(folder, manifest(**{key: value}), TIMING, EVENTS, PLAIN)
+    write(folder, manifest(**{key: {"rows": value, "x": {"bytes": value}}}), TIMING, EVENTS, PLAIN)
+    assert "</html>" in (folder / "report.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("value", ODD, ids=lambda v: str(type(v).__name__))
-def test_a_page_is_written_whatever_the_folder_says(tmp_path: Path, value: Any) -> None:
+def test_a_page_is_written_whatever_the_statistics_and_events_say(tmp_path: Path, value: Any) -> None:
     write(tmp_path, manifest(), value, value, PLAIN)
     write(tmp_path, manifest(), {"period": value, "ticks": value, "lateness_p50": value}, [value, {"t": value}], PLAIN)
-    for key in (*manifest(), "label", "loop", "proof", "anything"):
-        write(tmp_path, manifest(**{key: value}), TIMING, EVENTS, PLAIN)
-        write(tmp_path, manifest(**{key: {"rows": value, "x": {"bytes": value}}}), TIMING, EVENTS, PLAIN)
     write_result(tmp_path, replace(PLAIN, procedure="\ud800"))
     assert "</html>" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_page_is_written_whatever_a_key_says(tmp_path: Path, key: str) -> None:
+    write_with(tmp_path, key, ODD[KEYS.index(key) % len(ODD)])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("value", ODD, ids=lambda v: str(type(v).__name__))
+def test_a_page_is_written_whatever_any_key_says(tmp_path: Path, value: Any) -> None:
+    for key in KEYS:
+        write_with(tmp_path, key, value)
 
 
 def page(found: Any = PLAIN, **changes: Any) -> str:
