@@ -35,12 +35,16 @@ def statuses(journal: Journal) -> list[str]:
 Made = tuple[Exit, Journal, Quiet, Campaign]
 
 
+of_one_campaign = pytest.mark.xdist_group("campaign run")  # it is made once, not once for every worker
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     planned = campaign(*SMALL)
     return (*make(tmp_path_factory.mktemp("runs"), planned), planned)
 
 
+@of_one_campaign
 @pytest.mark.slow
 def test_every_run_is_made_in_a_folder_of_its_own_with_the_conditions_it_was_planned_for(made: Made) -> None:
     exit, journal, _, planned = made
@@ -55,6 +59,7 @@ def test_every_run_is_made_in_a_folder_of_its_own_with_the_conditions_it_was_pla
         assert "/" not in entry["run"]  # a campaign is a folder of run folders, as `hdrig trace` reads it
 
 
+@of_one_campaign
 @pytest.mark.slow
 def test_proofs_and_weighings_lie_aside_and_say_that_they_are_checks(made: Made) -> None:
     _, journal, _, _ = made
@@ -65,6 +70,7 @@ def test_proofs_and_weighings_lie_aside_and_say_that_they_are_checks(made: Made)
     ]  # fmt: skip
 
 
+@of_one_campaign
 @pytest.mark.slow
 def test_what_is_done_is_what_the_dry_run_says(made: Made) -> None:
     _, journal, desk, planned = made
@@ -74,6 +80,7 @@ def test_what_is_done_is_what_the_dry_run_says(made: Made) -> None:
     assert journal.rigging == Rigging()
 
 
+@of_one_campaign
 @pytest.mark.slow
 def test_every_run_says_which_way_its_sweep_went_and_how_long_the_rig_had_run_before_it(made: Made) -> None:
     _, journal, _, _ = made
@@ -87,6 +94,7 @@ def test_every_run_says_which_way_its_sweep_went_and_how_long_the_rig_had_run_be
     assert times[1] - times[0] > 10.0  # the weighing between them
 
 
+@of_one_campaign
 @pytest.mark.slow
 def test_nothing_is_made_again_in_a_campaign_that_is_complete(made: Made) -> None:
     _, journal, _, planned = made

@@ -43,7 +43,7 @@ def test_a_working_stream_is_untouched() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+@pytest.mark.parametrize("stream", ["stdout", pytest.param("stderr", marks=pytest.mark.long)])
 def test_a_run_whose_output_goes_to_a_full_disk_still_completes(stream: str, tmp_path: Path) -> None:
     short = ["--with", "cycles=0.5", "--with", "amplitude_deg=360", "--with", "frequency=0.04"]
     with open("/dev/full", "w") as full:

@@ -205,7 +205,7 @@ def test_overlapping_windows_count_for_less_than_their_number() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["open-1", "open-5", "open-6"])
+@pytest.mark.parametrize("case", ["open-1", *(pytest.param(c, marks=pytest.mark.long) for c in ("open-5", "open-6"))])
 def test_a_campaign_of_an_independent_plant_gives_its_true_parameters(shared: Path, case: str) -> None:
     true = json.loads((shared / "cases" / "TRUTH.json").read_text())[case]
     b, found = true["baseline"], of_case(shared / "cases" / case)

@@ -81,7 +81,10 @@ def test_without_a_load_encoder_the_torque_at_speed_gives_the_kinematic_error(tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("runs", [("slow_ke_1",), ("speed_300rpm_1",), ("speed_300rpm_1", "slow_ke_1")])
+@pytest.mark.parametrize(
+    "runs",
+    [("slow_ke_1",), ("speed_300rpm_1",), pytest.param(("speed_300rpm_1", "slow_ke_1"), marks=pytest.mark.long)],
+)
 def test_one_run_or_two_are_traced_with_turns_of_their_own_held_out(
     tmp_path: Path, open_1: Path, runs: tuple[str, ...]
 ):
