@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.footprint import footprint
+from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep
+from rig.analysis.tracing.nameless.readings import Droop, SensorWaves
+from rig.analysis.tracing.nameless.springs import EvenSpring
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.runs.smoothing import Smoother
-from rig.analysis.tracing.selection.confounders import CONFOUNDERS, CouplingPlay, Creep, Droop, EvenSpring, SensorWaves
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import MEASURED, Port
 from rig.model.effects import LIBRARY

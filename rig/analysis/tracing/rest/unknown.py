@@ -37,6 +37,7 @@ def _warmth(r: Rest) -> Array:
 SMOOTH: Sequence[tuple[str, Callable[[Rest], Array]]] = (
     ("speed", lambda r: swelling(r.at["motor_angle"], np.abs(r.at["speed"]))),
     ("load", lambda r: swelling(r.at["motor_angle"], r.at["load"])),
+    ("load_angle", lambda r: swelling(r.at["load_angle"], r.at["load"])),
     ("time", lambda r: drifting(r.at["time"])),
     ("temperature", lambda r: swelling(r.at["motor_angle"], _warmth(r))),
 )

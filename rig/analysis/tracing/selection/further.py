@@ -13,14 +13,16 @@ import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import fit
+from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
 from rig.analysis.tracing.fit.some import ranking_of_some, search_some
+from rig.analysis.tracing.selection.candidates import tried
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.elimination import scales
+from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.selection.selected import Selected, select
-from rig.analysis.tracing.thresholds import ALIKE, KNOWN, MISSING, MOSTLY, TRIED, TURNS
+from rig.analysis.tracing.thresholds import ALIKE, KNOWN, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach
 
 
@@ -29,7 +31,7 @@ def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[
     selected = try_prefixes(selected, found, runs, covered)
     selected = try_without_eliminated(selected, found, bank, runs, covered)
     selected = try_each_added(selected, found, bank, runs, covered)
-    return try_each_instead(selected, found, runs, covered)
+    return without_outdone(try_each_instead(selected, found, runs, covered), found, runs)
 
 
 def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
@@ -101,6 +103,21 @@ def try_each_instead(selected: Selected, found: Found, runs: Sequence[int], cove
         if len(other.scores) == 1 and _steadier(other, selected) and _in_all(other) < _in_all(selected):
             selected = other
     return selected
+
+
+def without_outdone(selected: Selected, found: Found, runs: Sequence[int]) -> Selected:
+    """Without the one effect that stands where it wants another size from run to run, and another one explains far more
+    of the fitted runs and all the same of unseen ones: it is a shadow of what that one is nearly."""
+    names = [term.name for term in selected.solution.design.terms]
+    if len(set(names)) != 1 or len(selected.scores) != 1 or selected.scores[0].fairly:
+        return selected
+    p, first = selected.p, found.ranking[0]
+    mine = next((r.evidence for r in found.ranking if r.term.name == names[0]), np.inf)
+    before = p.held_out.residuals(p.baseline, held := unseen(p.baseline, p.held_out))
+    if first.evidence < OUTDONE * mine or tried(p, first, held, before).share < NAMED:
+        return selected
+    bare = fit(design(p.eq, (), runs))
+    return Selected(p, bare, unseen(bare, p.held_out), [], {})
 
 
 def _settles(other: Selected, stay: Collection[str]) -> bool:

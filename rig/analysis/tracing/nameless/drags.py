@@ -1,0 +1,57 @@
+"""Friction that is another one with direction or the angle of the output, and what hangs there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.analysis.tracing.nameless.law import Nameless
+from rig.model.effect import Array, Port, Shape, Signals
+from rig.model.waves import wave
+
+
+class UnevenDrag(Nameless):
+    """Damping is another one the other way: the motor is resisted by c·|ω_m| more      [armstrong1994]"""
+
+    name: ClassVar[str] = "uneven_drag"
+    in_short: ClassVar[str] = "the motor drags more one way"
+    source: ClassVar[str] = "armstrong1994"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        return {Port.MOTOR_TORQUE: np.abs(signals.omega_m)[:, None]}
+
+
+class SectorDrag(Nameless):
+    """Friction of the load changes along a turn of the output: τ_k·cos(k·θ_l + φ)·sgn      [armstrong1994]"""
+
+    name: ClassVar[str] = "sector_drag"
+    in_short: ClassVar[str] = "the load's friction changes along the output's turn"
+    source: ClassVar[str] = "armstrong1994"
+    needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
+    ORDERS: Final = (1, 2, 3, 4, 5, 6)  # a sector of a quarter of a radian still has half its height
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order."""
+        made = [wave(k * np.nan_to_num(signals.theta_l), signals.way) for k in self.ORDERS]
+        return {Port.LOAD_TORQUE: np.hstack(made)}
+
+
+class OvalPulley(Nameless):
+    """What hangs on the load pulls by another lever along a turn of the output: τ_ext·cos(k·θ_l + φ), k to 2
+
+    [tuttle1992]
+    """
+
+    name: ClassVar[str] = "oval_pulley"
+    in_short: ClassVar[str] = "the lever of the external torque changes along the output's turn"
+    source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
+    ORDERS: Final = (1, 2)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order."""
+        made = [wave(k * np.nan_to_num(signals.theta_l), -signals.tau_ext) for k in self.ORDERS]
+        return {Port.LOAD_TORQUE: np.hstack(made)}

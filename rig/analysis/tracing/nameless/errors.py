@@ -1,0 +1,45 @@
+"""A kinematic error that is another one with time or speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from rig.analysis.tracing.nameless.law import FAST, LONG, Nameless, largest_waves
+from rig.model.effect import Array, Port, Reach, Shape, Signals
+
+
+class ErrorDrift(Nameless):
+    """The kinematic error changes through the campaign, as of a gear that warms or runs in: waves of the motor's angle
+    that grow with the time      [jia2021]
+    """
+
+    name: ClassVar[str] = "error_drift"
+    in_short: ClassVar[str] = "the kinematic error changes through the campaign"
+    source: ClassVar[str] = "jia2021"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order by LONG, and what they do to the lever."""
+        return largest_waves(signals, signals.t / LONG)
+
+
+class ErrorBySpeed(Nameless):
+    """The kinematic error grows or shrinks with the speed, as what spins is thrown outwards or rides on a film of oil:
+    waves of the motor's angle times |ω_m|^p      [jia2021]"""
+
+    name: ClassVar[str] = "error_by_speed"
+    in_short: ClassVar[str] = "the kinematic error changes with the speed"
+    source: ClassVar[str] = "jia2021"
+    shape_names: ClassVar[tuple[str, ...]] = ("power",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Powers: a film that builds up at once, one that grows, a force that goes with the square."""
+        return ((0.3,), (1.0,), (2.0,))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of both orders, and what they do to the lever."""
+        return largest_waves(signals, (np.abs(signals.omega_m) / FAST) ** shape[0])

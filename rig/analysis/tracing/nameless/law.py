@@ -1,0 +1,54 @@
+"""What laws without a name have in common, and what several of them are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.waves import wave
+
+LONG: Final = 1e3  # s, about a campaign
+FAST: Final = 40.0  # rad/s of the motor, about its fastest run
+LARGEST: Final = (2, 4)  # orders of the motor: two lobes and their square make most of every kinematic error
+
+
+class Nameless(Effect):
+    """A law that is never named: of one shape unless it says otherwise, and without figures."""
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One."""
+        return ((),)
+
+    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
+        """None: what is not named has no figures."""
+        return ()
+
+
+class OfTheTorqueSensor(Nameless):
+    """One that is in the reading of the torque sensor."""
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is such a sensor."""
+        return ((),) if "tau_l" in reach.has else ()
+
+
+def torque_of(signals: Signals) -> Array:
+    """T, N·m, (n,); 0 where it is not known."""
+    return np.nan_to_num(signals.torque)
+
+
+def by_time(x: Array, signals: Signals) -> Array:
+    """`x` (n,) times the time of the campaign over LONG and times its square, (n, 2)."""
+    since = signals.t / LONG
+    return np.stack([x * since, x * since**2], 1)
+
+
+def largest_waves(signals: Signals, height: Array) -> Mapping[Port, Array]:
+    """Cosine and sine of the LARGEST orders, `height` (n,) tall, (n, 4), and what they do to the lever."""
+    pairs = [(k, wave(k * signals.theta_m)) for k in LARGEST]
+    slopes = [k * np.stack([-x[:, 1], x[:, 0]], 1) for k, x in pairs]
+    tall = height[:, None]
+    return {Port.KINEMATIC_ERROR: np.hstack([x for _, x in pairs]) * tall, Port.LEVER: np.hstack(slopes) * tall}

@@ -1,0 +1,89 @@
+"""What stays behind: creep of the spring, play of a coupling, the torque sensor's own hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.analysis.tracing.nameless.law import Nameless, OfTheTorqueSensor, torque_of
+from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
+from rig.model.memory import follower, play
+
+
+class Creep(Nameless):
+    """A part of the wind-up that comes late: φ gains Σ c_i·(T through a first-order lag of T_i)      [findley1976]
+
+    A loop in torque against wind-up as hysteresis makes it, but one that closes when it is gone round slowly.
+    """
+
+    name: ClassVar[str] = "creep"
+    in_short: ClassVar[str] = "a part of the wind-up comes seconds late"
+    source: ClassVar[str] = "findley1976"
+    remembers: ClassVar[bool] = True
+    LAGS: Final = (0.7, 1.5, 4.0, 8.0, 20.0, 50.0)  # s: from a turn of the motor to a run, 2 to 3 times apart
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One; none in a campaign shorter than its lags, where they are powers of the time and foretell any drift."""
+        return ((),) if reach.duration > self.LAGS[-1] else ()
+
+    def has_state(self) -> bool:
+        """It comes late."""
+        return True
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One follower a lag, in balance when the run begins."""
+        torque = torque_of(signals)
+        keep = np.exp(-signals.dt / np.array(self.LAGS))
+        late = [torque[0] + follower(torque - torque[0], 1 - k, 0.0, k, 0.0) for k in keep]
+        return {Port.WIND_UP: np.stack(late, 1)}
+
+
+class CouplingPlay(Nameless):
+    """The load encoder's coupling has play: its reading stays behind by half of it, whichever way it is turned, and
+    whatever the torque      [nordin2002]
+
+    Under the load's own friction it is what a loop in the spring or lost motion would be; a locked output shows none.
+    """
+
+    name: ClassVar[str] = "coupling_play"
+    in_short: ClassVar[str] = "an encoder's coupling has play"
+    source: ClassVar[str] = "nordin2002"
+    HALF: Final = 2e-5  # rad: gone through within a row of the slow run, so its size tells nothing but the height
+
+    def has_state(self) -> bool:
+        """It stays behind."""
+        return True
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading, for half the play of 1 rad."""
+        angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
+        return {Port.READS_THETA_L: ((play(angle, self.HALF) - angle) / self.HALF)[:, None]}
+
+    def plausible(self, fit: Fit) -> bool:
+        """It stays behind."""
+        return bool(fit.coefficients[0] > 0)
+
+
+class SensorLoop(OfTheTorqueSensor):
+    """The torque sensor's own hysteresis: it reads Σ c_i·P_{r_i}[T] too much, play operators of the torque [kuhnen2003]
+
+    In a lock test it is a loop in the spring; where the output is free the torque it makes up accelerates no load and
+    loads no motor.
+    """
+
+    name: ClassVar[str] = "sensor_loop"
+    in_short: ClassVar[str] = "the torque sensor has hysteresis"
+    source: ClassVar[str] = "kuhnen2003"
+    remembers: ClassVar[bool] = True
+    WIDTHS: Final = (0.5, 1.5, 4.0, 10.0, 25.0)  # N·m, half: from the swing of a slow run to that of a lock test
+
+    def has_state(self) -> bool:
+        """A loop."""
+        return True
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """What each play stays behind by."""
+        torque = np.ascontiguousarray(torque_of(signals))
+        return {Port.READS_TAU_L: np.stack([torque - play(torque, width) for width in self.WIDTHS], 1)}

@@ -1,0 +1,81 @@
+"""What a torque sensor reads too much, and a torque constant that is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Final
+
+import numpy as np
+
+from rig.analysis.tracing.nameless.law import Nameless, OfTheTorqueSensor, by_time, torque_of
+from rig.model.effect import Array, Port, Shape, Signals
+from rig.model.waves import wave
+
+
+class SensorWaves(OfTheTorqueSensor):
+    """The torque sensor feels the wave generator: it reads waves of the motor's angle too much      [taghirad1999]
+
+    The motor's torque has an Nth of them left over, as if it cogged; the load's inertia knows of none.
+    """
+
+    name: ClassVar[str] = "sensor_waves"
+    in_short: ClassVar[str] = "the torque sensor feels the wave generator"
+    source: ClassVar[str] = "taghirad1999"
+    ORDERS: Final = (1, 2, 4)  # of the motor: an eccentricity, the two lobes and their square
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order in the reading."""
+        return {Port.READS_TAU_L: np.concatenate([wave(k * signals.theta_m) for k in self.ORDERS], 1)}
+
+
+class SensorGainDrift(OfTheTorqueSensor):
+    """The torque sensor's gain changes through the campaign: it reads T·(c_1·t + c_2·t²) too much   [taghirad1999]"""
+
+    name: ClassVar[str] = "sensor_gain_drift"
+    in_short: ClassVar[str] = "the torque sensor's gain changes through the campaign"
+    source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Two columns in the reading."""
+        return {Port.READS_TAU_L: by_time(torque_of(signals), signals)}
+
+
+class TwoGains(OfTheTorqueSensor):
+    """The torque sensor's gain is another one for negative torque: it reads c·|T| too much      [taghirad1999]"""
+
+    name: ClassVar[str] = "two_gains"
+    in_short: ClassVar[str] = "the torque sensor has two gains"
+    source: ClassVar[str] = "taghirad1999"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_L: np.abs(torque_of(signals))[:, None]}
+
+
+class Droop(Nameless):
+    """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
+
+    Under a steady load it is what friction would be that grows with the square of it, but it gives as it takes.
+    """
+
+    name: ClassVar[str] = "droop"
+    in_short: ClassVar[str] = "the torque constant falls with the current"
+    source: ClassVar[str] = "krause2013"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        torque = np.nan_to_num(signals.tau_m)
+        return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
+
+
+class TwoConstants(Nameless):
+    """The torque constant is another one for negative current: the torque told is c·|τ_m| too high      [krause2013]"""
+
+    name: ClassVar[str] = "two_constants"
+    in_short: ClassVar[str] = "the motor has two torque constants"
+    source: ClassVar[str] = "krause2013"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_M: np.abs(np.nan_to_num(signals.tau_m))[:, None]}

@@ -1,0 +1,54 @@
+"""A stiffness that is no constant: uneven, or another one with time or speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+
+from rig.analysis.tracing.nameless.law import FAST, Nameless, by_time, torque_of
+from rig.model.effect import Array, Port, Shape, Signals
+
+
+class EvenSpring(Nameless):
+    """A spring harder one way than the other: φ loses c·T²      [tuttle1992]
+
+    In a lock test the motor's angle goes with the torque, and any stiffness that changes with that angle does the same.
+    """
+
+    name: ClassVar[str] = "even_spring"
+    in_short: ClassVar[str] = "the spring is harder one way than the other"
+    source: ClassVar[str] = "tuttle1992"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        return {Port.WIND_UP: -(torque_of(signals) ** 2)[:, None]}
+
+
+class SpringDrift(Nameless):
+    """The stiffness changes through the campaign, as of a gear that warms: φ loses T·(c_1·t + c_2·t²)      [tuttle1992]
+
+    Loads come in an order, and a spring that gives more in the later runs is a loop, a knee, or a late encoder.
+    """
+
+    name: ClassVar[str] = "spring_drift"
+    in_short: ClassVar[str] = "the stiffness changes through the campaign"
+    source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Two columns, by LONG and its square."""
+        return {Port.WIND_UP: by_time(torque_of(signals), signals)}
+
+
+class SpringBySpeed(Nameless):
+    """The stiffness changes with the speed: φ gains c·T·|ω_m|      [tuttle1992]"""
+
+    name: ClassVar[str] = "spring_by_speed"
+    in_short: ClassVar[str] = "the stiffness changes with the speed"
+    source: ClassVar[str] = "tuttle1992"
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        return {Port.WIND_UP: (torque_of(signals) * np.abs(signals.omega_m) / FAST)[:, None]}

@@ -1,0 +1,94 @@
+"""Numbers of the paper's model that are no constants: what changes with what is said in a sentence, none is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
+from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
+from rig.analysis.tracing.nameless.law import LONG
+from rig.analysis.tracing.nameless.readings import TwoConstants, TwoGains
+from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
+from rig.analysis.tracing.trace import trace
+from rig.model.effect import Effect, Port
+from tests.analysis.tracing.spiked import Columns, spiked
+from tests.analysis.tracing.test_gains import SOME
+from tests.blind.cases import Request
+from tests.blind.generate import write_case
+from tests.contract.test_effects import motion
+
+
+@pytest.mark.parametrize("law", [TwoConstants(), UnevenDrag()], ids=lambda law: law.name)
+def test_what_differs_between_the_ways_is_even_in_them(law: Effect) -> None:
+    forth, back = (next(iter(law.columns(motion(sign), ()).values())) for sign in (1.0, -1.0))
+    np.testing.assert_allclose(forth, back)
+    assert np.ptp(forth) > 0
+
+
+def test_two_gains_are_one_gain_for_torque_of_one_sign() -> None:
+    s = replace(motion(), torque=np.abs(motion().torque) + 1.0)
+    np.testing.assert_array_equal(TwoGains().columns(s, ())[Port.READS_TAU_L][:, 0], s.torque)
+
+
+def test_friction_of_a_sector_takes_both_ways_and_a_pulley_gives_as_it_takes() -> None:
+    loaded = [replace(motion(way), tau_ext=np.full(motion().t.size, -5.0)) for way in (1.0, -1.0)]
+    there = [replace(s, theta_l=loaded[0].theta_l) for s in loaded]
+    (drag, back), (pulls, again) = (
+        [law.columns(s, ())[Port.LOAD_TORQUE] for s in there] for law in (SectorDrag(), OvalPulley())
+    )
+    np.testing.assert_allclose(drag, -back)
+    np.testing.assert_array_equal(pulls, again)
+
+
+@pytest.mark.parametrize(("law", "shape"), [(ErrorDrift(), ()), (ErrorBySpeed(), (1.0,))], ids=["time", "speed"])
+def test_the_lever_is_the_slope_of_the_error_along_the_motors_angle(law: Effect, shape: tuple[float, ...]) -> None:
+    n = 2000
+    turning = replace(motion(n=n), theta_m=np.linspace(0.0, 2.0, n), omega_m=np.full(n, 10.0), t=np.full(n, LONG))
+    made = law.columns(turning, shape)
+    slope = np.gradient(made[Port.KINEMATIC_ERROR], turning.theta_m, axis=0)
+    np.testing.assert_allclose(made[Port.LEVER][5:-5], slope[5:-5], atol=1e-4)
+
+
+def two_gains(c: Columns, began: float) -> Columns:
+    return {"tau_l": c["tau_l"] + 0.01 * np.abs(c["tau_l"])}
+
+
+def two_constants(c: Columns, began: float) -> Columns:
+    return {"tau_m": c["tau_m"] + 0.04 * np.abs(c["tau_m"])}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [two_gains, pytest.param(two_constants, marks=pytest.mark.long)])
+def test_readings_of_two_gains_are_told_and_not_named(
+    shared: Path, tmp_path: Path, law: Callable[[Columns, float], Columns]
+) -> None:
+    verdict = spiked(tmp_path, shared / "cases" / "open-1", law, SOME).verdict
+    told = CONFOUNDERS[law.__name__]
+    assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), told.coordinate)
+    assert verdict.sentence == told.sentence
+
+
+OF_THE_BLIND_PLANT: Final = {
+    "growing_error": "error_drift",
+    "stiffness_aging": "spring_drift",
+    "one_way_drag": "uneven_drag",
+    "sensor_gain_temperature": "sensor_gain_drift",
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("form", OF_THE_BLIND_PLANT)
+def test_what_the_blind_plant_lets_drift_is_told(tmp_path: Path, form: str) -> None:
+    write_case(Request("outside", 11, "complete", form, over_floor=3.0), tmp_path, "case")
+    verdict = trace(tmp_path / "case").verdict
+    coordinates = {CONFOUNDERS[OF_THE_BLIND_PLANT[form]].coordinate, "temperature", "speed"}
+    assert verdict.status is Status.UNKNOWN
+    assert verdict.effects == ()
+    assert verdict.coordinate in coordinates
