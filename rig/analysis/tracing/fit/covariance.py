@@ -26,8 +26,9 @@ def covariance(s: Solution) -> Array:
     few degrees of freedom, however many others there are.
     """
     scaled, scale = evened(s.gram)
-    sizes, axes = np.linalg.eigh(scaled)  # sensor noise taken off can leave some below zero
-    root = (axes / np.sqrt(np.maximum(sizes, 1e-11))).T * scale
+    # sensor noise taken off can leave some below zero: of those, no more is known than by how much it was too much
+    sizes, axes = np.linalg.eigh(scaled)
+    root = (axes / np.sqrt(np.maximum(np.abs(sizes), 1e-11))).T * scale
     out, count = np.zeros_like(s.gram), 0
     expected, squares = np.zeros(s.x.size), np.zeros(s.x.size)
     for gram, score in _clusters(s):

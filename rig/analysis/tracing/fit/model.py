@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.fit.equations import Bare, Equations, Key, Term
-from rig.analysis.tracing.thresholds import LAG, LATEST, MESH, SECOND
+from rig.analysis.tracing.thresholds import CLEAR, LAG, LATEST, MESH, SECOND
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
@@ -122,19 +122,34 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
         made = dict(zip(keys, pool.map(of, keys), strict=True))
     y = {key: y for key, (y, _, _) in made.items()}
     gram, right = np.zeros((len(BASELINE), len(BASELINE))), np.zeros(len(BASELINE))
+    less, less_right = np.zeros_like(gram), np.zeros_like(right)
     for key, (_, part, (across, along)) in made.items():
         w = eq.noise.weight(key[1])
         gram[np.ix_(part.at, part.at)] += w * across
         right[part.at] += w * along
         if part.spoilt is not None:  # see `normal`
             noise, v = part.spoilt.whole(), w * eq.stands_for.get(key, 0.0)
-            gram[np.ix_(part.at, part.at)] -= v * (noise.T @ noise)
-            right[part.at] -= v * (noise.T @ spoilt[key][0])
+            less[np.ix_(part.at, part.at)] += v * (noise.T @ noise)
+            less_right[part.at] += v * (noise.T @ spoilt[key][0])
+    taken = share_taken(gram + np.diag(prior(len(BASELINE))), less)
+    gram, right = gram - taken * less, right - taken * less_right
+    if taken < 1.0:
+        eq = replace(eq, stands_for={key: taken * v for key, v in eq.stands_for.items()})
     noise_of = {key: n for key, (n, _) in spoilt.items()}
     out = Design(eq, (), (), y, noise_of, {key: (part,) for key, (_, part, _) in made.items()}, gram, right)
     for term in terms:
         out = extended(out, term, runs)
     return out
+
+
+def share_taken(gram: Array, noise: Array) -> float:
+    """Share of the sensor noise (p, p) that is taken off a normal matrix (p, p): all of it, or so much that half is
+    left of every sum of columns. With more of it off the fit need be no least squares any more      [fuller1987]"""
+    scaled, scale = evened(gram)
+    sizes, axes = np.linalg.eigh(scaled)
+    root = axes / np.sqrt(np.maximum(sizes, 1e-11))
+    most = float(np.linalg.eigvalsh(root.T @ (noise * scale * scale[:, None]) @ root)[-1])
+    return min(1.0, CLEAR / max(most, 1e-9))
 
 
 def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
