@@ -112,7 +112,9 @@ def effects(
         c = _beside(c, _widened(s, slopes, runs, spread))
     out: dict[str, tuple[Parameter, ...]] = {}
     for i, term in enumerate(s.design.terms):
-        out[term.name] = joined(out.get(term.name, ()), term.effect.parameters(_fit(s, c, i, slopes)), term.effect.adds)
+        out[term.name] = joined(
+            out.get(term.name, ()), term.effect.parameters(of_term(s, c, i, slopes)), term.effect.adds
+        )
     return out
 
 
@@ -159,7 +161,7 @@ def joined(
     return tuple(out.values())
 
 
-def _fit(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]]) -> Fit:
+def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = ()) -> Fit:
     """The part of coefficients and covariance that belongs to one term."""
     term, place = s.design.terms[i], s.design.place(i)
     k, size = place.stop - place.start, place.stop - place.start + len(term.shape)

@@ -7,8 +7,8 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import Nameless
-from rig.model.effect import Array, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import Amount, Nameless, sum_of, wave_of
+from rig.model.effect import Array, Fit, Port, Shape, Signals
 from rig.model.waves import wave
 
 
@@ -22,6 +22,10 @@ class UnevenDrag(Nameless):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         return {Port.MOTOR_TORQUE: np.abs(signals.omega_m)[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Between the ways."""
+        return sum_of(fit, "forward the damping is larger by", 2, "N·m·s/rad")
 
 
 class SectorDrag(Nameless):
@@ -37,6 +41,10 @@ class SectorDrag(Nameless):
         """Cosine and sine of every order."""
         made = [wave(k * np.nan_to_num(signals.theta_l), signals.way) for k in self.ORDERS]
         return {Port.LOAD_TORQUE: np.hstack(made)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Of the first order: of the others there may be as much."""
+        return wave_of(fit, "once a turn of the output by a wave of", 1, "N·m")
 
 
 class OvalPulley(Nameless):
@@ -55,3 +63,7 @@ class OvalPulley(Nameless):
         """Cosine and sine of every order."""
         made = [wave(k * np.nan_to_num(signals.theta_l), -signals.tau_ext) for k in self.ORDERS]
         return {Port.LOAD_TORQUE: np.hstack(made)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative, of the first order."""
+        return wave_of(fit, "once a turn of the output by a wave of", 100, "%")

@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, LONG, Nameless, largest_waves
-from rig.model.effect import Array, Port, Reach, Shape, Signals
+from rig.analysis.tracing.nameless.law import FAST, LONG, Amount, Nameless, largest_waves, wave_of
+from rig.core.units import ARCSEC
+from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 
 
 class ErrorDrift(Nameless):
@@ -24,6 +25,10 @@ class ErrorDrift(Nameless):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order by LONG, and what they do to the lever."""
         return largest_waves(signals, signals.t / LONG)
+
+    def amount(self, fit: Fit) -> Amount:
+        """Of the larger wave."""
+        return wave_of(fit, "in 1000 s order 2 changes by a wave of", 1 / ARCSEC, "arcsec")
 
 
 class ErrorBySpeed(Nameless):
@@ -43,3 +48,7 @@ class ErrorBySpeed(Nameless):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of both orders, and what they do to the lever."""
         return largest_waves(signals, (np.abs(signals.omega_m) / FAST) ** shape[0])
+
+    def amount(self, fit: Fit) -> Amount:
+        """Of the larger wave."""
+        return wave_of(fit, "at 40 rad/s order 2 differs by a wave of", 1 / ARCSEC, "arcsec")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
+from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.waves import wave
 
 LONG: Final = 1e3  # s, about a campaign
@@ -15,16 +15,29 @@ FAST: Final = 40.0  # rad/s of the motor, about its fastest run
 LARGEST: Final = (2, 4)  # orders of the motor: two lobes and their square make most of every kinematic error
 
 
+class Amount(NamedTuple):
+    """How much it is: what the number says, and the number with half its 95 % interval."""
+
+    says: str
+    value: float
+    half: float
+    unit: str
+
+
 class Nameless(Effect):
-    """A law that is never named: of one shape unless it says otherwise, and without figures."""
+    """A law that is never named: of one shape unless it says otherwise, and without parameters in trace.json."""
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One."""
         return ((),)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: what is not named has no figures."""
+        """None: what is not named has none."""
         return ()
+
+    def amount(self, fit: Fit) -> Amount | None:
+        """Its size for people; None where no single number says it."""
+        return None
 
 
 class OfTheTorqueSensor(Nameless):
@@ -52,3 +65,16 @@ def largest_waves(signals: Signals, height: Array) -> Mapping[Port, Array]:
     slopes = [k * np.stack([-x[:, 1], x[:, 0]], 1) for k, x in pairs]
     tall = height[:, None]
     return {Port.KINEMATIC_ERROR: np.hstack([x for _, x in pairs]) * tall, Port.LEVER: np.hstack(slopes) * tall}
+
+
+def sum_of(fit: Fit, says: str, scale: float, unit: str) -> Amount:
+    """Of all its coefficients, times `scale`."""
+    all_of_it = np.full(fit.covariance.shape[0], scale)
+    all_of_it[fit.coefficients.size :] = 0.0
+    return Amount(says, scale * float(fit.coefficients.sum()), fit.half_width(all_of_it), unit)
+
+
+def wave_of(fit: Fit, says: str, scale: float, unit: str) -> Amount:
+    """Amplitude of its first cosine and sine, times `scale`."""
+    amplitude, _ = harmonic(fit, "", unit, 0, scale)
+    return Amount(says, amplitude.value, (amplitude.ci95[1] - amplitude.ci95[0]) / 2, unit)

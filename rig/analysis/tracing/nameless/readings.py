@@ -7,8 +7,8 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import Nameless, OfTheTorqueSensor, by_time, torque_of
-from rig.model.effect import Array, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import Amount, Nameless, OfTheTorqueSensor, by_time, sum_of, torque_of
+from rig.model.effect import Array, Fit, Port, Shape, Signals
 from rig.model.waves import wave
 
 
@@ -40,6 +40,10 @@ class SensorGainDrift(OfTheTorqueSensor):
         """Two columns in the reading."""
         return {Port.READS_TAU_L: by_time(torque_of(signals), signals)}
 
+    def amount(self, fit: Fit) -> Amount:
+        """Relative."""
+        return sum_of(fit, "in 1000 s the gain changes by", 100, "%")
+
 
 class TwoGains(OfTheTorqueSensor):
     """The torque sensor's gain is another one for negative torque: it reads c·|T| too much      [taghirad1999]"""
@@ -51,6 +55,10 @@ class TwoGains(OfTheTorqueSensor):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
         return {Port.READS_TAU_L: np.abs(torque_of(signals))[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative."""
+        return sum_of(fit, "for positive torque the gain is larger by", 200, "%")
 
 
 class Droop(Nameless):
@@ -79,3 +87,7 @@ class TwoConstants(Nameless):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
         return {Port.READS_TAU_M: np.abs(np.nan_to_num(signals.tau_m))[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative."""
+        return sum_of(fit, "for positive torque the reading is larger by", 200, "%")

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, Nameless, by_time, torque_of
-from rig.model.effect import Array, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import FAST, Amount, Nameless, by_time, sum_of, torque_of
+from rig.model.effect import Array, Fit, Port, Shape, Signals
 
 
 class EvenSpring(Nameless):
@@ -27,7 +27,7 @@ class EvenSpring(Nameless):
 
 
 class SpringDrift(Nameless):
-    """The stiffness changes through the campaign, as of a gear that warms: φ loses T·(c_1·t + c_2·t²)      [tuttle1992]
+    """The stiffness changes through the campaign, as of a gear that warms: θ̃ gains T·(c_1·t + c_2·t²)      [tuttle1992]
 
     Loads come in an order, and a spring that gives more in the later runs is a loop, a knee, or a late encoder.
     """
@@ -41,9 +41,13 @@ class SpringDrift(Nameless):
         """Two columns, by LONG and its square."""
         return {Port.WIND_UP: by_time(torque_of(signals), signals)}
 
+    def amount(self, fit: Fit) -> Amount:
+        """Relative, of the stiffness."""
+        return sum_of(fit, "in 1000 s the stiffness changes by", -100 * fit.known.K, "%")
+
 
 class SpringBySpeed(Nameless):
-    """The stiffness changes with the speed: φ gains c·T·|ω_m|      [tuttle1992]"""
+    """The stiffness changes with the speed: θ̃ gains c·T·|ω_m|      [tuttle1992]"""
 
     name: ClassVar[str] = "spring_by_speed"
     in_short: ClassVar[str] = "the stiffness changes with the speed"
@@ -52,3 +56,7 @@ class SpringBySpeed(Nameless):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
         return {Port.WIND_UP: (torque_of(signals) * np.abs(signals.omega_m) / FAST)[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative, of the stiffness."""
+        return sum_of(fit, "at 40 rad/s the stiffness differs by", -100 * fit.known.K, "%")

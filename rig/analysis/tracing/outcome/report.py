@@ -11,6 +11,7 @@ from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.outcome.amounts import amounts
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.dismissed import dismissed
@@ -88,6 +89,7 @@ def report(
             *beside_the_numbers(named),
             *(p.own.notes[name] for name in named if name in p.own.notes),
             *([one_way] if one_way else []),
+            *amounts(s),
             *(r.sentence() for r in ripple),
             *p.campaign.notes,
         ),
