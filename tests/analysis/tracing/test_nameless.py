@@ -23,14 +23,15 @@ from tests.analysis.tracing.spiked import Columns, spiked
 from tests.analysis.tracing.test_gains import SOME
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
-from tests.contract.test_effects import motion
+from tests.contract.test_effects import REACH, motion
 
 
 @pytest.mark.parametrize("law", [TwoConstants(), UnevenDrag()], ids=lambda law: law.name)
 def test_what_differs_between_the_ways_is_even_in_them(law: Effect) -> None:
-    forth, back = (next(iter(law.columns(motion(sign), ()).values())) for sign in (1.0, -1.0))
-    np.testing.assert_allclose(forth, back)
-    assert np.ptp(forth) > 0
+    for shape in law.shapes(REACH):
+        forth, back = (next(iter(law.columns(motion(sign), shape).values())) for sign in (1.0, -1.0))
+        np.testing.assert_allclose(forth, back)
+        assert np.ptp(forth) > 0
 
 
 def test_two_gains_are_one_gain_for_torque_of_one_sign() -> None:

@@ -7,25 +7,31 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import Amount, Nameless, sum_of, wave_of
-from rig.model.effect import Array, Fit, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import FAST, Amount, Nameless, sum_of, wave_of
+from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
 
 class UnevenDrag(Nameless):
-    """Damping is another one the other way: the motor is resisted by c·|ω_m| more      [armstrong1994]"""
+    """The motor is dragged by more one way than the other, the more the faster: by c·|ω_m|^p      [armstrong1994]"""
 
     name: ClassVar[str] = "uneven_drag"
     in_short: ClassVar[str] = "the motor drags more one way"
     source: ClassVar[str] = "armstrong1994"
+    shape_names: ClassVar[tuple[str, ...]] = ("power",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Powers: of a film between lip and shaft, of a fluid, of what it stirs."""
+        return ((0.5,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
-        return {Port.MOTOR_TORQUE: np.abs(signals.omega_m)[:, None]}
+        return {Port.MOTOR_TORQUE: (np.abs(signals.omega_m) / FAST)[:, None] ** shape[0]}
 
     def amount(self, fit: Fit) -> Amount:
         """Between the ways."""
-        return sum_of(fit, "forward the damping is larger by", 2, "N·m·s/rad")
+        return sum_of(fit, "forward the drag at 40 rad/s is larger by", 2000, "mN·m")
 
 
 class SectorDrag(Nameless):
