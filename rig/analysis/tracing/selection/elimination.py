@@ -11,6 +11,7 @@ from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
 from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN, SHADOW
@@ -23,7 +24,7 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
     d = unseen(s, at)
     while True:
         scored = scores(s, d, at)
-        failing = [x for x in scored if not x.named or _in_the_shadow(x, scored) or not _can_be(s, x.name)]
+        failing = [x for x in scored if not _may_stand(x, scored) or not _can_be(s, x.name)]
         if not failing:
             return s, d, scored
         # what spoils a channel spoils the others' sizes with it
@@ -32,6 +33,13 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
         s, d = fit(reduced(s.design, gone)), reduced(d, gone)
         if (again := _put_right(s)) is not s:
             s, d = again, unseen(again, at)
+
+
+def _may_stand(one: HeldOutScore, scored: Sequence[HeldOutScore]) -> bool:
+    """Whether it is named, and in nobody's shadow. A law without a name that takes no look-alike's place has many
+    columns, and no reason but the rest itself: it has to be plain to see."""
+    sure = one.plain or one.name not in CONFOUNDERS or bool(CONFOUNDERS[one.name].mimics)
+    return one.named and sure and not _in_the_shadow(one, scored)
 
 
 def _in_the_shadow(one: HeldOutScore, scored: Sequence[HeldOutScore]) -> bool:
