@@ -61,10 +61,14 @@ def by_time(x: Array, signals: Signals) -> Array:
 
 def largest_waves(signals: Signals, height: Array) -> Mapping[Port, Array]:
     """Cosine and sine of the LARGEST orders, `height` (n,) tall, (n, 4), and what they do to the lever."""
-    pairs = [(k, wave(k * signals.theta_m)) for k in LARGEST]
-    slopes = [k * np.stack([-x[:, 1], x[:, 0]], 1) for k, x in pairs]
-    tall = height[:, None]
-    return {Port.KINEMATIC_ERROR: np.hstack([x for _, x in pairs]) * tall, Port.LEVER: np.hstack(slopes) * tall}
+    values, slopes = signals.once("largest waves", lambda: _of_one(signals.theta_m))
+    return {Port.KINEMATIC_ERROR: values * height[:, None], Port.LEVER: slopes * height[:, None]}
+
+
+def _of_one(angle: Array) -> tuple[Array, Array]:
+    """Those waves of height 1, and their slopes along the angle."""
+    pairs = [(k, wave(k * angle)) for k in LARGEST]
+    return np.hstack([x for _, x in pairs]), np.hstack([k * np.stack([-x[:, 1], x[:, 0]], 1) for k, x in pairs])
 
 
 def sum_of(fit: Fit, says: str, scale: float, unit: str) -> Amount:
