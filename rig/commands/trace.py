@@ -96,6 +96,8 @@ def tell(found: Trace) -> None:
     if found.left_out:
         print(f"  {runs_read(found)} read. {not_read(found)}")
     print(f"  {found.verdict.sentence}")
+    for law in found.law:
+        print(f"  {law}")
     if rest := remainder(found):
         print(f"  {rest}")
     for effect in found.effects:

@@ -38,7 +38,8 @@ MEANING = {
     Status.AMBIGUOUS: "More than one effect explains these runs equally well. Naming one would be a guess: its "
     "parameters below hold only if it is the right one.",
     Status.UNKNOWN: "What is left is real: it is more than repeats of a run differ by. It is described by where it "
-    "lives and is given no name. What is added to the model beside names is a curve without physics.",
+    "lives and is given no name. What is added to the model beside names is a curve without physics, or a law "
+    "that no effect of the library stands for.",
 }
 
 BEYOND = (
@@ -159,6 +160,8 @@ def added(trace: Trace) -> str:
             if not trace.curve:
                 also = f"{humanise(names)} was added; no" if names else "Nothing was added: no"
                 return f"{also} curve in {where} foretells what is left in runs the fit did not see."
+            if trace.law:
+                return f"A law that is no effect of the library{beside}. {' '.join(trace.law)}"
             return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
         case Status.AMBIGUOUS if not v.rivals:
             return "Nothing was added: the fitted runs do not reach as far as the held-out ones."

@@ -78,7 +78,7 @@ def test_readings_of_two_gains_are_told_and_not_named(
     told = CONFOUNDERS[law.__name__]
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
-    (much,) = [match for note in found.notes if (match := re.search(r"larger by (\S+) ± (\S+) %", note))]
+    (much,) = [match for law_said in found.law if (match := re.search(r"larger by (\S+) ± (\S+) %", law_said))]
     assert float(much[1]) == pytest.approx(DIFFER[law], abs=1.5 * float(much[2]))
 
 

@@ -23,9 +23,9 @@ IN_ITS_NAME = {"_arcsec": "arcsec", "_hz": "Hz", "_Nm": "N·m"}
 
 
 def rippled() -> Trace:
-    """One with a channel missing and a run that was left out."""
+    """One with a channel missing, a run that was left out and a law without a name."""
     ripple = Ripple("tau_m", 2, 8, 0.01, 1e-3, 1e-6, (1e-3, 1e-4), (0.01, 0.002))
-    return replace(made_up.unknown(), ripple=(ripple,), read=5, left_out=("torn",))
+    return replace(made_up.unknown(), ripple=(ripple,), read=5, left_out=("torn",), law=("The spring gives more.",))
 
 
 TRACES = {name: make() for name, make in made_up.ALL.items()} | {"rippled": rippled()}

@@ -93,6 +93,13 @@ def test_no_share_in_the_json_is_above_all() -> None:
     assert [e["share_removed"] for e in document(more)["effects"].values()] == [1.0]
 
 
+def test_a_law_without_a_name_is_told_in_the_place_of_the_curve() -> None:
+    said = "The torque sensor has two gains: for positive torque the gain is larger by 2.0 ± 0.1 %."
+    words = read(bare(replace(made_up.unknown(), law=(said,)))).words
+    assert f"A law that is no effect of the library. {said}" in words
+    assert "A curve without a name" not in words
+
+
 def test_a_curve_that_was_not_added_is_not_said_to_be() -> None:
     words = read(bare(replace(made_up.unknown(), curve=False))).words
     assert "Nothing was added: no curve in the load angle, order 37 per turn foretells" in words

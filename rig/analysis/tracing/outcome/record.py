@@ -44,6 +44,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "lives_in": trace.lives_in,
             "over_floor_before": trace.ratios_before,
             "over_floor_after": trace.ratios_after,
+            "law": trace.law,
             "ripple": [r.document() for r in trace.ripple],
         },
         "candidates": [asdict(candidate) for candidate in trace.candidates],

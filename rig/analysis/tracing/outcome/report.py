@@ -11,7 +11,6 @@ from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
-from rig.analysis.tracing.outcome.amounts import amounts
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.dismissed import dismissed
@@ -19,6 +18,7 @@ from rig.analysis.tracing.outcome.each_run import beside_the_numbers
 from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
+from rig.analysis.tracing.outcome.laws import laws_in
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
@@ -89,12 +89,12 @@ def report(
             *beside_the_numbers(named),
             *(p.own.notes[name] for name in named if name in p.own.notes),
             *([one_way] if one_way else []),
-            *amounts(s),
             *(r.sentence() for r in ripple),
             *p.campaign.notes,
         ),
         ripple=ripple,
         curve=curve,
+        law=laws_in(s) if curve else (),
         read=len(p.campaign.runs),
         left_out=p.campaign.left_out,
         cannot=(*conclusion.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),

@@ -128,6 +128,7 @@ class Trace:
     cannot: tuple[str, ...]  # what this campaign cannot tell, one sentence each
     curves: dict[str, Array] = field(default_factory=dict)
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
-    curve: bool = False  # whether a curve without a name was added, in the verdict's coordinate
+    curve: bool = False  # whether a curve or law without a name was added, in the verdict's coordinate
+    law: tuple[str, ...] = ()  # the laws without a name that were, for people
     read: int = 0  # runs of the campaign that were read, standstill among them
     left_out: tuple[str, ...] = ()  # runs that were not, by folder; the notes say why

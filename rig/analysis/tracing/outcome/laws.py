@@ -13,15 +13,16 @@ from rig.analysis.tracing.nameless.law import Nameless
 KNOWN: Final = 0.5  # of itself: with a wider interval the number says no more than the sentence
 
 
-def amounts(s: Solution) -> list[str]:
-    """A sentence for each such law in the model that one number tells, if it is known."""
+def laws_in(s: Solution) -> tuple[str, ...]:
+    """A sentence for each such law in the model, with its size where one number tells that and is known."""
     laws = [(i, term.effect) for i, term in enumerate(s.design.terms) if isinstance(term.effect, Nameless)]
     if not laws:
-        return []
+        return ()
     c, said = covariance(s), []
     for i, law in laws:
         much = law.amount(of_term(s, c, i))
-        if much is not None and much.half < KNOWN * abs(much.value):
-            what = law.in_short[0].upper() + law.in_short[1:]
-            said.append(true_minus(f"{what}: {much.says} {pm(much.value, much.half, much.unit)}."))
-    return said
+        what = law.in_short[0].upper() + law.in_short[1:]
+        known = much is not None and much.half < KNOWN * abs(much.value)
+        size = f": {much.says} {pm(much.value, much.half, much.unit)}" if much is not None and known else ""
+        said.append(true_minus(f"{what}{size}."))
+    return tuple(said)
