@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,9 +47,9 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.manifest import utc_now
 
     target = args.out or args.campaign
-    runs = folders_of_runs(args.campaign)  # that it cannot be read is said before that it cannot be written
-    refuse_unwritable(target)  # a minute of thought is not lost to a wrong name
-    refuse_unmatched([run.name for run in runs], args.hold_out)
+    if args.campaign.is_dir() and os.access(args.campaign, os.R_OK | os.X_OK):  # else that is said, not this
+        refuse_unwritable(target)  # a minute of thought is not lost to a wrong name
+    refuse_unmatched([run.name for run in folders_of_runs(args.campaign)], args.hold_out)
     if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
     with alone_in(target):

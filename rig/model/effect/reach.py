@@ -24,5 +24,9 @@ class Reach:
     counts_m: float  # encoder counts per turn; 0 when not said
     counts_l: float
     has: frozenset[str] = MEASURED  # channels that any run measured
+    runs: int = 30
+    backwards: float = 0.5  # of the rows that turn, share of those that go the way of fewer
+    pulled: float = 0.5  # of the squared torque, share of that with the sign that has less
+    weights: int = 2  # different external torques
     lines_m: tuple[int, ...] = ()  # line counts that the residual shows, whatever is said of the encoders
     lines_l: tuple[int, ...] = ()

@@ -58,6 +58,19 @@ def test_the_lever_is_the_slope_of_the_error_along_the_motors_angle(law: Effect,
     np.testing.assert_allclose(made[Port.LEVER][5:-5], slope[5:-5], atol=1e-4)
 
 
+def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
+    def laws(**reach: float) -> set[str]:
+        covered = replace(REACH, **reach)
+        return {c.effect.name for c in CONFOUNDERS.values() if c.effect.shapes(covered)}
+
+    everything = laws()
+    assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
+    assert everything - laws(pulled=0.02) == {"two_gains", "two_constants"}
+    assert everything - laws(weights=1) == {"oval_pulley"}
+    assert everything - laws(runs=2) == {"spring_drift", "error_drift", "sensor_gain_drift"}
+    assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed"}
+
+
 def two_gains(c: Columns, began: float) -> Columns:
     return {"tau_l": c["tau_l"] + 0.01 * np.abs(c["tau_l"])}
 
@@ -74,7 +87,7 @@ DIFFER = {two_gains: 2.0, two_constants: 8.0}  # %, between one way and the othe
 def test_readings_of_two_gains_are_told_and_not_named(
     shared: Path, tmp_path: Path, law: Callable[[Columns, float], Columns]
 ) -> None:
-    found = spiked(tmp_path, shared / "cases" / "open-1", law, SOME)
+    found = spiked(tmp_path, shared / "cases" / "open-1", law, (*SOME, "lock_60_1", "lock_60_2"))
     told = CONFOUNDERS[law.__name__]
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)

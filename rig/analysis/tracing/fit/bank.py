@@ -47,6 +47,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
     pieces = [p for run in runs for p in run.pieces]
     speeds = np.concatenate([np.abs(p.omega_m[settled(p)]) for p in pieces]) if pieces else np.zeros(0)
     torque = np.concatenate([np.abs(p.torque) for p in pieces])
+    way = np.concatenate([p.way for p in pieces]) if pieces else np.zeros(0)
     turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
     return Reach(
         ratio=runs[0].ratio,
@@ -60,7 +61,18 @@ def reach(runs: Sequence[Recording]) -> Reach:
         counts_m=runs[0].counts_m,
         counts_l=runs[0].counts_l,
         has=frozenset().union(*(run.knows for run in runs)),
+        runs=len(runs),
+        backwards=_lesser(way),
+        pulled=_lesser(np.concatenate([p.torque * np.abs(p.torque) for p in pieces])),
+        weights=len({round(float(np.nanmean(p.tau_ext)), 2) for p in pieces}),
     )
+
+
+def _lesser(x: Array) -> float:
+    """Of the sum of |x|, the share of the sign that has less of it."""
+    x = np.nan_to_num(x)
+    up, down = float(x[x > 0].sum()), float(-x[x < 0].sum())
+    return min(up, down) / max(up + down, 1e-12)
 
 
 def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered: Reach) -> Bank:

@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, Amount, Nameless, sum_of, wave_of
+from rig.analysis.tracing.nameless.law import FAST, SOME, Amount, Nameless, sum_of, wave_of, when
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
@@ -23,7 +23,7 @@ class UnevenDrag(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Powers: of a film between lip and shaft, of a fluid, of what it stirs."""
-        return ((0.5,), (1.0,), (2.0,))
+        return when(reach.backwards > SOME, (0.5,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
@@ -42,6 +42,10 @@ class SectorDrag(Nameless):
     source: ClassVar[str] = "armstrong1994"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
     ORDERS: Final = (1, 2, 3, 4, 5, 6)  # a sector of a quarter of a radian still has half its height
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where the motor goes both ways: friction that does not turn with the way is a weight."""
+        return when(reach.backwards > SOME)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order."""
@@ -64,6 +68,10 @@ class OvalPulley(Nameless):
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
     ORDERS: Final = (1, 2)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where weights differ: what one weight does is the arm's."""
+        return when(reach.weights > 1)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order."""

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, LONG, Amount, Nameless, largest_waves, wave_of
+from rig.analysis.tracing.nameless.law import FAST, LONG, SEVERAL, WIDE, Amount, Nameless, largest_waves, wave_of, when
 from rig.core.units import ARCSEC
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 
@@ -21,6 +21,10 @@ class ErrorDrift(Nameless):
     in_short: ClassVar[str] = "the kinematic error changes through the campaign"
     source: ClassVar[str] = "jia2021"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs."""
+        return when(reach.runs >= SEVERAL)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order by LONG, and what they do to the lever."""
@@ -43,7 +47,7 @@ class ErrorBySpeed(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Powers: a film that builds up at once, one that grows, a force that goes with the square."""
-        return ((0.3,), (1.0,), (2.0,))
+        return when(reach.fastest > WIDE * reach.slowest, (0.3,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of both orders, and what they do to the lever."""

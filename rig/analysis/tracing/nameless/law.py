@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from rig.model.waves import wave
 
 LONG: Final = 1e3  # s, about a campaign
 FAST: Final = 40.0  # rad/s of the motor, about its fastest run
+SEVERAL: Final = 6  # runs, with fewer a drift is whatever one of them has
+SOME: Final = 0.1  # share of the rows or of the torque that another way or sign must have
+WIDE: Final = 2.0  # fastest over slowest
 LARGEST: Final = (2, 4)  # orders of the motor: two lobes and their square make most of every kinematic error
 
 
@@ -43,9 +46,12 @@ class Nameless(Effect):
 class OfTheTorqueSensor(Nameless):
     """One that is in the reading of the torque sensor."""
 
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where there is such a sensor."""
-        return ((),) if "tau_l" in reach.has else ()
+    needs: ClassVar[frozenset[str]] = frozenset({"tau_l"})
+
+
+def when(shown: bool, *shapes: Shape) -> tuple[Shape, ...]:
+    """Those shapes, or the only one, where a campaign shows that something changes; none where it cannot."""
+    return (shapes or ((),)) if shown else ()
 
 
 def torque_of(signals: Signals) -> Array:

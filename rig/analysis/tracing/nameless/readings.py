@@ -7,8 +7,18 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import Amount, Nameless, OfTheTorqueSensor, by_time, sum_of, torque_of
-from rig.model.effect import Array, Fit, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import (
+    SEVERAL,
+    SOME,
+    Amount,
+    Nameless,
+    OfTheTorqueSensor,
+    by_time,
+    sum_of,
+    torque_of,
+    when,
+)
+from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
 
@@ -34,7 +44,11 @@ class SensorGainDrift(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_gain_drift"
     in_short: ClassVar[str] = "the torque sensor's gain changes through the campaign"
     source: ClassVar[str] = "taghirad1999"
-    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+    needs: ClassVar[frozenset[str]] = frozenset({"t", "tau_l"})
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs."""
+        return when(reach.runs >= SEVERAL)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Two columns in the reading."""
@@ -51,6 +65,10 @@ class TwoGains(OfTheTorqueSensor):
     name: ClassVar[str] = "two_gains"
     in_short: ClassVar[str] = "the torque sensor has two gains"
     source: ClassVar[str] = "taghirad1999"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is torque of both signs."""
+        return when(reach.pulled > SOME)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
@@ -83,6 +101,10 @@ class TwoConstants(Nameless):
     name: ClassVar[str] = "two_constants"
     in_short: ClassVar[str] = "the motor has two torque constants"
     source: ClassVar[str] = "krause2013"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is torque of both signs."""
+        return when(reach.pulled > SOME)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""

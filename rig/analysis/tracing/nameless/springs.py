@@ -7,8 +7,18 @@ from typing import ClassVar
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, Amount, Nameless, by_time, sum_of, torque_of
-from rig.model.effect import Array, Fit, Port, Shape, Signals
+from rig.analysis.tracing.nameless.law import (
+    FAST,
+    SEVERAL,
+    WIDE,
+    Amount,
+    Nameless,
+    by_time,
+    sum_of,
+    torque_of,
+    when,
+)
+from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 
 
 class EvenSpring(Nameless):
@@ -37,6 +47,10 @@ class SpringDrift(Nameless):
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
 
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs."""
+        return when(reach.runs >= SEVERAL)
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Two columns, by LONG and its square."""
         return {Port.WIND_UP: by_time(torque_of(signals), signals)}
@@ -52,6 +66,10 @@ class SpringBySpeed(Nameless):
     name: ClassVar[str] = "spring_by_speed"
     in_short: ClassVar[str] = "the stiffness changes with the speed"
     source: ClassVar[str] = "tuttle1992"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where speeds differ."""
+        return when(reach.fastest > WIDE * reach.slowest)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""

@@ -141,7 +141,8 @@ def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Soluti
     n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in s.keys)
     for confounder in CONFOUNDERS.values():
         mine = [i for i, term in enumerate(s.design.terms) if term.name in confounder.mimics]
-        if mine and confounder.effect.shapes(covered):
+        able = confounder.effect.needs <= covered.has and confounder.effect.shapes(covered)
+        if mine and able:
             other = fit(extended(reduced(s.design, mine), Term(confounder.effect, ()), runs))
             saved = (s.design.size - other.design.size) * np.log(n)
             s = other if other.gain + saved > s.gain else s
