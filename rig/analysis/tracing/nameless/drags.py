@@ -68,6 +68,7 @@ class OvalPulley(Nameless):
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
     ORDERS: Final = (1, 2)
+    HALF: Final = 0.5
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where weights differ: what one weight does is the arm's."""
@@ -77,6 +78,11 @@ class OvalPulley(Nameless):
         """Cosine and sine of every order."""
         made = [wave(k * np.nan_to_num(signals.theta_l), -signals.tau_ext) for k in self.ORDERS]
         return {Port.LOAD_TORQUE: np.hstack(made)}
+
+    def plausible(self, fit: Fit) -> bool:
+        """It stays a lever: half of it up or down is more than any pulley's."""
+        waves = np.hypot(fit.coefficients[0::2], fit.coefficients[1::2])
+        return bool((waves < self.HALF).all())
 
     def amount(self, fit: Fit) -> Amount:
         """Relative, of the first order."""

@@ -79,6 +79,30 @@ class TwoGains(OfTheTorqueSensor):
         return sum_of(fit, "for positive torque the gain is larger by", 200, "%")
 
 
+class SensorJump(OfTheTorqueSensor):
+    """The torque sensor jumps where the torque turns round, as one whose hub slips: it reads c·tanh(T/T_0) too much
+
+    [taghirad1999]. In a lock test that is a soft or a free gap of the gear; the load's inertia knows of none.
+    """
+
+    name: ClassVar[str] = "sensor_jump"
+    in_short: ClassVar[str] = "the torque sensor jumps where the torque turns round"
+    source: ClassVar[str] = "taghirad1999"
+    TURN: Final = 1.0  # N·m: within what runs without load swing by
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is torque of both signs."""
+        return when(reach.pulled > SOME)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_L: np.tanh(torque_of(signals) / self.TURN)[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """From one side to the other."""
+        return sum_of(fit, "from one side to the other by", 2, "N·m")
+
+
 class Droop(Nameless):
     """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
 

@@ -14,7 +14,14 @@ from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
-from rig.analysis.tracing.nameless.readings import Droop, SensorGainDrift, SensorWaves, TwoConstants, TwoGains
+from rig.analysis.tracing.nameless.readings import (
+    Droop,
+    SensorGainDrift,
+    SensorJump,
+    SensorWaves,
+    TwoConstants,
+    TwoGains,
+)
 from rig.analysis.tracing.nameless.springs import EvenSpring, SpringBySpeed, SpringDrift
 from rig.model.effect import Effect, Reach
 
@@ -86,6 +93,13 @@ CONFOUNDERS: Final = {
         "time",
         "The torque sensor's gain changes through the campaign: the same torque reads more or less in later runs. No "
         "effect of the library does so.",
+    ),
+    "sensor_jump": Confounder(
+        SensorJump(),
+        "load",
+        "The torque sensor jumps where the torque turns round, and no load and no motor goes with it; a gap in the "
+        "gear explains less, and no effect of the library explains it.",
+        mimics=frozenset({"nonlinear_stiffness", "lost_motion"}),
     ),
     "two_gains": Confounder(
         TwoGains(),
