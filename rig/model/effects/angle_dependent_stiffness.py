@@ -67,6 +67,11 @@ class AngleDependentStiffness(Effect):
             p for amplitude_and_phase in sorted(each, key=_amplitude, reverse=True) for p in amplitude_and_phase
         )
 
+    def plausible(self, fit: Fit) -> bool:
+        """A compliance above zero everywhere: one that turns round with the angle is no spring's."""
+        waves = np.hypot(fit.coefficients[0::2], fit.coefficients[1::2])
+        return bool((waves * fit.known.K < 1.0).all())
+
     def _orders(self, shape: Shape) -> tuple[float, ...]:
         return self.LOBES if shape[0] == TOGETHER else (shape[0],)
 
