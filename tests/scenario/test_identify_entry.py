@@ -36,7 +36,8 @@ with = { cycles = 1, rate = 3.0, rates = [1.0] }
 """
 
 
-pytestmark = pytest.mark.xdist_group("identify entry")  # the campaign is made once, not once for every worker
+# the campaign is made once, not once for every worker, and takes most of a minute
+pytestmark = [pytest.mark.xdist_group("identify entry"), pytest.mark.long]
 
 
 @pytest.fixture(scope="module")

@@ -210,6 +210,7 @@ def test_a_mean_knows_its_way() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_weights_taken_from_the_scatter_itself_make_a_mean_less_certain() -> None:
     """Eight stretches of eight windows at one order: their noise is known to a quarter of itself, so are weights."""
     generator, inside, without = np.random.default_rng(7), [], []

@@ -59,7 +59,7 @@ def checked(found: Trace) -> Trace:
         pytest.param(("theta_m", "tau_m"), "No motor angle", marks=pytest.mark.long),
         pytest.param(("t",), "No run has a time column", marks=pytest.mark.long),
         pytest.param(("theta_l", "tau_l"), "No load angle", marks=pytest.mark.long),
-        (("tau_m", "tau_l"), "No motor torque"),
+        pytest.param(("tau_m", "tau_l"), "No motor torque", marks=pytest.mark.long),
     ],
 )
 def test_a_missing_channel_is_said_and_the_rest_is_traced(
