@@ -62,7 +62,9 @@ ASTRAY: Final = 0.05  # relative, of what columns lean on: a twentieth of an eff
 NEARLY: Final = 0.85  # of the most evidence in the bank: shapes there are a step apart
 CLOSEST: Final = 3  # laws with nearly the most evidence, each refined before one is chosen
 ALIKE: Final = 0.8  # of the evidence of the effect that stands: a look-alike that may be what it is
-OUTDONE: Final = 2.0  # times its evidence another effect must have: of 60 right names alone none is outdone at all
+OUTDONE: Final = (
+    2.0  # times its evidence another effect must have: of 64 right lone names in five exams none is outdone
+)
 KNOWN: Final = 1 / 3  # of itself, half a 95 % interval: so well a second choice must know its scale, a fit the spring
 TRIED: Final = 2  # candidates tried again, each by itself: each costs a selection
 TURNS: Final = 4  # prefixes of what the search found, each selected from anew

@@ -68,7 +68,7 @@ class OvalPulley(Nameless):
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
     ORDERS: Final = (1, 2)
-    HALF: Final = 0.5
+    HALF: Final = 0.5  # of the mean lever
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where weights differ: what one weight does is the arm's."""

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from rig.analysis.findings.collected import pm, true_minus
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.parameters import of_term
 from rig.analysis.tracing.nameless.law import Nameless
-
-KNOWN: Final = 0.5  # of itself: with a wider interval the number says no more than the sentence
+from rig.analysis.tracing.thresholds import KNOWN
 
 
 def laws_in(s: Solution) -> tuple[str, ...]:

@@ -113,8 +113,10 @@ def without_outdone(selected: Selected, found: Found, runs: Sequence[int]) -> Se
         return selected
     p, first = selected.p, found.ranking[0]
     mine = next((r.evidence for r in found.ranking if r.term.name == names[0]), np.inf)
+    if first.evidence < OUTDONE * mine:
+        return selected
     before = p.held_out.residuals(p.baseline, held := unseen(p.baseline, p.held_out))
-    if first.evidence < OUTDONE * mine or tried(p, first, held, before).share < NAMED:
+    if tried(p, first, held, before).share < NAMED:
         return selected
     bare = fit(design(p.eq, (), runs))
     return Selected(p, bare, unseen(bare, p.held_out), [], {})
