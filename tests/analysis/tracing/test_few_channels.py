@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -17,6 +20,7 @@ from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.trace import trace
 from rig.core.errors import UsageError
+from rig.core.units import RPM, TURN
 
 pytestmark = pytest.mark.xdist_group("few channels")  # what the module makes is made once, not for every worker
 
@@ -137,3 +141,36 @@ def test_without_time_nothing_shakes_at_a_frequency(
     assert asked == []
     prepare(read_campaign(reduced(tmp_path / "timed", open_1, FEW, ())), ())
     assert set(asked) == {"find_vibration", "find_interference"}
+
+
+def gauges_alone(to: Path, timed: bool) -> Path:
+    """A motor angle and a torque that rides on it, as of gauges on a flexspline: every speed and load on three days."""
+    rng, rows = np.random.default_rng(3), np.arange(4000)
+    for day, load, rpm in itertools.product(range(3), (0.0, 20.0), (60.0, 150.0, 300.0, -150.0)):
+        run = to / f"day{day}-{load:g}-{rpm:g}"
+        run.mkdir(parents=True)
+        angle = rpm * RPM * rows / 1000 + rng.uniform(0, TURN)
+        late = angle - 1e-3 * rpm * RPM
+        torque = load + 0.02 * day + (0.5 + 0.01 * load) * np.cos(2 * late) + 0.02 * rng.standard_normal(rows.size)
+        columns = {"theta_m": angle, "tau_l": torque} | ({"t": rows / 1000} if timed else {})
+        pq.write_table(pa.table(columns), run / "samples.parquet")
+        conditions = {"tau_ext": -load, "speed_rpm": abs(rpm)}
+        began = f"2024-05-{7 + day:02d}T08:{int(load):02d}:{int(abs(rpm)) // 10:02d}Z"
+        manifest = {"schema": "hdrig.run/1", "procedure": "constant_speed", "gear": {"ratio": 100},
+                    "started_utc": began, "conditions": conditions}  # fmt: skip
+        (run / "manifest.json").write_text(json.dumps(manifest))
+    return to
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("timed", [False, True])
+def test_gauges_alone_give_their_ripple_its_lag_and_their_drift_and_no_name(tmp_path: Path, timed: bool) -> None:
+    found = checked(trace(gauges_alone(tmp_path, timed)))
+    assert found.verdict.effects == ()
+    assert found.verdict.frequency_hz is None
+    assert (found.verdict.coordinate == "motor_angle") is timed
+    (two,) = found.ripple
+    assert (two.order, two.lag is not None) == (2, True)
+    assert two.lag[0] == pytest.approx(1e-3, abs=2 * two.lag[1])
+    (drift,) = found.mean_drift
+    assert drift.per_day == pytest.approx(0.02, abs=2 * drift.half)

@@ -68,7 +68,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(weights=1) == {"oval_pulley"}
-    assert everything - laws(runs=2) == {"spring_drift", "error_drift", "sensor_gain_drift"}
+    assert everything - laws(runs=2) == {"spring_drift", "error_drift", "sensor_gain_drift", "sensor_ripple"}
     assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed"}
 
 
@@ -78,6 +78,10 @@ def two_gains(c: Columns, began: float) -> Columns:
 
 def two_constants(c: Columns, began: float) -> Columns:
     return {"tau_m": c["tau_m"] + 0.04 * np.abs(c["tau_m"])}
+
+
+def sensor_ripple(c: Columns, began: float) -> Columns:
+    return {"tau_l": c["tau_l"] * (1 + 0.02 * np.cos(2 * c["theta_m"] + 0.3))}
 
 
 DIFFER = {two_gains: 2.0, two_constants: 8.0}  # %, between one way and the other
@@ -94,6 +98,16 @@ def test_readings_of_two_gains_are_told_and_not_named(
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law_said in found.law if (match := re.search(r"larger by (\S+) ± (\S+) %", law_said))]
     assert float(much[1]) == pytest.approx(DIFFER[law], abs=1.5 * float(much[2]))
+
+
+@pytest.mark.slow
+def test_gauges_that_feel_the_wave_generator_are_told_with_how_much(shared: Path, tmp_path: Path) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", sensor_ripple, (*SOME, "lock_60_1", "lock_60_2"))
+    told = CONFOUNDERS["sensor_ripple"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"turn by (\S+) ± (\S+) % of the torque", law))]
+    assert float(much[1]) == pytest.approx(2.0, abs=1.5 * float(much[2]))
 
 
 OF_THE_BLIND_PLANT: Final = ("growing_error", "stiffness_aging", "one_way_drag", "sensor_gain_temperature")

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import rig
+from rig.analysis.tracing.outcome.mean_drift import MeanDrift
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.outcome.ripple import Ripple
@@ -25,7 +26,15 @@ IN_ITS_NAME = {"_arcsec": "arcsec", "_hz": "Hz", "_Nm": "N·m"}
 def rippled() -> Trace:
     """One with a channel missing, a run that was left out and a law without a name."""
     ripple = Ripple("tau_m", 2, 8, 0.01, 1e-3, 1e-6, (1e-3, 1e-4), (0.01, 0.002))
-    return replace(made_up.unknown(), ripple=(ripple,), read=5, left_out=("torn",), law=("The spring gives more.",))
+    drift = MeanDrift("tau_l", 0.02, 0.001, 9)
+    return replace(
+        made_up.unknown(),
+        ripple=(ripple,),
+        mean_drift=(drift,),
+        read=5,
+        left_out=("torn",),
+        law=("The spring gives more.",),
+    )
 
 
 TRACES = {name: make() for name, make in made_up.ALL.items()} | {"rippled": rippled()}

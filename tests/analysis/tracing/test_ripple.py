@@ -89,7 +89,17 @@ def turning(rows_a_turn: float, torque):
     piece = SimpleNamespace(
         t=theta, theta_m=theta, tau_l=torque(theta), way=np.ones(theta.size), omega_m=np.full(theta.size, 70.0)
     )
-    return SimpleNamespace(pieces=(piece,), has=frozenset({"tau_l"}), locked=False, ratio=100.0, start=0.0)
+    return SimpleNamespace(pieces=(piece,), has=frozenset({"tau_l", "t"}), locked=False, ratio=100.0, start=0.0)
+
+
+@pytest.mark.parametrize(("declared", "way", "speed"), [(600.0, 1.0, 62.8), (600.0, -1.0, -62.8), (0.0, 1.0, 0.0)])
+def test_without_time_the_speed_is_what_is_declared(declared: float, way: float, speed: float):
+    run = turning(22.3, np.cos)
+    run.has, run.speed_rpm = frozenset({"theta_m", "tau_l"}), declared
+    run.pieces[0].way *= way
+    found = of_run(run, "tau_l")
+    assert found is not None
+    assert found.speed == pytest.approx(speed, abs=0.05)
 
 
 def test_orders_with_too_few_rows_a_turn_are_not_looked_for():

@@ -98,6 +98,11 @@ class Equations:
     noisy: dict[int, Recording] = field(default_factory=dict)  # a few runs with their own sensor noise once more
     stands_for: dict[Key, float] = field(default_factory=dict)  # rows all fitted runs have like it, over its own
 
+    @property
+    def timed(self) -> bool:
+        """Whether all runs have a time column: else rows have no known distance, and nothing a frequency."""
+        return all("t" in run.has for run in self.runs)
+
     def of(self, runs: Sequence[int]) -> list[Key]:
         """Keys of those runs, in order."""
         return [(i, c) for i in runs for c in CHANNELS if (i, c) in self.rows]

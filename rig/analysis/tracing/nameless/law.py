@@ -15,6 +15,9 @@ FAST: Final = 40.0  # rad/s of the motor, about its fastest run
 SEVERAL: Final = 6  # runs, with fewer a drift is whatever one of them has
 SOME: Final = 0.1  # share of the rows or of the torque that another way or sign must have
 WIDE: Final = 2.0  # fastest over slowest
+BOTH_ANGLES: Final = frozenset({"theta_m", "theta_l"})
+"""What a law that is made of the torque read needs, to be held against a wind-up that is read as well: by the torque
+sensor alone it would foretell that reading by itself, and as few as six columns then foretell anything."""
 LARGEST: Final = (2, 4)  # orders of the motor: two lobes and their square make most of every kinematic error
 
 
@@ -84,7 +87,7 @@ def sum_of(fit: Fit, says: str, scale: float, unit: str) -> Amount:
     return Amount(says, scale * float(fit.coefficients.sum()), fit.half_width(all_of_it), unit)
 
 
-def wave_of(fit: Fit, says: str, scale: float, unit: str) -> Amount:
-    """Amplitude of its first cosine and sine, times `scale`."""
-    amplitude, _ = harmonic(fit, "", unit, 0, scale)
+def wave_of(fit: Fit, says: str, scale: float, unit: str, first: int = 0) -> Amount:
+    """Amplitude of a cosine, the `first` of its coefficients, and of the sine behind it, times `scale`."""
+    amplitude, _ = harmonic(fit, "", unit, first, scale)
     return Amount(says, amplitude.value, (amplitude.ci95[1] - amplitude.ci95[0]) / 2, unit)

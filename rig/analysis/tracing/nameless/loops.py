@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import Nameless, OfTheTorqueSensor, torque_of
+from rig.analysis.tracing.nameless.law import BOTH_ANGLES, Nameless, OfTheTorqueSensor, torque_of
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.memory import follower, play
 
@@ -21,6 +21,7 @@ class Creep(Nameless):
     name: ClassVar[str] = "creep"
     in_short: ClassVar[str] = "a part of the wind-up comes seconds late"
     source: ClassVar[str] = "findley1976"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}
     remembers: ClassVar[bool] = True
     LAGS: Final = (0.7, 1.5, 4.0, 8.0, 20.0, 50.0)  # s: from a turn of the motor to a run, 2 to 3 times apart
 
@@ -76,6 +77,7 @@ class SensorLoop(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_loop"
     in_short: ClassVar[str] = "the torque sensor has hysteresis"
     source: ClassVar[str] = "kuhnen2003"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     remembers: ClassVar[bool] = True
     WIDTHS: Final = (0.5, 1.5, 4.0, 10.0, 25.0)  # N·m, half: from the swing of a slow run to that of a lock test
 

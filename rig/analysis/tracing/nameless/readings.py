@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.analysis.tracing.nameless.law import (
+    BOTH_ANGLES,
     SEVERAL,
     SOME,
     Amount,
@@ -16,6 +17,7 @@ from rig.analysis.tracing.nameless.law import (
     by_time,
     sum_of,
     torque_of,
+    wave_of,
     when,
 )
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
@@ -38,13 +40,38 @@ class SensorWaves(OfTheTorqueSensor):
         return {Port.READS_TAU_L: np.concatenate([wave(k * signals.theta_m) for k in self.ORDERS], 1)}
 
 
+class SensorRipple(OfTheTorqueSensor):
+    """The torque sensor's gauges feel the wave generator, the more the more they carry: waves of the motor's angle, and
+    the same waves times the torque      [taghirad1999]
+
+    A gauge on a flexspline that turns under it reads so; the orders are those of SensorWaves.
+    """
+
+    name: ClassVar[str] = "sensor_ripple"
+    in_short: ClassVar[str] = "the torque sensor has a ripple of the motor's angle"
+    source: ClassVar[str] = "taghirad1999"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs."""
+        return when(reach.runs >= SEVERAL)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Cosine and sine of every order in the reading, and both times the torque."""
+        waves = SensorWaves().columns(signals, ())[Port.READS_TAU_L]
+        return {Port.READS_TAU_L: np.concatenate([waves, waves * torque_of(signals)[:, None]], 1)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Twice a turn, of the torque."""
+        return wave_of(fit, "twice a motor turn by", 100, "% of the torque", 2 * SensorWaves.ORDERS.index(2) + 6)
+
+
 class SensorGainDrift(OfTheTorqueSensor):
     """The torque sensor's gain changes through the campaign: it reads T·(c_1·t + c_2·t²) too much   [taghirad1999]"""
 
     name: ClassVar[str] = "sensor_gain_drift"
     in_short: ClassVar[str] = "the torque sensor's gain changes through the campaign"
     source: ClassVar[str] = "taghirad1999"
-    needs: ClassVar[frozenset[str]] = frozenset({"t", "tau_l"})
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t", "tau_l"}
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, of several runs."""
@@ -65,6 +92,7 @@ class TwoGains(OfTheTorqueSensor):
     name: ClassVar[str] = "two_gains"
     in_short: ClassVar[str] = "the torque sensor has two gains"
     source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs."""
@@ -88,6 +116,7 @@ class SensorJump(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_jump"
     in_short: ClassVar[str] = "the torque sensor jumps where the torque turns round"
     source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     TURN: Final = 1.0  # N·m: within what runs without load swing by
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from rig.analysis.tracing.nameless.law import (
+    BOTH_ANGLES,
     FAST,
     SEVERAL,
     WIDE,
@@ -30,6 +31,7 @@ class EvenSpring(Nameless):
     name: ClassVar[str] = "even_spring"
     in_short: ClassVar[str] = "the spring is harder one way than the other"
     source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
@@ -45,7 +47,7 @@ class SpringDrift(Nameless):
     name: ClassVar[str] = "spring_drift"
     in_short: ClassVar[str] = "the stiffness changes through the campaign"
     source: ClassVar[str] = "tuttle1992"
-    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, of several runs."""
@@ -66,6 +68,7 @@ class SpringBySpeed(Nameless):
     name: ClassVar[str] = "spring_by_speed"
     in_short: ClassVar[str] = "the stiffness changes with the speed"
     source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where speeds differ."""

@@ -46,6 +46,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "over_floor_after": trace.ratios_after,
             "law": trace.law,
             "ripple": [r.document() for r in trace.ripple],
+            "mean_drift": [drift.document() for drift in trace.mean_drift],
         },
         "candidates": [asdict(candidate) for candidate in trace.candidates],
         "verdict": asdict(trace.verdict),

@@ -19,6 +19,7 @@ from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.laws import laws_in
+from rig.analysis.tracing.outcome.mean_drift import mean_drifts
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
@@ -63,6 +64,7 @@ def report(
         tried = candidates(p, found.ranking, before, conclusion.verdict.effects, confounded)
         tried = dismissed(tried, conclusion.verdict, first.pooled)
         refitted, ripple = honest(parameters.baseline(s), fitted_runs), ripples(p.campaign.runs)
+        drift = mean_drifts(p.campaign.runs)
         simulated, drawn = shown()
     named = [name for name in conclusion.verdict.effects if name in shares]
     return Trace(
@@ -89,10 +91,11 @@ def report(
             *beside_the_numbers(named),
             *(p.own.notes[name] for name in named if name in p.own.notes),
             *([one_way] if one_way else []),
-            *(r.sentence() for r in ripple),
+            *(told.sentence() for told in (*ripple, *drift)),
             *p.campaign.notes,
         ),
         ripple=ripple,
+        mean_drift=drift,
         curve=curve,
         law=laws_in(s) if curve else (),
         read=len(p.campaign.runs),

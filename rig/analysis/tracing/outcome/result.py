@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from rig.analysis.findings.result import Array
+from rig.analysis.tracing.outcome.mean_drift import MeanDrift
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
 
@@ -128,6 +129,7 @@ class Trace:
     cannot: tuple[str, ...]  # what this campaign cannot tell, one sentence each
     curves: dict[str, Array] = field(default_factory=dict)
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
+    mean_drift: tuple[MeanDrift, ...] = ()  # of torques from day to day, where a channel is missing
     curve: bool = False  # whether a curve or law without a name was added, in the verdict's coordinate
     law: tuple[str, ...] = ()  # the laws without a name that were, for people
     read: int = 0  # runs of the campaign that were read, standstill among them

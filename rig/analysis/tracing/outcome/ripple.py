@@ -5,7 +5,7 @@ What one angle and one torque can say without the rest. Of order k in a run at s
     ripple = Re[(c_0 + c_T·|T| + c_ω·ω²)·exp(jk(θ_m − ω·δ))]
 
 δ is how late the torque is read against the angle, the same for all orders; in a gear near its resonance the phase
-turns with speed by itself, and δ holds well below it only.
+turns with speed by itself, and δ holds well below it only. Where no row has a time ω is what the conditions declare.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ import numpy.typing as npt
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.quantiles import Z95
-from rig.model.effect import MEASURED, Array
+from rig.core.units import RPM
+from rig.model.effect import MEASURED, Array, Signals
 
 Complex = npt.NDArray[np.complex128]
 HIGHEST: Final = 24  # order
@@ -39,8 +40,8 @@ FLOOR: Final = 2.0  # N·m that a load must differ by at least
 
 @dataclass(frozen=True)
 class Seen:
-    """One run: mean speed rad/s, mean |torque| N·m, start s, phasors (HIGHEST,) N·m, their standard error; phasors are
-    NaN of orders that have too few rows a period."""
+    """One run: mean speed rad/s, 0 where it is not known, mean |torque| N·m, start s, phasors (HIGHEST,) N·m, their
+    standard error; phasors are NaN of orders that have too few rows a period."""
 
     speed: float
     load: float
@@ -98,7 +99,7 @@ def ripples(runs: Sequence[Recording]) -> tuple[Ripple, ...]:
     for channel in ("tau_l", "tau_m"):
         seen = [s for run in runs if (s := of_run(run, channel)) is not None] if channel in has else []
         if seen:
-            found += _laws(channel, seen, "t" in has)
+            found += _laws(channel, seen, all(s.speed for s in seen))
     return tuple(found)
 
 
@@ -124,7 +125,14 @@ def of_run(run: Recording, channel: str) -> Seen | None:
     phasors = np.full(HIGHEST, np.nan, dtype=np.complex128)
     phasors[:shown] = c[slow.shape[1] :][:shown] - 1j * c[slow.shape[1] :][shown:]
     error = float(np.std(left) * np.sqrt(2.0 / independent))
-    return Seen(float(piece.omega_m.mean()), float(abs(torque.mean())), run.start, phasors, error)
+    return Seen(_speed(run, piece), float(abs(torque.mean())), run.start, phasors, error)
+
+
+def _speed(run: Recording, piece: Signals) -> float:
+    """Of the motor, rad/s: as measured, as declared where there is no time, 0 where nobody says it."""
+    if "t" in run.has:
+        return float(piece.omega_m.mean())
+    return float(np.copysign(run.speed_rpm * RPM, piece.way.sum()))
 
 
 def _slow(output: Array, along: Array) -> Array:

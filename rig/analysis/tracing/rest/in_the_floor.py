@@ -83,7 +83,7 @@ def _in_channel(
 
 
 def _readings(train: Rest, channel: str) -> list[Home]:
-    waved = [_waves(train, sense) for sense in (*SENSES, *SWINGS)]
+    waved = [_waves(train, sense) for sense in (*SENSES, *SWINGS)] if train.timed else []
     homes = [Home("time_periodic", channel, 0.0, frequency_hz=w[1], read=w[0]) for w in waved if w is not None]
     if np.isfinite(train.at["load_angle"]).all():
         homes.append(Home("load_angle", channel, 0.0, read=in_columns(lambda r: powers(r.at["load_angle"]))))

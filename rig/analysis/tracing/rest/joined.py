@@ -36,7 +36,7 @@ class Rest:
     """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
     `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
     the other channels, and a little what all of this one, know of its coefficients, for each row. `own_zeros`: whether
-    every run has a zero of its own, as angles and a torque sensor do."""
+    every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known."""
 
     e: Array
     run: Array
@@ -45,6 +45,7 @@ class Rest:
     z: Array
     known: Array
     own_zeros: bool = True
+    timed: bool = True
 
     @cached_property
     def whole(self) -> Whole:
@@ -86,7 +87,7 @@ def rest(
     smooth = eq.runs[keys[0][0]].smoother
     left = np.concatenate([e[k] / floors[k] for k in keys])
     z, known = _beside(eq, keys, floors, channel) if beside else (np.zeros((left.size, 0)), np.zeros((0, 0)))
-    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M")
+    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M", eq.timed)
 
 
 def loudness(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> dict[str, float]:

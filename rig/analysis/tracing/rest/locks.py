@@ -52,20 +52,22 @@ def _followed(r: Rest) -> Home:
 
     own = share(torque[:, None] * (r.run[:, None] == np.unique(r.run)))
     heights = {float(f): share(torque[:, None] * waves(TURN * r.at["time"], f)) for f in _tried(r)}
-    frequency = max(heights, key=lambda f: heights[f])
-    height = heights[frequency]
+    frequency = max(heights, key=lambda f: heights[f], default=None)
+    height = 0.0 if frequency is None else heights[frequency]
     warm = r.at["temperature"]
     if np.isfinite(warm).all() and np.ptp(warm) > 0:
         by_warmth = share(np.stack([torque, torque * (warm - warm.mean())], 1))
         if by_warmth > PLAIN_ENOUGH * max(own, height):
             return Home("temperature", "A", by_warmth)
-    if PLAIN_ENOUGH * height > own:
+    if frequency is not None and PLAIN_ENOUGH * height > own:
         return Home("time_periodic", "A", height, frequency_hz=frequency)
     return Home("time", "A", own)
 
 
 def _tried(r: Rest) -> Array:
-    """Frequencies, Hz."""
+    """Frequencies, Hz; none where there is no time."""
+    if not r.timed:
+        return np.zeros(0)
     shortest = min(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run))
     return np.arange(SLOWEST / shortest, FASTEST, 1 / FINE / float(np.ptp(r.at["time"])))
 

@@ -44,7 +44,10 @@ SENSES: Final[Sequence[Sense]] = (lambda angle: np.ones(angle.size), lambda angl
 def ticking(
     eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], channels: Sequence[str] = WHOLE
 ) -> Home | None:
-    """The loudest such line of the fitted residuals, with its share of the unseen ones; None where there is none."""
+    """The loudest such line of the fitted residuals, with its share of the unseen ones; None where there is none, or
+    no time."""
+    if not eq.timed:
+        return None
     return largest(home for channel in channels for home in _in_channel(eq, fitted, unseen, channel))
 
 

@@ -109,6 +109,8 @@ def frequency(r: Rest, channel: str) -> Home | None:
 
 def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     """`seen`: a line in runs of differing speed."""
+    if not h.rest.timed:
+        return []
     found = [home for home in (seen, by_the_day(h, channel)) if home is not None]
     return found + [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
 
@@ -194,6 +196,7 @@ def smooth_term(
         np.concatenate([train.z, test.z]),
         train.known,
         found.own_zeros,
+        train.timed,
     )
     if found.read is None:
         return out

@@ -18,6 +18,7 @@ from rig.analysis.tracing.nameless.readings import (
     Droop,
     SensorGainDrift,
     SensorJump,
+    SensorRipple,
     SensorWaves,
     TwoConstants,
     TwoGains,
@@ -68,6 +69,12 @@ CONFOUNDERS: Final = {
         "feel the wave generator; cogging of the motor explains less, and no effect of the library explains it.",
         mimics=frozenset({"cogging_torque"}),
         searched=False,
+    ),
+    "sensor_ripple": Confounder(
+        SensorRipple(),
+        "motor_angle",
+        "The torque sensor reads waves of the motor's angle too much, of one height or in proportion to the torque, as "
+        "gauges do that feel the wave generator. No effect of the library does so.",
     ),
     "even_spring": Confounder(
         EvenSpring(),

@@ -111,8 +111,11 @@ def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
         where = home(p.eq, {key: e[key] for key in levels}, levels)
         coordinate = where[0].coordinate if where else "time"
         what = f"it lives in {coordinate.replace('_', ' ')}"
+    when = f"{found.since:.1f} and {found.until:.1f} s"
+    if not p.eq.timed:
+        when = f"rows {found.since * run.rate:.0f} and {found.until * run.rate:.0f}"
     sentence = (
-        f"Between {found.since:.1f} and {found.until:.1f} s {run.name} stands out in {channel}, which makes all of it "
+        f"Between {when} {run.name} stands out in {channel}, which makes all of it "
         f"{found.over:.1f} times its usual half second; {what}. It is in the floor, and no effect of the library "
         "explains it."
     )
