@@ -12,6 +12,7 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which reading is late
 READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
 STEADY, ON_AND_ON, EACH_RUN = 0.0, 1.0, 2.0  # of the third: whether it grows, and since when
+SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
 
 
@@ -46,10 +47,13 @@ class ChannelTimeSkew(Effect):
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Expansion points, for the sensors there are."""
+        """Expansion points, for the sensors there are. What grows is a zero that drifts, where all runs turn one way at
+        one speed."""
         sides = [side for side, reading in READING.items() if reading in reach.has]
         steady = [(side, step, STEADY) for side in sides for step in self.STEPS]
-        return (*steady, *((side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)))
+        various = reach.backwards > SOME or reach.fastest > WIDE * reach.slowest
+        growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)] if various else []
+        return (*steady, *growing)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG."""

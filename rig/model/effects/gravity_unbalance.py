@@ -10,6 +10,7 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.gloss import waved
 
+TORQUES: Final = frozenset({"tau_m", "tau_l"})  # one of which feels it
 NONE, THIRD = 0.0, 3.0  # of the second shape parameter: the overtone
 
 
@@ -32,9 +33,11 @@ class GravityUnbalance(Effect):
     MOST: Final = 0.5  # of the wave, its overtone: a square wave has a third
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Less than a sixth of an output turn looks like a trend, less than a half has no overtones."""
+        """Less than a sixth of an output turn looks like a trend, less than a half has no overtones; in angles alone a
+        weight is a runout."""
         flattened = ((1.0, THIRD),) if reach.load_turns > 1 / 2 else ()
-        return ((1.0, NONE), (2.0, NONE), *flattened) if reach.load_turns > 1 / 6 else ()
+        shown = reach.load_turns > 1 / 6 and bool(reach.has & TORQUES)
+        return ((1.0, NONE), (2.0, NONE), *flattened) if shown else ()
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the load angle, and of the overtone's."""

@@ -38,7 +38,7 @@ class NonlinearStiffness(Effect):
         """Knees within the torque reached; the gradual law also beyond."""
         gradual = [(EXPONENTIAL, t) for t in self.TORQUES if t < 2.0 * reach.torque]
         knees = [(KNEE, t) for t in self.TORQUES if t < 0.8 * reach.torque]
-        cubic = [(CUBIC, share * reach.torque) for share in self.CUBIC_AT]
+        cubic = [(CUBIC, share * reach.torque) for share in self.CUBIC_AT if reach.torque > 0]
         return (*gradual, *knees, *cubic)
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:

@@ -22,7 +22,7 @@ def test_the_noise_of_the_load_angle_is_in_the_torque_of_the_inertia_twice_diffe
     s = motion()
     t = s.dt * np.arange(s.t.size)
     wave = 1e-6 * np.sin(2 * np.pi * 10.0 * t)
-    torque = in_stand_ins({"theta_m": wave, "theta_l": wave, "tau_m": wave}, s, s.dt, locked=False)["tau_l"]
+    torque = in_stand_ins({"theta_m": wave, "theta_l": wave, "tau_m": wave}, s, s.dt, locked=False, timed=True)["tau_l"]
     middle = slice(500, -500)
     assert torque[middle] == pytest.approx(-s.gear.J_l * (2 * np.pi * 10.0) ** 2 * wave[middle], abs=1e-6)
 
@@ -30,7 +30,7 @@ def test_the_noise_of_the_load_angle_is_in_the_torque_of_the_inertia_twice_diffe
 def test_what_is_measured_has_its_own_noise_alone(rng: np.random.Generator) -> None:
     noise = rng.standard_normal(motion().t.size)
     read = dict.fromkeys(("theta_m", "theta_l", "tau_m", "tau_l"), noise)
-    assert in_stand_ins(read, motion(), motion().dt, locked=False) == {}
+    assert in_stand_ins(read, motion(), motion().dt, locked=False, timed=True) == {}
 
 
 @pytest.mark.slow

@@ -90,6 +90,8 @@ BASELINE: Final = (
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
 RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
 """Coefficients of derivatives by time."""
+WIND_UP: Final = ("compliance", "damping", "damping_2")
+"""Of the spring, in A."""
 NEEDS: Final[Mapping[str, frozenset[str]]] = {
     "A": frozenset({"theta_m", "theta_l"}),
     "M": frozenset({"tau_m"}),
@@ -97,6 +99,7 @@ NEEDS: Final[Mapping[str, frozenset[str]]] = {
     "L": frozenset({"tau_l"}),
 }
 """What has to be measured for a channel."""
+ROUNDING: Final = 1e-12  # relative
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 
 
@@ -128,6 +131,8 @@ class Rows:
         """Of these rows: they never change, and are fitted many times over."""
         z, y = self.z.mean(0), self.y.mean()
         apart = self.z - z
+        # of a constant, as the way is in a run that never turns back, rounding is left: it would be taken for a column
+        apart[:, np.sqrt(np.mean(apart**2, 0)) < ROUNDING * np.abs(z)] = 0.0
         return Sums(z, float(y), apart.T @ apart, apart.T @ (self.y - y))
 
 
@@ -193,6 +198,9 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
         made = [(y, z | {"gain": run.smoother(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])
+    if channel == "A" and run.look.rigid:
+        y = y - _believed_wind_up(run)
+        z[:, [names.index(name) for name in WIND_UP if name in names]] = 0.0
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
         z[:, names.index("J_m")] = 0.0
     return y, z, tuple(INDEX[name] for name in names)
@@ -201,6 +209,13 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
 def joined(parts: Sequence[Array]) -> Array:
     """One after the other, (n, ...); of one part no copy."""
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+
+def _believed_wind_up(run: Recording) -> Array:
+    """T/K of a run, pieces joined, all rows (n,), by what is declared of inertia and spring; 0 where nothing is: then
+    θ̃_p is what the kinematic error is at that speed."""
+    known = {"K", "J_l"} <= run.declared.keys()
+    return joined([run.smoother(piece.tau_l) * (known / piece.gear.K) for piece in run.pieces])
 
 
 def _shaken(run: Recording, alpha: Array) -> bool:
@@ -223,7 +238,9 @@ def _angle(s: Signals, f: Smoother, has: Has) -> Columns:
     columns |= {"compliance": f(s.tau_l), "damping": f(s.tau_l, 1), "damping_2": f(s.tau_l, 2)}
     columns |= {"mesh": f(s.theta_m, 1), "c_0": np.ones_like(y)}
     if "tau_l" not in has:  # what the load's bearings take is missing in T
-        columns |= {"B_l": f(s.theta_l, 1) / s.gear.K, "tau_cl": f(s.way) / s.gear.K}
+        columns |= {"tau_cl": f(s.way) / s.gear.K}
+        if "t" in has:  # else, beside the rate of the motor's angle, it would be that of θ̃ itself
+            columns |= {"B_l": f(s.theta_l, 1) / s.gear.K}
     return y, columns
 
 

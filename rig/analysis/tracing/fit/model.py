@@ -17,6 +17,7 @@ from rig.model.effect import Array
 
 STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle
 BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
+UNSEEN = 1e-12  # of the normal matrix' diagonal: what rounding leaves of a column that is a constant
 PINNED = 1e6  # times what the data know of it
 
 
@@ -264,7 +265,8 @@ def inverse(gram: Array) -> Array:
 def evened(gram: Array) -> tuple[Array, Array]:
     """A normal matrix with ones on its diagonal (p, p), and what its rows and columns were scaled by (p,), zero where
     nothing was measured."""
-    scale = np.where(np.diag(gram) > 0, 1 / np.sqrt(np.maximum(np.diag(gram), 1e-300)), 0.0)
+    seen = np.diag(gram) > UNSEEN
+    scale = np.where(seen, 1 / np.sqrt(np.where(seen, np.diag(gram), 1.0)), 0.0)
     scaled = gram * scale * scale[:, None]
     scaled[np.diag_indices_from(scaled)] += np.where(scale > 0, 1e-11, 1.0)
     return scaled, scale

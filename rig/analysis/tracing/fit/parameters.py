@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import Solution, extended, fit, prior, solve
+from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, prior, solve
 from rig.analysis.tracing.fit.refine import nudged
 from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
@@ -35,7 +35,7 @@ LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms 
 def baseline(s: Solution) -> tuple[Parameter, ...]:
     """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured."""
     c, out = covariance(s), []
-    seen = np.diag(s.gram) > 1e-12
+    seen = np.diag(s.gram) > UNSEEN
     stiff = 1 / s.value("compliance") if s.value("compliance") > 0 else np.nan
     if seen[INDEX["compliance"]] and np.isfinite(stiff):
         along = _unit(c, "compliance") * -(stiff**2)

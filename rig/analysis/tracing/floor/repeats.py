@@ -17,6 +17,7 @@ from rig.model.effect import Array
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
 SLIPS = 0.2  # the same of the speed of a locked run: a motor that sticks and slips goes back and forth now and then
 READINGS = 100  # of the angle of a locked run: a few for every stroke
+ONE_WAY = 0.9  # of the rows, less those the other way
 WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
 HOLE = 10.0  # usual distances between rows: further apart, there is nothing between them
 SOON = 3.0  # times the usual gap between repeats: later ones may have drifted
@@ -50,8 +51,8 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
 
 
 def alike(a: Recording, b: Recording) -> bool:
-    """Same words, and the same motion."""
-    if a.said != b.said or a.has != b.has or a.locked != b.locked:
+    """Same words, and the same motion, the same way round."""
+    if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
         return False
     close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
     ways = zip(travel(a), travel(b), close, strict=True)
@@ -67,6 +68,12 @@ def travel(run: Recording) -> tuple[float, float]:
     speed = float(np.mean([np.mean(np.abs(p.omega_m)) for p in run.pieces]))
     turning = abs(float(np.mean([np.mean(p.omega_m) for p in run.pieces]))) > 0.5 * speed
     return speed, speed if turning else high - low
+
+
+def _heading(run: Recording) -> int:
+    """1 or −1 of a run that turns one way, else 0: conditions may give a speed without its sign."""
+    way = float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
+    return 0 if run.locked or abs(way) < ONE_WAY else int(np.sign(way))
 
 
 def _gone(theta: Array) -> float:

@@ -36,7 +36,8 @@ class Rest:
     """What is left in one channel, all runs joined: residual over floor, run of each row, and coordinates by name.
     `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
     the other channels, and a little what all of this one, know of its coefficients, for each row. `own_zeros`: whether
-    every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known."""
+    every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known. `every`: one
+    of how many rows each is."""
 
     e: Array
     run: Array
@@ -46,6 +47,7 @@ class Rest:
     known: Array
     own_zeros: bool = True
     timed: bool = True
+    every: int = 1
 
     @cached_property
     def whole(self) -> Whole:
@@ -69,7 +71,8 @@ class Rest:
         """Every so many-th row of it, so that no more than `most` are left."""
         by = -(-self.e.size // most)
         at = {name: x[::by] for name, x in self.at.items()}
-        return replace(self, e=self.e[::by], run=self.run[::by], at=at, dt=self.dt * by, z=self.z[::by])
+        thin = replace(self, e=self.e[::by], run=self.run[::by], at=at, dt=self.dt * by, z=self.z[::by])
+        return replace(thin, every=self.every * by)
 
 
 def rest(

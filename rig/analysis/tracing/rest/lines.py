@@ -51,7 +51,8 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     x, e = x[good], (r.e * sense(r))[good]
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
-    rough = np.arange(max(SPAN[name][0], step), SPAN[name][1], step)
+    first = max(SPAN[name][0], step)
+    rough = np.arange(first, max(min(SPAN[name][1], _highest(r, r.at[name])), first + 2 * step), step)
     power = spectrum(x, e, rough)
     fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)
     near = np.array([fine, max(round(fine), 1)])
@@ -64,6 +65,14 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
 
     any_form = Home(name, channel, score(h, phase(r)) / h.total, order=k, read=in_bins(phase))
     return max(wave, any_form, key=lambda home: home.share)
+
+
+def _highest(r: Rest, x: Array) -> float:
+    """Order of the angle `x` (n,) beyond which the rows of all runs are more than half a period apart: there a drift
+    looks like a line."""
+    apart = [float(np.median(np.abs(np.diff(x[r.run == run])))) for run in np.unique(r.run) if (r.run == run).sum() > 1]
+    finest = min((step for step in apart if step > 0), default=0.0) / r.every
+    return TURN / 2 / finest if finest > 0 else float("inf")
 
 
 def _sharpened(x: Array, e: Array, order: float, step: float) -> float:

@@ -123,7 +123,7 @@ def record(whole_run: Run, start: float) -> Recording:
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
-        _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext)
+        _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
         for lo, hi in _joined(t, dt, breaks, steady)
     ]
     return Recording(
@@ -209,7 +209,15 @@ def _uniform(t: Array, x: Array, dt: float) -> Array:
 
 
 def _piece(
-    t: Array, c: dict[str, Array], dt: float, factor: int, smooth: Smoother, run: Source, start: float, tau_ext: float
+    t: Array,
+    c: dict[str, Array],
+    dt: float,
+    factor: int,
+    smooth: Smoother,
+    run: Source,
+    start: float,
+    tau_ext: float,
+    timed: bool,
 ) -> Signals | None:
     """One piece at the working rate."""
     c = {name: _uniform(t, x, dt) for name, x in c.items()}
@@ -221,7 +229,7 @@ def _piece(
     n = c["theta_m"].size
     if n < 10 * smooth.half:
         return None
-    c = substituted(c, smooth.dt, run, tau_ext)
+    c = substituted(c, smooth.dt, run, tau_ext, timed)
     time = start + first + smooth.dt * np.arange(n)
     derived = _derived(c, smooth)
     return Signals(
@@ -279,7 +287,7 @@ def _knowing(piece: Signals, known: Known, is_wound: bool) -> Signals:
 def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signals:
     dt = run.smoother.dt
     added = {n: s * rng.standard_normal(piece.t.size) for n, s in run.noise.items() if hasattr(piece, n)}
-    added |= in_stand_ins(added, piece, dt, run.locked)
+    added |= in_stand_ins(added, piece, dt, run.locked, "t" in run.has)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, run.smoother)
     return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})

@@ -14,11 +14,12 @@ from rig.analysis.tracing.runs.wound import wound
 from rig.model.effect import Array, Known, Signals
 
 
-def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) -> dict[str, Array]:
+def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float, timed: bool) -> dict[str, Array]:
     """Stand-ins for readings that are not there, so that columns have something to lean on.
 
-    The shaft torque of a free load is what its declared inertia and weight take, that of a locked one what the wind-up
-    takes; one angle is the other's times N, and a locked output rests.
+    The shaft torque of a free load is what its declared inertia and weight take, the weight alone where no time tells
+    an acceleration; that of a locked one what the wind-up takes; one angle is the other's times N, and a locked output
+    rests.
     """
     out = dict(c)
     if not np.isfinite(out["theta_m"]).any():
@@ -31,12 +32,14 @@ def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float) 
     if is_locked(run):
         if told := wound(out["theta_m"], out["theta_l"], out["tau_m"], run.ratio, gear, dt):
             out["tau_l"] = told.torque
-    else:
+    elif timed:
         out["tau_l"] = gear.J_l * flat_rate(out["theta_l"], dt, 2) - tau_ext
+    else:
+        out["tau_l"] = np.full_like(out["theta_l"], -tau_ext)
     return out
 
 
-def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: bool) -> dict[str, Array]:
+def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: bool, timed: bool) -> dict[str, Array]:
     """What the noise of readings does to those `substituted` made of them: the torque of a load's inertia has its
     encoder's noise twice differentiated, that of a wind-up both encoders' times the spring."""
     out: dict[str, Array] = {}
@@ -49,7 +52,7 @@ def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: 
     angles = {**added, **out}
     if locked and "theta_m" in angles:
         out["tau_l"] = piece.gear.K * (angles["theta_m"] / piece.ratio - angles.get("theta_l", 0.0))
-    elif not locked and "theta_l" in angles:
+    elif not locked and timed and "theta_l" in angles:
         out["tau_l"] = piece.gear.J_l * flat_rate(angles["theta_l"], dt, 2)
     return out
 

@@ -35,7 +35,7 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
     if not rivals:
         return (), None
     asked = _by_information(p, best, close)
-    return rivals, asked or _by_table({names[0], *rivals})
+    return rivals, asked or by_table({names[0], *rivals})
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def _fitted(p: Prepared, proposal: Proposal) -> float:
     return sum(len(runs) + k in again.fitted for k in range(TWICE)) / TWICE
 
 
-def _by_table(pair: set[str]) -> NextRun:
+def by_table(pair: set[str]) -> NextRun:
     """What is known to separate some effects where no run of the catalogue is expected to by its numbers."""
     for members, procedure, conditions, why in DECIDERS:
         if len(members & pair) >= 2:

@@ -17,7 +17,8 @@ from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, Confounder, confounders_in
 from rig.analysis.tracing.selection.hidden import hidden
-from rig.analysis.tracing.selection.next_run import along, deciding
+from rig.analysis.tracing.selection.inseparable import inseparable
+from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_rest
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART, QUIET
@@ -167,6 +168,11 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
         return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
+    if twins := inseparable(names, frozenset().union(*(run.has for run in p.eq.runs))):
+        rivals, next_run = (
+            (*rivals, *(twin for twin in twins if twin not in rivals)),
+            next_run or by_table({*names, *twins}),
+        )
     sentence = lacks(names, before, after)
     if all(name in p.own.made and not p.own.made[name].keys() & p.held_out.floors.keys() for name in names):
         sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
