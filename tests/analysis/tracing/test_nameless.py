@@ -69,7 +69,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(weights=1) == {"oval_pulley"}
     assert everything - laws(runs=2) == {"spring_drift", "error_drift", "sensor_gain_drift", "sensor_ripple"}
-    assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed"}
+    assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
 
 
 def two_gains(c: Columns, began: float) -> Columns:

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.repeats import (
-    Scatter,
-)
+from rig.analysis.tracing.floor.repeats import Scatter
 from rig.analysis.tracing.thresholds import ZERO
 
+LEAST = 0.2  # of what a zero is believed to wander by: no wander that repeats show is smaller
 ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
 
 
@@ -19,11 +18,13 @@ def own_offset(s: Solution, channel: str, found: Sequence[Scatter], variance: fl
     """How far a run's offset lies from the others', beyond what noise does to a mean."""
     ratio = s.design.eq.runs[found[0].pair[0]].ratio
     least = {"A": np.inf, "M": ZERO / ratio, "L": ZERO}[channel]
+    if s.design.eq.runs[0].look.steady and channel == "M":
+        return LEAST * least
     if not np.isfinite(least) or len(found) < ENOUGH or found[0].pair[0] == found[0].pair[1]:
         return least
     gaps = [offset(s, a, channel) - offset(s, b, channel) for a, b in (pair.pair for pair in found)]
     excess = float(np.mean([gap**2 / 2 - variance / pair.rows for gap, pair in zip(gaps, found, strict=True)]))
-    return float(np.sqrt(max(excess, (0.2 * least) ** 2)))
+    return float(np.sqrt(max(excess, (LEAST * least) ** 2)))
 
 
 def own_angle(s: Solution, pairs: Sequence[tuple[int, int]], least: float) -> float:

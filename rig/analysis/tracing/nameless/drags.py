@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, SOME, Amount, Nameless, sum_of, wave_of, when
+from rig.analysis.tracing.nameless.law import FAST, SOME, WIDE, Amount, Nameless, sum_of, wave_of, when
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
@@ -32,6 +32,35 @@ class UnevenDrag(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Between the ways."""
         return sum_of(fit, "forward the drag at 40 rad/s is larger by", 2000, "mN·m")
+
+
+class SlowingDrag(Nameless):
+    """Drag that grows with less than the speed, as a grease does that thins where it is sheared: c·|ω_m/ω_r|^p·sgn ω_m,
+    p < 1      [wolf2018]"""
+
+    name: ClassVar[str] = "slowing_drag"
+    in_short: ClassVar[str] = "drag grows with less than the speed"
+    source: ClassVar[str] = "wolf2018"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+    shape_names: ClassVar[tuple[str, ...]] = ("power",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """Powers: of a film between lip and shaft, of grease in a rolling contact, of one that hardly thins."""
+        return when(reach.fastest > WIDE * reach.slowest, (0.5,), (2 / 3,), (0.8,))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        speed = signals.omega_m / FAST
+        return {Port.MOTOR_TORQUE: (np.sign(speed) * np.abs(speed) ** shape[0])[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """At speed, beside what grows with it."""
+        return sum_of(fit, "at 40 rad/s, beside what grows with the speed, it is", 1000, "mN·m")
+
+    def plausible(self, fit: Fit) -> bool:
+        """It brakes: with the other sign it is friction that falls near rest."""
+        return bool(fit.coefficients[0] > 0)
 
 
 class SectorDrag(Nameless):

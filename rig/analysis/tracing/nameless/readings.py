@@ -23,6 +23,8 @@ from rig.analysis.tracing.nameless.law import (
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
+TOLD: Final = 2  # different weights
+
 
 class SensorWaves(OfTheTorqueSensor):
     """The torque sensor feels the wave generator: it reads waves of the motor's angle too much      [taghirad1999]
@@ -142,6 +144,10 @@ class Droop(Nameless):
     in_short: ClassVar[str] = "the torque constant falls with the current"
     source: ClassVar[str] = "krause2013"
 
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where something else tells the torque."""
+        return when(_is_told(reach))
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
         torque = np.nan_to_num(signals.tau_m)
@@ -156,8 +162,8 @@ class TwoConstants(Nameless):
     source: ClassVar[str] = "krause2013"
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where there is torque of both signs."""
-        return when(reach.pulled > SOME)
+        """One, where there is torque of both signs, and something else tells it."""
+        return when(reach.pulled > SOME and _is_told(reach))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
@@ -166,3 +172,9 @@ class TwoConstants(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Relative."""
         return sum_of(fit, "for positive torque the reading is larger by", 200, "%")
+
+
+def _is_told(reach: Reach) -> bool:
+    """Whether a sensor or different weights tell the torque that the motor's is held against: of friction alone any law
+    of the motor's torque would foretell itself."""
+    return "tau_l" in reach.has or reach.weights >= TOLD

@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
-from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
+from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
@@ -133,6 +133,12 @@ CONFOUNDERS: Final = {
         SpringBySpeed(),
         "speed",
         "The same torque winds the gear up by more or less at speed. No effect of the library does so.",
+    ),
+    "slowing_drag": Confounder(
+        SlowingDrag(),
+        "speed",
+        "The motor's drag grows with less than the speed, as of a grease that thins where it is sheared. No effect of "
+        "the library does so.",
     ),
     "sector_drag": Confounder(
         SectorDrag(),
