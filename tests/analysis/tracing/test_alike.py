@@ -1,4 +1,4 @@
-"""Which runs are repeats: the same motion, whatever a motor trembles on and however it sticks and slips."""
+"""Which runs are repeats: the same motion under the same torque, whatever a motor trembles on and how it sticks."""
 
 from __future__ import annotations
 
@@ -21,6 +21,27 @@ def lock_test(reach: float, seconds: float, seed: int) -> Any:
     theta = slips + 1e-4 * rng.integers(0, 2, t.size)
     piece = SimpleNamespace(theta_m=theta, omega_m=np.gradient(theta, DT), t=t, dt=DT)
     return SimpleNamespace(said="stiffness_lock", has=frozenset(), locked=True, pieces=(piece,))
+
+
+def turning(speed: float, torque: float = 0.0) -> Any:
+    """A run of 10 s at `speed` rad/s of the motor; the torque sensor says `torque` N·m."""
+    t = np.arange(0.0, 10.0, DT)
+    piece = SimpleNamespace(
+        theta_m=speed * t, omega_m=np.full(t.size, speed), way=np.full(t.size, np.sign(speed)), t=t, dt=DT
+    )
+    return SimpleNamespace(
+        said="kinematic_error", has=frozenset({"tau_l"}), locked=False, mean_torque=torque, pieces=(piece,)
+    )
+
+
+def test_runs_of_one_speed_are_repeats_but_not_of_opposite_ways() -> None:
+    assert alike(turning(3.0), turning(3.01))
+    assert not alike(turning(3.0), turning(-3.0))
+
+
+def test_runs_under_another_torque_are_none_whatever_their_words() -> None:
+    assert alike(turning(3.0, 20.0), turning(3.0, 20.5))
+    assert not alike(turning(3.0, 20.0), turning(3.0, 40.0))
 
 
 def test_lock_tests_that_slip_at_other_instants_are_repeats() -> None:

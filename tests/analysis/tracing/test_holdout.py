@@ -17,7 +17,14 @@ from tests.analysis.tracing.test_few_channels import reduced
 def run(speed: float, start: float) -> Any:
     """A run of 10 s at `speed` rad/s."""
     t = np.arange(2500) * 0.004
-    piece = SimpleNamespace(theta_m=speed * t, omega_m=np.full(t.size, speed), tau_ext=np.zeros(t.size), t=t, dt=0.004)
+    piece = SimpleNamespace(
+        theta_m=speed * t,
+        omega_m=np.full(t.size, speed),
+        way=np.ones(t.size),
+        tau_ext=np.zeros(t.size),
+        t=t,
+        dt=0.004,
+    )
     said = f"kinematic_error [('speed', {speed})]"
     return SimpleNamespace(
         locked=False,

@@ -71,7 +71,7 @@ def test_how_far_a_zero_wanders_is_read_the_same_whatever_is_believed_of_it(wand
         (i, "L"): SimpleNamespace(y=zero + 0.01 * rng.standard_normal(500), z=np.zeros((500, 1)), at=(0,))
         for i, zero in enumerate(zeros)
     }
-    runs = [SimpleNamespace(ratio=50.0) for _ in zeros]
+    runs = [SimpleNamespace(ratio=50.0, look=SimpleNamespace(steady=False)) for _ in zeros]
     noise = Noise({"L": 0.01}, {"L": 1.0}, {"L": wanders})
     eq = SimpleNamespace(rows=rows, own={}, runs=runs, noise=noise)
     s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), x=np.zeros(1))

@@ -17,6 +17,7 @@ from rig.model.effect import Array
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
 SLIPS = 0.2  # the same of the speed of a locked run: a motor that sticks and slips goes back and forth now and then
 READINGS = 100  # of the angle of a locked run: a few for every stroke
+SAME_LOAD = 1.0  # N·m, how far the means of repeats lie apart: zeros of a sensor, friction that scatters
 ONE_WAY = 0.9  # of the rows, less those the other way
 WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
 HOLE = 10.0  # usual distances between rows: further apart, there is nothing between them
@@ -51,8 +52,10 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
 
 
 def alike(a: Recording, b: Recording) -> bool:
-    """Same words, and the same motion, the same way round."""
+    """Same words, and the same motion, the same way round and under the same torque: words may leave both out."""
     if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
+        return False
+    if "tau_l" in a.has and not np.isclose(a.mean_torque, b.mean_torque, rtol=CLOSE, atol=SAME_LOAD):
         return False
     close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
     ways = zip(travel(a), travel(b), close, strict=True)
@@ -72,8 +75,10 @@ def travel(run: Recording) -> tuple[float, float]:
 
 def _heading(run: Recording) -> int:
     """1 or −1 of a run that turns one way, else 0: conditions may give a speed without its sign."""
+    if run.locked:
+        return 0
     way = float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
-    return 0 if run.locked or abs(way) < ONE_WAY else int(np.sign(way))
+    return 0 if abs(way) < ONE_WAY else int(np.sign(way))
 
 
 def _gone(theta: Array) -> float:

@@ -16,7 +16,8 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.told_once import Said
 
 LEAST: Final = 0.5  # N·m, a weight
-FRICTION: Final = 2.0  # times what a quiet quarter of the runs carries: friction and drag at speed
+FRICTION: Final = 3.0  # times what the quietest runs carry: friction, and drag at speed
+QUIETEST: Final = 0.1  # of the runs: under a sweep of loads a quarter is not without one
 SAME: Final = 0.03  # relative: repeats with one weight on differ by less
 SAME_LEAST: Final = 0.1  # N·m, the same of a small one
 
@@ -27,7 +28,7 @@ def weighed(runs: Sequence[Recording]) -> tuple[list[Recording], list[Said]]:
     unsaid = [r for r in free if not r.load_stated]
     if not unsaid:
         return list(runs), []
-    friction = FRICTION * float(np.quantile([abs(r.mean_torque) for r in free], 0.25))
+    friction = FRICTION * float(np.quantile([abs(r.mean_torque) for r in free], QUIETEST))
     heavy = [r for r in unsaid if abs(r.mean_torque) > LEAST + friction * _one_way(r)]
     weights = _in_groups({r.name: -r.mean_torque for r in heavy})
     said = [
