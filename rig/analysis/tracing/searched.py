@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
 from rig.analysis.tracing.fit.encoder_lines import with_lines
+from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found, relawed, still
 from rig.analysis.tracing.fit.some import search_some, some
@@ -33,12 +35,8 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     ]
     # what hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and done with
     bank = fill(some(p.eq.afresh(), runs), candidates, runs, covered)
-    found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet)
-    give_back()
-    again, found = _again(p, found, bank, covered)
-    give_back()
     calm = quiet or is_calm(p)
-    selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
+    selected, found = _selected(p, start, bank, covered, quiet, calm)
     if not quiet:
         selected = select_further(selected, found, bank, runs, covered)
     if calm and not is_certain(selected):
@@ -49,7 +47,29 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     return selected, replace(found, ranking=of_the_library(found.ranking))
 
 
-def _again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepared, Found]:
+def _selected(
+    p: Prepared, start: Solution, bank: Bank, covered: Reach, quiet: bool, calm: bool, but: frozenset[str] = frozenset()
+) -> tuple[Selected, Found]:
+    """What stands of a search through the bank `but` for some effects, and what it found."""
+    runs = p.split.fitted
+    found = search_some(start.design, bank, runs, covered, p.floors, quiet=quiet, excluded=but)
+    give_back()
+    let_go = bool(_remembering(found.solution.design.terms))
+    again, found = _again(p, found, bank, covered, but)
+    give_back()
+    selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
+    if let_go and not _remembering(selected.solution.design.terms):
+        # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
+        return _selected(p, start, bank, covered, quiet, calm, _remembering(bank.terms))
+    return selected, found
+
+
+def _remembering(terms: Sequence[Term]) -> frozenset[str]:
+    """Effects that remember: their state when a run begins is unknown, and its zero free beside them."""
+    return frozenset(term.name for term in terms if term.effect.remembers)
+
+
+def _again(p: Prepared, found: Found, bank: Bank, covered: Reach, but: frozenset[str]) -> tuple[Prepared, Found]:
     """What each run has to itself and the floor, looked for beside the effects that were found, and what they uncover.
 
     A large effect in the model's want hides lost counts, looks like them, and makes repeats differ.
@@ -57,7 +77,8 @@ def _again(p: Prepared, found: Found, bank: Bank, covered: Reach) -> tuple[Prepa
     if not found.solution.design.terms:
         return p, found
     again, s = beside(p, found.solution, covered, found.rough)
-    return again, search_some(s.design, bank, p.split.fitted, covered, again.floors, ranking=found.ranking)
+    runs = p.split.fitted
+    return again, search_some(s.design, bank, runs, covered, again.floors, ranking=found.ranking, excluded=but)
 
 
 def beside(p: Prepared, s: Solution, covered: Reach, rough: bool = False) -> tuple[Prepared, Solution]:
@@ -71,7 +92,7 @@ def beside(p: Prepared, s: Solution, covered: Reach, rough: bool = False) -> tup
     same = rough and not eq.own and not columns
     with_own = s if same else fit(design(replace(eq, own=columns), s.design.terms, runs))
     measured = quieter(p.measured, measure(with_own, runs))
-    if any(term.effect.remembers for term in s.design.terms):
+    if _remembering(s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
     again = replace(built(p.campaign, p.split, eq, measured, own), first=p.first)
     return again, relawed(fit(design(again.eq, s.design.terms, runs)), runs, covered)
