@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
+from rig.analysis.tracing.fit.leaning import carrying
 from rig.analysis.tracing.fit.learnt import learnt
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
@@ -70,9 +71,11 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
 
 
 def built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured, own: Own) -> Prepared:
-    """With baseline and held-out blocks beside the floor `measured`; `bare` are the equations without any `own`."""
+    """With baseline and held-out blocks beside the floor `measured`; `bare` are the equations without any `own`. What
+    effects take of a load is no business of the baseline's."""
     bare = replace(bare, noise=measured.noise, own={})
     eq = replace(bare, own=own.columns())
+    bare = carrying(bare, ())
     baseline = fit(design(bare, (), parts.fitted))
     return Prepared(
         campaign, parts, bare, eq, measured, measured, baseline, held_out_blocks(eq, measured, parts.held_out), own

@@ -17,6 +17,7 @@ SETTLING: Final = 0.05  # s left out of the torque equations on both sides of a 
 MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque sensor: twice the paper's kind of gear
 SECOND: Final = 1e-6  # s², (B_sp/K)²: a damping ratio of 5 % at 16 Hz, the second order of the spring's damping
 LATEST: Final = 1e-3  # s, how late at most; and no sensor is early
+HEAVIER: Final = 0.25  # kg·m², by how much a load nobody stated is likely to differ from what it was taken for
 LAG: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530 Hz, first order
 ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
 

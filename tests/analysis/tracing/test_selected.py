@@ -25,6 +25,7 @@ def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: py
     monkeypatch.setattr(selected, "_own_kept", lambda p, s: (p, s))
     monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: s)
     monkeypatch.setattr(selected, "design", lambda eq, terms, runs: SimpleNamespace(eq=eq, terms=terms))
+    monkeypatch.setattr(selected, "carrying", lambda eq, terms: eq)
     monkeypatch.setattr(selected, "fit", lambda d: SimpleNamespace(design=d))
     monkeypatch.setattr(selected, "unseen", lambda s, at: f"held out {s.design.eq}")
     nothing: Any = None

@@ -34,6 +34,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.fit.holding import holds
+from rig.analysis.tracing.fit.unread_load import beside_load
 from rig.analysis.tracing.runs.declared import UNKNOWN
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.resolution import COARSE
@@ -86,9 +87,10 @@ BASELINE: Final = (
     "tau_l0",
     "lag",
     "gain",
+    "inertia",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
-RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag"})
+RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag", "inertia"})
 """Coefficients of derivatives by time."""
 WIND_UP: Final = ("compliance", "damping", "damping_2")
 """Of the spring, in A."""
@@ -100,6 +102,7 @@ NEEDS: Final[Mapping[str, frozenset[str]]] = {
 }
 """What has to be measured for a channel."""
 ROUNDING: Final = 1e-12  # relative
+LIGHTEST: Final = 0.1  # of a load's inertia as believed before: what one fit may make of it
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 
 
@@ -159,6 +162,14 @@ def rows(run: Recording, channel: str) -> Rows:
     return Rows(y[keep], z[:, shared], places, keep, theta_m[keep], np.hstack([z[:, ~shared], own]))
 
 
+def again(run: Recording, channel: str, before: Rows) -> Rows:
+    """The same rows, made of what is known of the gear by now."""
+    y, z, at = unmasked(run, channel)
+    shared, y, z = shared_columns(run, channel, at), y[before.keep], z[before.keep]
+    places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
+    return Rows(y, z[:, shared], places, before.keep, before.theta_m, np.hstack([z[:, ~shared]]))
+
+
 def _own(run: Recording) -> Array:
     """T of a lock test, pieces joined, all rows (n, 1). A torque sensor's gain is good to some tenths of a per cent, a
     motor's torque constant to less, and both drift: at such torques that is several floors of M, and what of it lies
@@ -196,9 +207,11 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
         made = [_wound(y, z, piece, run.smoother) for (y, z), piece in zip(made, run.pieces, strict=True)]
     if run.look.gain and channel in "MR" and "tau_l" in run.has:
         made = [(y, z | {"gain": run.smoother(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
+    if run.load_unread and channel in "AM":
+        made = [beside_load(channel, *m, p, run) for m, p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
     names = tuple(made[0][1])
-    if channel == "A" and run.look.rigid:
+    if channel == "A" and run.look.rigid and not run.carries:
         y = y - _believed_wind_up(run)
         z[:, [names.index(name) for name in WIND_UP if name in names]] = 0.0
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
@@ -320,7 +333,7 @@ def known_of(values: Mapping[str, float], before: Known = UNKNOWN) -> Known:
         K=stiffness,
         B_sp=damping_of(values["damping"], stiffness, values["lag"]) if measured else before.B_sp,
         J_m=values["J_m"] if values["J_m"] > 0 else before.J_m,
-        J_l=values["J_l"] if values["J_l"] > 0 else before.J_l,
+        J_l=values["J_l"] if values["J_l"] > 0 else max(before.J_l + values["inertia"], LIGHTEST * before.J_l),
         torque_zero=values["tau_l0"],
         tau_c=max(values["tau_c"], 0.0),
         B_m=max(values["B_m"], 0.0),

@@ -110,4 +110,4 @@ def _passed_on(first: Mark, s: Signals, has: frozenset[str], is_wound: bool) -> 
             yield "M", s.gear.J_m * s.ratio * column, order + 2
     if channel == "L" and "tau_l" not in has:
         yield "A", column / s.gear.K, order
-        yield "M", column / s.ratio, order
+        yield "M", column * (1.0 / s.ratio - s.series_slope)[:, None], order

@@ -26,3 +26,11 @@ def learnt(s: Solution) -> Known:
     left = float(np.sqrt(np.mean(np.concatenate(loads) ** 2))) if loads else 0.0
     known = left < LOUD * s.design.eq.noise.sigma["L"]
     return now if known else replace(now, torque_zero=before.torque_zero)
+
+
+def change(before: Known, now: Known) -> float:
+    """Relative, of what effects lean on."""
+    a, b = before.kinematic_error, now.kinematic_error
+    old = np.array([*a.a, *a.b])
+    series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
+    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1))

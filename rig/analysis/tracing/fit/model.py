@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.fit.equations import Bare, Equations, Key, Term
-from rig.analysis.tracing.thresholds import CLEAR, LAG, LATEST, MESH, SECOND
+from rig.analysis.tracing.thresholds import CLEAR, HEAVIER, LAG, LATEST, MESH, SECOND
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
@@ -208,11 +208,12 @@ def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, 
 
 
 def prior(size: int, stiffness: float = STIFFNESS) -> Array:
-    """Information (size,) known beforehand: the three columns that may only be small."""
+    """Information (size,) known beforehand: the columns that may only be small."""
     out = np.zeros(size)
     out[INDEX["mesh"]] = (stiffness / MESH) ** 2
     out[INDEX["damping_2"]] = (stiffness / SECOND) ** 2
     out[INDEX["lag"]] = 1 / LAG**2
+    out[INDEX["inertia"]] = 1 / HEAVIER**2
     return out
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS
 from rig.analysis.tracing.fit.equations import Key, Term
-from rig.analysis.tracing.fit.learnt import learnt
-from rig.analysis.tracing.fit.model import Design, Solution, extended, fit, without
+from rig.analysis.tracing.fit.leaning import leaning
+from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, without
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
 from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
-from rig.model.effect import Array, Fit, Known, Reach
+from rig.model.effect import Array, Fit, Reach
 
 ROUNDS = 4
 SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
@@ -102,11 +102,13 @@ def search(
     above the floor."""
     s = fit(d)
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, excluded)
-    first, of_baseline = len(BASELINE), dict[str, Array]()
+    first, of_baseline, rows = len(BASELINE), dict[str, Array](), d.eq.rows
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
         if still(s, floors) and not (quiet and not s.design.terms):
             break
+        if d.eq.rows is not rows:  # the baseline's own columns are others now
+            of_baseline, rows = {}, d.eq.rows
         u = cross(bank, d, keys, first if of_baseline else 0)  # of terms anew: what they lean on has changed
         u = {c: np.vstack([of_baseline[c], m]) for c, m in u.items()} if of_baseline else u
         of_baseline = {c: m[:first] for c, m in u.items()}
@@ -173,13 +175,12 @@ def still(s: Solution, floors: Mapping[Key, float]) -> bool:
 def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
     for _ in range(ROUNDS):
-        d, before = s.design, s.design.eq.runs[runs[0]].pieces[0].gear
-        now = learnt(s)
-        if change(before, now) < SETTLED:
+        d = s.design
+        eq = leaning(d.eq, s, SETTLED)
+        if eq is d.eq:
             break
         terms = d.terms
-        d = reduced(d, range(len(terms)))
-        d = replace(d, eq=d.eq.knowing(now))
+        d = replace(reduced(d, range(len(terms))), eq=eq) if eq.rows is d.eq.rows else design(eq, (), runs)
         for term in terms[:-1]:
             d = extended(d, term, runs)
         s = refine(d, terms[-1], runs, covered)[1]
@@ -211,14 +212,6 @@ def relawed(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
 def _chosen(term: Term) -> tuple[float, ...]:
     """The part of the shape that a refit does not move."""
     return tuple(v for v, loose in zip(term.shape, term.effect.loose, strict=True) if not loose)
-
-
-def change(before: Known, now: Known) -> float:
-    """Relative, of what effects lean on."""
-    a, b = before.kinematic_error, now.kinematic_error
-    old = np.array([*a.a, *a.b])
-    series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
-    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1))
 
 
 def _new(term: Term, s: Solution) -> bool:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.channels import CHANNELS, Rows
 from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.fit.leaning import carrying, terms_of
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import Found, Scored, ranking_beside, search
 from rig.analysis.tracing.runs.recording import Recording
@@ -92,8 +93,9 @@ def search_some(
     found = search(few, bank, runs, tuple(few.y), covered, floors, **how)
     if found.solution.design.terms == d.terms:
         return replace(found, solution=fit(d))
-    s = _of_all(found.solution, d.eq, runs)
-    return replace(found, solution=s if whole else fit(design(s.design.eq, s.design.terms, runs)), rough=not whole)
+    s, same = _of_all(found.solution, d.eq, runs)
+    again = s if whole and same else fit(design(s.design.eq, s.design.terms, runs))
+    return replace(found, solution=again, rough=not whole)
 
 
 def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach) -> tuple[Scored, ...]:
@@ -109,10 +111,11 @@ def _few(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
     return (replace(d, eq=eq) if whole else design(eq, d.terms, runs)), whole
 
 
-def _of_all(s: Solution, eq: Equations, runs: Sequence[int]) -> Solution:
-    """A solution with all rows of `eq`, and what is known of the gear by now."""
-    known = s.design.eq.runs[runs[0]].pieces[0].gear
-    return replace(s, design=replace(s.design, eq=eq.knowing(known)))
+def _of_all(s: Solution, eq: Equations, runs: Sequence[int]) -> tuple[Solution, bool]:
+    """A solution with all rows of `eq`, and what is known of the gear by now; whether its own columns are the same."""
+    known = eq.knowing(s.design.eq.runs[runs[0]].pieces[0].gear)
+    whole = carrying(known, terms_of(s))
+    return replace(s, design=replace(s.design, eq=whole)), whole.rows is eq.rows
 
 
 def stretches(eq: Equations, run: int, share: float) -> Stretches:

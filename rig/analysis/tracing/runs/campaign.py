@@ -15,7 +15,7 @@ from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
-from rig.analysis.tracing.runs.rigid import no_spring
+from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
@@ -92,6 +92,8 @@ def read_campaign(folder: Path) -> Campaign:
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))
     if no_spring(runs):
         runs = [replace(run, look=replace(run.look, rigid=True)) for run in runs]
+    elif unweighed_inertia(runs):
+        runs = [replace(run, look=replace(run.look, inertia=True)) for run in runs]
     left = {place.name for place in places} | {said.run for said in nameless}
     left -= {run.name for run in runs}
     return Campaign(

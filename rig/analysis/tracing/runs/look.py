@@ -14,4 +14,5 @@ class Look:
     gain: bool = False  # its motor torque beside a gain that all runs share: nobody knows a torque constant well
     steady: bool = False  # the mean of its motor torque is no run's own
     rigid: bool = False  # its wind-up is what is believed of the gear: nothing in these runs tells it
+    inertia: bool = False  # its torque beside the inertia of the load, which nobody stated and no sensor weighs
     zeros: bool = False  # its zeros are those of all others, but for what its speed makes of them

@@ -18,7 +18,7 @@ from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet, smallest_step
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.runs.stand_ins import in_stand_ins, rewound, substituted
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, substituted
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE
 from rig.core.errors import UsageError
 from rig.core.once import Once
@@ -71,6 +71,16 @@ class Recording(Once):
         return unread and any(bool(np.isfinite(piece.tau_l[0])) for piece in self.pieces)
 
     @property
+    def load_unread(self) -> bool:
+        """Whether its shaft torque is what the load takes, as far as that is known, and the motor's tells how much."""
+        return "tau_l" not in self.has and not self.locked and {"theta_m", "theta_l", "tau_m"} <= self.has
+
+    @property
+    def carries(self) -> bool:
+        """Whether effects found in the load are part of that."""
+        return any(piece.carried is not None and bool(np.any(piece.carried)) for piece in self.pieces)
+
+    @property
     def duration(self) -> float:
         """s of recorded motion."""
         return float(sum(piece.t.size * piece.dt for piece in self.pieces))
@@ -98,8 +108,13 @@ class Recording(Once):
     def knowing(self, known: Known) -> Recording:
         """The same with what is known of the gear. What is made of the run itself leans on that where a sensor is
         missing."""
-        made = replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known, self.is_wound)))
+        made = replace(self, pieces=_each(self.pieces, lambda piece: _knowing(piece, known, self)))
         return made.made_as(self) if self.knows >= MEASURED else made
+
+    def carrying(self, taken: Callable[[Signals], Array | None]) -> Recording:
+        """The same, and its load takes what `taken` makes of each piece, N·m (n,), of a torque that nobody read."""
+        timed = "t" in self.has
+        return replace(self, pieces=_each(self.pieces, lambda piece: reloaded(piece, piece.gear, taken(piece), timed)))
 
 
 def record(whole_run: Run, start: float) -> Recording:
@@ -278,9 +293,11 @@ def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tu
     return tuple(out)
 
 
-def _knowing(piece: Signals, known: Known, is_wound: bool) -> Signals:
-    if is_wound:
+def _knowing(piece: Signals, known: Known, run: Recording) -> Signals:
+    if run.is_wound:
         return rewound(piece, known)
+    if run.look.inertia and known.J_l != piece.gear.J_l:
+        return reloaded(piece, known, piece.carried, "t" in run.has)
     return replace(piece, gear=known, torque=piece.torque + piece.gear.torque_zero - known.torque_zero)
 
 

@@ -39,6 +39,14 @@ def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float, 
     return out
 
 
+def reloaded(piece: Signals, known: Known, carried: Array | None, timed: bool) -> Signals:
+    """With the torque of a load as far as the gear is `known` by now, and what effects in the load take, (n,)."""
+    inertia = known.J_l * flat_rate(piece.theta_l, piece.dt, 2) if timed else 0.0
+    torque = inertia - piece.tau_ext if carried is None else inertia - piece.tau_ext + carried
+    rate = flat_rate(torque, piece.dt, 1)
+    return replace(piece, gear=known, carried=carried, tau_l=torque, torque=flat(torque), torque_rate=rate)
+
+
 def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: bool, timed: bool) -> dict[str, Array]:
     """What the noise of readings does to those `substituted` made of them: the torque of a load's inertia has its
     encoder's noise twice differentiated, that of a wind-up both encoders' times the spring."""

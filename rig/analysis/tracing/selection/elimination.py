@@ -8,9 +8,9 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import covariance
-from rig.analysis.tracing.fit.learnt import learnt
+from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
-from rig.analysis.tracing.fit.search import ROUNDS, as_fit, change, reduced
+from rig.analysis.tracing.fit.search import ROUNDS, as_fit, reduced
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
@@ -54,12 +54,10 @@ def _put_right(s: Solution) -> Solution:
     """With columns that lean on what the fit says now, where an eliminated effect had led them astray: beside a spring
     half as stiff as it is even a true effect has the wrong size."""
     for _ in range(ROUNDS):
-        eq = s.design.eq
-        before = eq.runs[0].pieces[0].gear
-        now = learnt(s)
-        if change(before, now) < ASTRAY:
+        eq = leaning(s.design.eq, s, ASTRAY)
+        if eq is s.design.eq:
             break
-        s = fit(design(eq.knowing(now), s.design.terms, sorted({run for run, _ in s.design.y})))
+        s = fit(design(eq, s.design.terms, sorted({run for run, _ in s.design.y})))
     return s
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.equations import Equations
+from rig.analysis.tracing.fit.leaning import carrying
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced
@@ -78,7 +79,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         )
     if not solution.design.terms and solution.design.eq is not p.eq:
         # what eliminated effects made of the gear, and with it of readings it stands in for, goes with them
-        solution = fit(design(p.eq, (), runs))
+        solution = fit(design(carrying(p.eq, ()), (), runs))
         held = unseen(solution, p.held_out)
     selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
     return _without_insignificant(selected, runs, covered)
