@@ -26,7 +26,7 @@ def beside_load(channel: str, y: Array, columns: dict[str, Array], s: Signals, r
     f, share = run.smoother, _share(channel, s)
     if s.carried is not None:
         y = y + f(s.carried * share)
-    if run.look.inertia:
+    if run.look.inertia and (run.carries or not run.look.rigid):
         columns = columns | {"inertia": f(s.alpha_l * share)}
     return y, columns
 

@@ -92,7 +92,7 @@ def read_campaign(folder: Path) -> Campaign:
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))
     if no_spring(runs):
         runs = [replace(run, look=replace(run.look, rigid=True)) for run in runs]
-    elif unweighed_inertia(runs):
+    if unweighed_inertia(runs):
         runs = [replace(run, look=replace(run.look, inertia=True)) for run in runs]
     left = {place.name for place in places} | {said.run for said in nameless}
     left -= {run.name for run in runs}

@@ -46,7 +46,7 @@ def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered:
     for end in ends:
         s = fit(reduced(found.solution.design, range(end, len(terms))))
         other = select(selected.p, replace(found, solution=s), runs, covered)
-        if stay < {term.name for term in other.solution.design.terms} and _left(other) < _left(selected):
+        if stay < {term.name for term in other.solution.design.terms} and other.left < selected.left:
             selected, stay = other, {term.name for term in other.solution.design.terms}
     return selected
 
@@ -152,8 +152,3 @@ def _in_all(selected: Selected) -> float:
     """RMS over floor of all channels of unseen runs together."""
     left = selected.p.held_out.residuals(selected.solution, selected.held)
     return selected.p.held_out.ratio(left, list(left))
-
-
-def _left(selected: Selected) -> float:
-    """RMS over floor of the worst channel on unseen runs."""
-    return selected.p.held_out.worst(selected.p.held_out.residuals(selected.solution, selected.held))[0]

@@ -25,7 +25,7 @@ from rig.analysis.tracing.selection.elimination import (
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.thresholds import MISSING, NAMED, PLAIN_TO_SEE, QUIET, VOUCHED_FOR
+from rig.analysis.tracing.thresholds import AS_WELL, MISSING, NAMED, PLAIN_TO_SEE, QUIET, VOUCHED_FOR
 from rig.model.effect import Array, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -51,6 +51,11 @@ class Selected:
     def fitted_runs(self) -> list[Recording]:
         """Those the fit has seen."""
         return [self.p.eq.runs[i] for i in self.p.split.fitted]
+
+    @property
+    def left(self) -> float:
+        """RMS over floor of the worst channel on unseen runs."""
+        return self.p.held_out.worst(self.p.held_out.residuals(self.solution, self.held))[0]
 
     @property
     def loud(self) -> bool:
@@ -82,7 +87,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution = fit(design(carrying(p.eq, ()), (), runs))
         held = unseen(solution, p.held_out)
     selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
-    return _without_insignificant(selected, runs, covered)
+    return _without_needless(_without_insignificant(selected, runs, covered), runs, covered)
 
 
 def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
@@ -106,6 +111,18 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         fewer = _without(selected, least.name, runs, covered)
         if (selected.loud or not fewer.loud) and len(fewer.scores) == len(selected.scores) - 1:
             return _without_insignificant(fewer, runs, covered)
+    return selected
+
+
+def _without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Of a load whose torque nobody read, without names that leave no more behind when they go: what came in beside a
+    spring and an inertia as they were believed to be may be needed no more beside those that are."""
+    if not any(run.load_unread and (run.look.inertia or run.carries) for run in selected.fitted_runs):
+        return selected
+    for least in sorted(selected.scores, key=lambda score: score.size):
+        fewer = _without(selected, least.name, runs, covered)
+        if len(fewer.scores) == len(selected.scores) - 1 and fewer.left < AS_WELL * selected.left:
+            return _without_needless(fewer, runs, covered)
     return selected
 
 
