@@ -89,7 +89,6 @@ def test_what_came_first_counts_where_it_leaves_less_and_loses_no_name(
     monkeypatch.setattr(further, "fit", lambda design: SimpleNamespace(design=design))
     monkeypatch.setattr(further, "reduced", lambda d, gone: SimpleNamespace(terms=d.terms[: min(gone)]))
     monkeypatch.setattr(further, "replace", lambda found, solution: SimpleNamespace(solution=solution))
-    monkeypatch.setattr(further, "_left", lambda one: one.left)
     p = SimpleNamespace(own=SimpleNamespace(line=None))
     selected: Any = SimpleNamespace(p=p, solution=model(stands), loud=True, left=2.0)
     found: Any = SimpleNamespace(solution=model(("a", "a", "b", "c", "d")), names=("a", "b", "c", "d"))

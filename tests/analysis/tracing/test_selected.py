@@ -16,7 +16,7 @@ def solution(eq: str, *terms: Any) -> Any:
 
 @pytest.mark.parametrize("astray", [True, False])
 def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: pytest.MonkeyPatch, astray: bool) -> None:
-    p: Any = SimpleNamespace(eq="as prepared", held_out=None)
+    p: Any = SimpleNamespace(eq="as prepared", held_out=None, split=SimpleNamespace(fitted=()))
     found: Any = SimpleNamespace(solution=solution("as searched", "an effect"), rough=False)
     none_left = solution("astray" if astray else p.eq)
     monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (none_left, "held", []))
@@ -55,3 +55,24 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     monkeypatch.setattr(selected, "_without", without)
     nothing: Any = None
     assert selected._without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == left
+
+
+@pytest.mark.parametrize(("unread", "left", "expected"), [(True, 1.01, ["weight"]), (True, 1.1, ["weight", "mode"]),
+                                                         (False, 1.01, ["weight", "mode"])])  # fmt: skip
+def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
+    monkeypatch: pytest.MonkeyPatch, unread: bool, left: float, expected: list[str]
+) -> None:
+    """A mode stood for an inertia that was not known yet; the weight is needed."""
+    size = {"weight": 9.0, "mode": 2.0}
+    run = SimpleNamespace(load_unread=unread, look=SimpleNamespace(inertia=True), carries=True)
+
+    def with_(names: list[str], left: float) -> Any:
+        scores = [SimpleNamespace(name=name, size=size[name]) for name in names]
+        return SimpleNamespace(scores=scores, left=left, names=names, fitted_runs=[run])
+
+    def without(of: Any, name: str, runs: object, covered: object) -> Any:
+        return with_([n for n in of.names if n != name], left if name == "mode" else 40.0)
+
+    monkeypatch.setattr(selected, "_without", without)
+    nothing: Any = None
+    assert selected._without_needless(with_(["weight", "mode"], 1.0), (), nothing).names == expected
