@@ -8,8 +8,9 @@ from functools import cached_property
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
 from rig.analysis.tracing.fit.leaning import carrying
-from rig.analysis.tracing.fit.learnt import learnt
+from rig.analysis.tracing.fit.learnt import change, learnt
 from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.search import ROUNDS, SETTLED
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
 from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
@@ -64,10 +65,23 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     eq = replace(eq, noise=measured.noise)
     eq = eq.knowing(learnt(s)).leaning_on_it()
     s = fit(design(eq, (), parts.fitted))
+    eq, s = _settled(eq, s, parts.fitted)
     own = find(s, parts)
     if columns := own.columns():
         s = fit(design(replace(eq, own=columns), (), parts.fitted))
     return built(campaign, parts, eq, measure(s, parts.fitted), own)
+
+
+def _settled(eq: Equations, s: Solution, runs: Sequence[int]) -> tuple[Equations, Solution]:
+    """Of a load whose torque nobody read, until what its friction and inertia do to the angle is what they do beside
+    the spring that is found: its columns are made with the one that was known before."""
+    for _ in range(ROUNDS if any(eq.runs[i].load_unread for i in runs) else 0):
+        now = learnt(s)
+        if change(eq.runs[runs[0]].pieces[0].gear, now) < SETTLED:
+            break
+        eq = eq.knowing(now).leaning_on_it()
+        s = fit(design(eq, (), runs))
+    return eq, s
 
 
 def built(campaign: Campaign, parts: Split, bare: Equations, measured: Measured, own: Own) -> Prepared:

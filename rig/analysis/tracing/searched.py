@@ -31,8 +31,6 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     tried = _filled(p, with_lines(covered, start, runs))
     calm = quiet or is_calm(p)
     selected, found, tried = _selected(p, start, tried, quiet, calm)
-    if not quiet:
-        selected = select_further(selected, found, tried.bank, runs, tried.covered)
     if calm and not is_certain(selected):
         found = Found(start, found.ranking)
         selected = select(p, found, runs, tried.covered)
@@ -70,9 +68,12 @@ def _selected(
     again, found, tried = _again(p, found, tried, but)
     give_back()
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, tried.covered)
+    if not quiet:
+        selected = select_further(selected, found, tried.bank, runs, tried.covered)
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
-        return _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
+        other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
+        return (selected, found, tried) if other[0].loud else other
     return selected, found, tried
 
 

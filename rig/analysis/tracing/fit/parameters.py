@@ -45,6 +45,9 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
         both += _unit(c, "compliance") * (2 * s.value("damping") * stiff - lag) * stiff**2
         out.append(_of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad"))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    if any(run.look.inertia for run in s.design.eq.runs):
+        known = s.design.eq.runs[0].pieces[0].gear.J_l + s.value("inertia")
+        out.append(_of("J_l", known, _unit(c, "inertia"), c, PLAIN["J_l"]))
     out = [_at_its_bound(s, p) if p.name == "lag" and p.value < NO_LAG else p for p in out]
     if seen[INDEX["a1"]]:
         out += [_order(s, c, n) for n in range(1, ORDERS + 1)]

@@ -51,13 +51,23 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
 def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     if "tau_l" in has or not runs:
         return []
-    inertia = runs[0].pieces[0].gear.J_l
     return [
-        f"No shaft torque: it was taken from a load inertia of {inertia:.3g} kg·m² and the weight as declared. "
-        "Stiffness and the motor's torque balance are in proportion to them; friction of the load counts as the "
+        f"No shaft torque: it was taken from {_loaded_by(runs[0])}; friction of the load counts as the "
         "motor's, a torque sensor's own errors cannot be seen, and where the motor turns back nothing is compared."
         + (WOUND if any(run.is_wound for run in runs) else "")
     ]
+
+
+def _loaded_by(run: Recording) -> str:
+    if run.look.inertia:
+        return (
+            "the weight as declared and an inertia of the load that nobody declared: what both do to the angles and to "
+            "the motor's torque tells it and the stiffness, as well as they are told apart"
+        )
+    return (
+        f"a load inertia of {run.pieces[0].gear.J_l:.3g} kg·m² and the weight as declared. Stiffness and the motor's "
+        "torque balance are in proportion to them"
+    )
 
 
 def _alone(runs: Sequence[Recording]) -> list[str]:
