@@ -15,7 +15,7 @@ from rig.analysis.tracing.fit.model import Design, Part, fit, normal
 
 K, B_SP = 7160.0, 7.0
 HZ = (13.3, 6.7)
-RUN: Any = SimpleNamespace(locked=False)
+RUN: Any = SimpleNamespace(locked=False, look=SimpleNamespace(inertia=False))
 
 
 def waves(derivative: int) -> np.ndarray:
