@@ -52,6 +52,7 @@ install: .venv/ready
 .venv/ready: .lock/run.txt pyproject.toml | .venv/bin/python
 	$(BIN)/python -m pip install --quiet --require-hashes -r .lock/run.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	$(BIN)/python -m compileall -q rig drivers sim
 	touch $@
 
 .venv/ready-dev: .lock/test.txt .venv/ready

@@ -16,6 +16,7 @@ FALSE_ALARM = 0.01  # probability that noise alone gives a single line anywhere 
 NEIGHBOURS = 24  # independent orders on either side from which the local noise is taken
 MARGIN = 1.25  # the local noise is itself known to a quarter only
 MOST_LINES = 24
+WIDE_BLOCK = 4 * BLOCK  # where few columns share the cache
 LINE_BINS = 4.0  # bins a period when searching: the amplitudes are fitted to the rows themselves afterwards
 
 
@@ -43,18 +44,38 @@ def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
     """
     low, high = float(theta.min()) / TURN, float(theta.max()) / TURN
     bins = max(int((high - low) * per_turn), 1)
-    rows, where, total = np.zeros(bins), np.zeros(bins), np.zeros(bins)
-    for start in range(0, theta.size, BLOCK):  # whole arrays of a long run do not fit the cache: twice the time
-        turns = theta[start : start + BLOCK] / TURN
-        place = np.minimum(((turns - low) * per_turn).astype(np.int64), bins - 1)
+    rows, where, total = np.zeros(bins + 1), np.zeros(bins + 1), np.zeros(bins + 1)  # the last is a part of a bin
+    for start in range(0, theta.size, WIDE_BLOCK):  # whole arrays of a long run do not fit the cache: twice the time
+        along = theta[start : start + WIDE_BLOCK] * (per_turn / TURN)
+        along -= low * per_turn
+        place = along.astype(np.int64)
         first, last = int(place.min()), int(place.max())  # one direction: few bins
         place -= first
         rows[first : last + 1] += np.bincount(place)
-        where[first : last + 1] += np.bincount(place, turns)
-        total[first : last + 1] += np.bincount(place, y[start : start + BLOCK])
-    here = rows > 0
-    grid = low + (np.arange(bins) + 0.5) / per_turn
-    return grid, np.interp(grid, where[here] / rows[here], total[here] / rows[here])
+        where[first : last + 1] += np.bincount(place, along)
+        total[first : last + 1] += np.bincount(place, y[start : start + WIDE_BLOCK])
+    for sums in (rows, where, total):
+        sums[-2] += sums[-1]
+    here = rows[:-1] > 0
+    rows, where, total = (sums[:-1] if here.all() else sums[:-1][here] for sums in (rows, where, total))
+    where /= rows
+    total /= rows
+    centre = np.arange(0.5, bins)
+    values = _interpolated(centre, where, total)
+    centre /= per_turn
+    centre += low
+    return centre, values
+
+
+def _interpolated(x: Array, known: Array, y: Array) -> Array:
+    """`y` of `known` at `x`, both in order: numpy's, by blocks that stay in the cache."""
+    out = np.empty_like(x)
+    for start in range(0, x.size, WIDE_BLOCK):
+        part = x[start : start + WIDE_BLOCK]
+        first, last = np.searchsorted(known, (part[0], part[-1]))
+        beside = slice(max(int(first) - 1, 0), int(last) + 1)
+        out[start : start + part.size] = np.interp(part, known[beside], y[beside])
+    return out
 
 
 def bins_per_turn(rows_per_turn: float, order_max: float) -> int:
