@@ -30,14 +30,18 @@ class GravityUnbalance(Effect):
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "overtone")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
+    SWING: Final = 1 / 36  # of an output turn
     MOST: Final = 0.5  # of the wave, its overtone: a square wave has a third
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Less than a sixth of an output turn looks like a trend, less than a half has no overtones; in angles alone a
-        weight is a runout."""
+        """A weight on a joint that swings by ten degrees is what most of its torque is; less than a sixth of an output
+        turn does not tell one wave from two, less than a half has no overtones; in angles alone a weight is a runout.
+        """
+        if reach.load_turns < self.SWING or not reach.has & TORQUES:
+            return ()
+        twice = ((2.0, NONE),) if reach.load_turns > 1 / 6 else ()
         flattened = ((1.0, THIRD),) if reach.load_turns > 1 / 2 else ()
-        shown = reach.load_turns > 1 / 6 and bool(reach.has & TORQUES)
-        return ((1.0, NONE), (2.0, NONE), *flattened) if shown else ()
+        return ((1.0, NONE), *twice, *flattened)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of the load angle, and of the overtone's."""
