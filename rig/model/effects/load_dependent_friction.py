@@ -35,8 +35,10 @@ class LoadDependentFriction(Effect):
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One μ_L, or one for either flow of power."""
-        return ((0.0, 1.0), (1.0, 1.0))
+        """One μ_L, or one for either flow of power: where the motor's torque alone tells how heavy the load is, a load
+        that is heavier and loses more when it drives is the same."""
+        told = "tau_l" in reach.has or reach.weights > 1
+        return ((0.0, 1.0), (1.0, 1.0)) if told else ((0.0, 1.0),)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """The flow is chosen, not fitted."""

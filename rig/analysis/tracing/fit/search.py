@@ -103,6 +103,7 @@ def search(
     s = fit(d)
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, excluded)
     first, of_baseline, rows = len(BASELINE), dict[str, Array](), d.eq.rows
+    carried = _carries(d)
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
         if still(s, floors) and not (quiet and not s.design.terms):
@@ -126,7 +127,16 @@ def search(
         d = s.design
         if entered not in d.terms:
             barren.add(chosen.term)
+        if (
+            _carries(d) and not carried
+        ):  # the bank's columns go by a torque without that weight: they have to be made anew
+            break
     return Found(s, ranking)
+
+
+def _carries(d: Design) -> bool:
+    """Whether the torque of a load that nobody read has what effects in it take."""
+    return any(run.carries for run in d.eq.runs)
 
 
 def ranking_beside(

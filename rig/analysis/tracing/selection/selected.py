@@ -25,7 +25,7 @@ from rig.analysis.tracing.selection.elimination import (
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.thresholds import AS_WELL, MISSING, NAMED, PLAIN_TO_SEE, QUIET, VOUCHED_FOR
+from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MISSING, NAMED, PLAIN_TO_SEE, QUIET, VOUCHED_FOR
 from rig.model.effect import Array, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -115,13 +115,15 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
 
 
 def _without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
-    """Of a load whose torque nobody read, without names that leave no more behind when they go: what came in beside a
-    spring and an inertia as they were believed to be may be needed no more beside those that are."""
+    """Of a load whose torque nobody read, without names that leave no more behind when they go, or nothing above the
+    floor: what came in beside a spring and an inertia as they were believed to be may be needed no more beside those
+    that are."""
     if not any(run.load_unread and (run.look.inertia or run.carries) for run in selected.fitted_runs):
         return selected
     for least in sorted(selected.scores, key=lambda score: score.size):
         fewer = _without(selected, least.name, runs, covered)
-        if len(fewer.scores) == len(selected.scores) - 1 and fewer.left < AS_WELL * selected.left:
+        as_well = max(AS_WELL * selected.left, AT_THE_FLOOR)
+        if len(fewer.scores) == len(selected.scores) - 1 and fewer.left < as_well:
             return _without_needless(fewer, runs, covered)
     return selected
 
