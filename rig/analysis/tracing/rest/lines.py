@@ -21,6 +21,7 @@ SPAN = {
     "load_angle": (0.9, 400.0),
 }  # orders; a bearing's cage turns at 0.35 and more of its
 # shaft, and what takes longer than a turn of the output is an angle gone
+HALF = 0.5  # turns: in less, what does not come round once is a trend and has no order
 AS_WELL = 0.98  # of its height the whole order beside it must have to be said instead
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
@@ -51,7 +52,7 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     x, e = x[good], (r.e * sense(r))[good]
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
-    first = max(SPAN[name][0], step)
+    first = max(SPAN[name][0], step, 1 / turns if 0 < turns < HALF else 0.0)
     rough = np.arange(first, max(min(SPAN[name][1], _highest(r, r.at[name])), first + 2 * step), step)
     power = spectrum(x, e, rough)
     fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)

@@ -73,7 +73,7 @@ class Recording(Once):
     @property
     def load_unread(self) -> bool:
         """Whether its shaft torque is what the load takes, as far as that is known, and the motor's tells how much."""
-        return "tau_l" not in self.has and not self.locked and {"theta_m", "theta_l", "tau_m"} <= self.has
+        return "tau_l" not in self.has and not self.locked and {"theta_m", "tau_m"} <= self.has
 
     @property
     def carries(self) -> bool:

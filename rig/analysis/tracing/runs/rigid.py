@@ -45,4 +45,4 @@ def _is_noise(runs: Sequence[Recording]) -> bool:
 def unweighed_inertia(runs: Sequence[Recording]) -> bool:
     """Whether nobody says what a free load's inertia is, by number or by a torque sensor, and a motor's torque may."""
     told = any("tau_l" in run.has or "J_l" in run.declared for run in runs)
-    return not told and any(run.load_unread and "t" in run.has for run in runs)
+    return not told and any(run.load_unread and {"t", "theta_l"} <= run.has for run in runs)
