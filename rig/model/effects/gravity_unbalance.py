@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, harmonic
 from rig.model.gloss import waved
+from rig.model.output_orders import SWING
 
 TORQUES: Final = frozenset({"tau_m", "tau_l"})  # one of which feels it
 NONE, THIRD = 0.0, 3.0  # of the second shape parameter: the overtone
@@ -30,14 +31,13 @@ class GravityUnbalance(Effect):
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "overtone")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
-    SWING: Final = 1 / 36  # of an output turn
     MOST: Final = 0.5  # of the wave, its overtone: a square wave has a third
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """A weight on a joint that swings by ten degrees is what most of its torque is; less than a sixth of an output
         turn does not tell one wave from two, less than a half has no overtones; in angles alone a weight is a runout.
         """
-        if reach.load_turns < self.SWING or not reach.has & TORQUES:
+        if reach.load_turns < SWING or not reach.has & TORQUES:
             return ()
         twice = ((2.0, NONE),) if reach.load_turns > 1 / 6 else ()
         flattened = ((1.0, THIRD),) if reach.load_turns > 1 / 2 else ()

@@ -75,6 +75,16 @@ class Search:
         likely = [(e, f, term) for e, f, term in out if e > 0 and possible(s, term, f.coefficients)]
         return [Scored(term, float(e), f.drop, self.size(s.design, f)) for e, f, term in likely[:60]]
 
+    def least(self, r: Scored, ranking: Sequence[Scored]) -> float:
+        """Evidence that `r` must have: more than what the law of the first of `ranking` has wrong, where both act."""
+        shadow = ranking and self._acts(r.term.name) & self._acts(ranking[0].term.name)
+        return max(EVIDENCE, RELATIVE * ranking[0].evidence if shadow else 0.0)
+
+    def _acts(self, name: str) -> set[str]:
+        """Channels in which any law of an effect shows."""
+        mine = [i for i, term in enumerate(self.bank.terms) if term.name == name]
+        return {c for c, places in self.bank.places.items() if any(places[i] is not None for i in mine)}
+
     def size(self, d: Design, found: Drop) -> float:
         """RMS of the term over the floor, in the block where it is largest."""
         most = 0.0
@@ -115,8 +125,9 @@ def search(
         of_baseline = {c: m[:first] for c, m in u.items()}
         ranked = fixed.ranked(s, u)
         ranking = ranking or _best_of_each(ranked)
-        least = max(EVIDENCE, RELATIVE * (ranking[0].evidence if ranking else 0.0))
-        worth = [r for r in ranked if r.evidence > least and r.size > SMALLEST and r.term not in barren]
+        worth = [
+            r for r in ranked if r.evidence > fixed.least(r, ranking) and r.size > SMALLEST and r.term not in barren
+        ]
         worth = [r for r in worth if _new(r.term, s)]
         if not worth:
             break

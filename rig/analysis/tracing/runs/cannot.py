@@ -12,6 +12,8 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.core.units import RPM
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
+EVEN: Final = 1.5  # of the slower quarter's speed, the faster one's: a sine has 2.4
+MOVES: Final = 0.05  # of its fastest, below which a run rests
 ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
 ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a start or a stop, not a direction
 
@@ -95,9 +97,17 @@ def _one_way(runs: Sequence[Recording]) -> list[str]:
 
 
 def one_speed(runs: Sequence[Recording]) -> bool:
-    """Whether all runs that turn do so at about one speed."""
-    speeds = [run.turning for run in runs if not run.locked]
-    return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds)
+    """Whether all runs that turn do so at about one speed, each from begin to end."""
+    free = [run for run in runs if not run.locked]
+    speeds = [run.turning for run in free]
+    return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds) and all(map(_is_even, free))
+
+
+def _is_even(run: Recording) -> bool:
+    """Whether a run keeps its speed while it moves; a joint that swings does not."""
+    speed = np.concatenate([np.abs(piece.omega_m) for piece in run.pieces])
+    low, high = np.quantile(speed[speed >= MOVES * speed.max()], (0.25, 0.75))
+    return bool(high < EVEN * low)
 
 
 def highest_order(runs: Sequence[Recording]) -> int:
