@@ -45,22 +45,39 @@ def driven(motor: Array, shrinks: bool, h: float) -> tuple[Array, Array, Array]:
     return angles, torques, levers
 
 
-def joint(to: Path, shrinks: bool = False, stribeck: float = 0.0, trajectories: int = 4) -> Trace:
-    """Trajectories run twice each, traced."""
+def joint(
+    to: Path,
+    shrinks: bool = False,
+    stribeck: float = 0.0,
+    trajectories: int = 4,
+    swing: float | None = None,
+    mesh: float = 0.0,
+    sensor: bool = False,
+    runout: float = 0.0,
+) -> Trace:
+    """Trajectories run twice each, traced. `swing`: rad of the output either way; `mesh`: friction over the torque;
+    `runout`: rad once a turn of the load encoder."""
     rng = np.random.default_rng(23)
     h = 1 / RATE / STEPS
     t = h * np.arange(int(LASTS / h))
     for number in range(trajectories):
-        motor = RATIO * excitation(rng, t) + 1.3
+        moved = excitation(rng, t)
+        if swing is not None:
+            moved *= swing / np.abs(moved - moved.mean()).max()
+        motor = RATIO * moved + 1.3
         angle, torque, slope = driven(motor, shrinks, h)
         speed, acceleration = np.gradient(motor, h), np.gradient(np.gradient(motor, h), h)
-        rubs = np.tanh(speed / 0.2) * (0.12 + stribeck * np.exp(-np.abs(speed) / 8)) + 8e-4 * speed
+        dry = 0.12 + stribeck * np.exp(-np.abs(speed) / 8) + mesh * np.abs(torque) / RATIO
+        rubs = np.tanh(speed / 0.2) * dry + 8e-4 * speed
         drive = torque * (1 / RATIO - slope) + J_M * acceleration + rubs
         for again in range(2):
             row = slice(None, None, STEPS)
-            noise = rng.standard_normal((2, t[row].size))
-            columns = {"t": t[row], "theta_m": motor[row], "theta_l": angle[row] + 0.7 * ARCSEC * noise[0],
+            noise = rng.standard_normal((3, t[row].size))
+            read = angle[row] + runout * np.cos(angle[row])
+            columns = {"t": t[row], "theta_m": motor[row], "theta_l": read + 0.7 * ARCSEC * noise[0],
                        "tau_m": drive[row] + 0.01 * noise[1]}  # fmt: skip
+            if sensor:
+                columns["tau_l"] = torque[row] + 0.3 + 0.03 * noise[2]
             run = to / f"trajectory-{number}-{again}"
             run.mkdir(parents=True)
             pq.write_table(pa.table(columns), run / "samples.parquet")
@@ -91,3 +108,39 @@ def test_what_leans_on_the_torque_is_told_under_a_weight_nobody_declared(tmp_pat
     assert found.verdict.status is Status.EXPLAINED
     assert set(found.verdict.effects) == {"gravity_unbalance", "load_dependent_kinematic_error", "stribeck_friction"}
     assert size(found, "A_inf") == pytest.approx(0.5, abs=0.02)
+
+
+SWING = 0.44  # rad: 25 degrees either way, a seventh of a turn in all
+
+
+@pytest.mark.slow
+def test_a_joint_that_swings_by_25_degrees_tells_its_weight_spring_and_friction(tmp_path: Path) -> None:
+    found = joint(tmp_path, stribeck=0.06, swing=SWING)
+    assert found.verdict.status is Status.EXPLAINED
+    assert set(found.verdict.effects) == {"gravity_unbalance", "stribeck_friction"}
+    assert size(found, "unbalance_amplitude") == pytest.approx(WEIGHT, rel=0.01)
+    known = {p.name: p for p in found.baseline_after}
+    assert known["K"].value == pytest.approx(K, rel=0.02)
+    assert known["J_m"].value == pytest.approx(J_M, rel=0.05)
+
+
+@pytest.mark.slow
+def test_friction_of_the_mesh_is_searched_for_by_a_torque_that_has_the_weight(tmp_path: Path) -> None:
+    found = joint(tmp_path, mesh=0.3, swing=SWING)
+    assert set(found.verdict.effects) == {"gravity_unbalance", "load_dependent_friction"}
+    assert size(found, "mu_L") == pytest.approx(0.3, rel=0.05)
+    assert size(found, "unbalance_amplitude") == pytest.approx(WEIGHT, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_weight_read_by_a_torque_sensor_hides_no_friction_of_the_motor(tmp_path: Path) -> None:
+    """Its evidence is ten thousand times as much, in a channel where friction does not show."""
+    found = joint(tmp_path, stribeck=0.06, swing=SWING, sensor=True)
+    assert set(found.verdict.effects) == {"gravity_unbalance", "stribeck_friction"}
+
+
+@pytest.mark.slow
+def test_a_runout_beside_a_weight_on_a_joint_that_swings_is_no_spring(tmp_path: Path) -> None:
+    found = joint(tmp_path, swing=SWING, sensor=True, runout=20 * ARCSEC)
+    assert set(found.verdict.effects) == {"gravity_unbalance", "output_once_per_rev"}
+    assert size(found, "order_1_amplitude") == pytest.approx(20 * ARCSEC, rel=0.1)

@@ -106,7 +106,8 @@ def drops(bank: Bank, mine: Own, u: dict[str, Array], s: Solution) -> list[Drop]
 
 def _drop(i: int, gram: Array, noise: Array, v: Array, b: Array) -> Drop:
     """One term: project out the model, leave directions out that are not its own or mostly sensor noise."""
-    size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    least = FAINT * np.abs(np.diag(noise))  # a column that is nothing but noise is no more than that
+    size = np.sqrt(np.maximum(np.maximum(np.diag(gram), least), 1e-300))
     noise = noise / size / size[:, None]
     left = gram / size / size[:, None] - noise - (v / size).T @ (v / size)
     values, vectors = np.linalg.eigh(left)
