@@ -17,6 +17,8 @@ from rig.analysis.tracing.thresholds import CLEAR, FAINTEST
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
+FAINT = 1e-9  # of what noise adds to a column, its own at least
+
 
 @dataclass(frozen=True)
 class Own:
