@@ -14,10 +14,11 @@ from rig.catalogue.lacking import lacks, refuse_nothing, shared, without_figures
 from rig.catalogue.repeats import COUNTS, Repeats
 from rig.catalogue.row import UNREADABLE, Row, finite
 from rig.catalogue.sameness import beside, mounting, point
-from rig.catalogue.scan import row, rows
+from rig.catalogue.scan import doubted, row, rows
 from rig.catalogue.scatter import SHARE, Scatter, between
 from rig.core.errors import UsageError
 
+DOUBTED = "its figures are not to be believed: {}"
 DATE = "2026-11-20"  # how folders by date are named
 
 
@@ -105,7 +106,7 @@ def _run(path: Path) -> Row:
     found = row(path)
     if found.status == UNREADABLE:
         raise UsageError(found.problem)
-    return found
+    return doubted(found)
 
 
 def _home(paths: Sequence[Path]) -> Path:
@@ -177,6 +178,7 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
     for one, names in zip(found, known, strict=True):
         if one.status not in COUNTS:
             said.append(f"{one.path.name} is {one.status}: its figures are from what was recorded")
+        said += [f"{one.path.name}: {why}" for why in (one.problem, one.doubt and DOUBTED.format(one.doubt)) if why]
         if why := without_figures(one, names):
             said.append(why)
     return [*said, *lacks(found, known)]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core import numbers
+from rig.runfile.misfits import misfits, misfits_of_ours, notes, usable
 
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
 NO_LIMIT = "no-limit"  # the verdict of figures nobody set a limit for; manifests say MEASURED, also of the twin's
@@ -35,6 +36,7 @@ class Row:
     campaign: str = ""  # uid
     conditions: Mapping[str, Any] = field(default_factory=dict)
     problem: str = ""  # what is wrong with its manifest, in words
+    doubt: str = ""  # why its figures are not to be believed, in words
 
     @property
     def simulated(self) -> bool:
@@ -61,7 +63,7 @@ class Row:
         named = {
             name: getattr(self, name) or None
             for name in ("uid", "started_utc", "procedure", "gear", "status", "verdict", "reason", "backend",
-                         "operator", "campaign", "problem")
+                         "operator", "campaign", "problem", "doubt")
         }  # fmt: skip
         return {
             **named,
@@ -88,7 +90,10 @@ def finite(value: Any) -> Any:
 
 
 def row_of(folder: Path, about: Mapping[str, Any]) -> Row:
-    """The row of a manifest whose named keys are of the kind they should be; whatever else is in it may be anything."""
+    """The row of a manifest whose named keys are of the kind they should be; whatever else is in it may be anything,
+    and what of it cannot be meant stands in `problem`."""
+    wrong = [*misfits(about), *misfits_of_ours(about)]
+    about = usable(about) if wrong else about
     gear, campaign, conditions = about.get("gear"), about.get("campaign"), about.get("conditions")
     rows = about.get("rows")
     return Row(
@@ -106,6 +111,7 @@ def row_of(folder: Path, about: Mapping[str, Any]) -> Row:
         operator=text(about.get("operator")),
         campaign=text(campaign.get("uid")) if isinstance(campaign, dict) else "",
         conditions=conditions if isinstance(conditions, dict) else {},
+        problem=text(" ".join(notes(wrong))),
     )
 
 

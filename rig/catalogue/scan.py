@@ -9,13 +9,16 @@ from typing import Any
 
 from rig.catalogue.filter import ALL, Filter
 from rig.catalogue.remembered import Remembered
-from rig.catalogue.row import UNREADABLE, Row, row_of
+from rig.catalogue.row import UNREADABLE, Row, row_of, text
 from rig.core.errors import UsageError
 from rig.runfile import manifest
+from rig.runfile.doubt import doubt, quick_doubt
 from rig.runfile.listing import Unread, is_run, passed_by, run_folders
 from rig.runfile.process import is_being_made
+from rig.runfile.remains import advice
 
 RUNNING = "running"
+ASKED = ("process", "ring", "files")  # of a manifest, each time anew: what they stand for may have changed
 
 
 def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
@@ -31,8 +34,9 @@ def passing(root: Path | str, filter: Filter = ALL, unread: Unread = passed_by) 
     """The same runs one by one, as they lie on disk; none is kept or remembered; `unread` is told of folders that may
     not be looked into. Raises UsageError at once."""
     _refuse_no_folder(root)
-    found = (_now(*_fresh(f"{folder}/{manifest.NAME}")) for folder in _folders(str(root), unread))
-    return (row for row in found if filter.passes(row))
+    found = (_fresh(f"{folder}/{manifest.NAME}") for folder in _folders(str(root), unread))
+    rows = ((_now(row, about), about) for row, about in found)
+    return (_doubted(row, about) for row, about in rows if filter.passes(row))
 
 
 def rows(root: str) -> Iterator[Row]:
@@ -55,10 +59,21 @@ def _refuse_no_folder(root: Path | str) -> None:
         raise UsageError(f"there is no folder {root}; give the folder that holds the runs")
 
 
-def _now(found: Row, process: dict[str, Any]) -> Row:
+def doubted(found: Row) -> Row:
+    """The run with why its figures are not to be believed, all its samples looked at."""
+    if found.status == UNREADABLE:
+        return found
+    return replace(found, doubt=text(doubt(found.path, manifest.read(found.path))))
+
+
+def _doubted(found: Row, about: dict[str, Any]) -> Row:
+    return replace(found, doubt=text(quick_doubt(found.path, about)))
+
+
+def _now(found: Row, about: dict[str, Any]) -> Row:
     """A run as its manifest had it, and as its process is at this moment."""
-    if found.status == RUNNING and not is_being_made(process):  # asked each time: it may have died since
-        why = found.reason or "found dead; hdrig recover makes it readable"
+    if found.status == RUNNING and not is_being_made(about):  # asked each time: it may have died since
+        why = found.reason or f"found dead; {advice(found.path, about)}"
         return replace(found, status="interrupted", reason=why)
     return found
 
@@ -69,7 +84,7 @@ def _fresh(path: str) -> tuple[Row, dict[str, Any]]:
         about = manifest.read(folder)
     except UsageError as error:
         return Row(folder, status=UNREADABLE, problem=str(error)), {}
-    return row_of(folder, about), {"process": about.get("process")}
+    return row_of(folder, about), {key: about[key] for key in ASKED if key in about}
 
 
 _read = Remembered(_fresh)

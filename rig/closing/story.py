@@ -12,6 +12,7 @@ from typing import Any
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.without import ruled
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.errors import RecorderError, UsageError
@@ -94,7 +95,7 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
         effects=found.verdict.effects,
         rivals=found.verdict.rivals,
         coordinate=found.verdict.coordinate,
-        sentence=found.verdict.sentence,
+        sentence=ruled(found),
         fitted=len(found.fitted),
         held_out=len(found.held_out),
         in_part=sum(name not in found.fitted and whole_run(name) in found.fitted for name in found.held_out),

@@ -17,6 +17,7 @@ FORM = (
 )
 
 TOLD = 8  # names in a sentence
+NONE = "none"  # lifts a limit
 
 
 def limit_argument(parser: argparse.ArgumentParser) -> None:
@@ -29,13 +30,15 @@ def limit_argument(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=LIMIT",
         help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; names: "
         "peak-to-peak, C_2, K1, hysteresis-loss, friction, or as in result.json; without a unit in the figure's, an "
-        "angle also in arcsec, arcmin, deg, rad or mrad; of several runs it judges those made for the figure",
+        "angle also in arcsec, arcmin, deg, rad or mrad; of several runs it judges those made for the figure; a run "
+        "keeps it when it is analysed again, until another one or 'NAME=none' is given",
     )
 
 
 def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
-    """What --limit says, as a manifest's `limits` has it. Raises UsageError: for a name that no analysis gives a figure
-    of, a unit that is not one of that figure, a limit below zero of what never is; nothing is moved or written by then.
+    """What --limit says, as a manifest's `limits` has it, None for one that is lifted. Raises UsageError: for a name
+    that no analysis gives a figure of, a unit that is not one of that figure, a limit below zero of what never is;
+    nothing is moved or written by then.
     """
     limits: dict[str, Any] = {}
     for assignment in assignments:
@@ -43,8 +46,9 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
         if not (word and equals):
             raise UsageError(f"--limit '{assignment}': {FORM}")
         name = _figure(assignment, word)
-        limits[name] = _bounds(assignment, text)
-        _refuse_senseless(assignment, word, name, limits[name])
+        limits[name] = None if text == NONE else _bounds(assignment, text)
+        if limits[name] is not None:
+            _refuse_senseless(assignment, word, name, limits[name])
     return limits
 
 

@@ -63,8 +63,14 @@ def _line(row: Row) -> str:
     procedure = row.procedure.replace("_", "-")
     return (
         f"{row.started_utc[:19]:19s} {procedure:18s} {row.gear:16s} {row.status:12s} {duration:>9s} "
-        f"{row.ruling or '–':12s} {row.origin or '–':9s} {row.path}"
+        f"{row.ruling or '–':12s} {row.origin or '–':9s} {row.path}{_remark(row)}"
     )
+
+
+def _remark(row: Row) -> str:
+    """What is wrong with a run, behind its name."""
+    said = [*([row.problem] if row.problem else []), *([f"figures in doubt: {row.doubt}"] if row.doubt else [])]
+    return f"  ({'; '.join(said)})" if said else ""
 
 
 def say(line: str) -> None:

@@ -88,12 +88,14 @@ def asked(run: NextRun) -> str:
 
 def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
+    from rig.analysis.tracing.outcome.without import counted_out
     from rig.report.numbers import counted
     from rig.report.trace.channels import held_out_with
     from rig.report.trace.sizes import said
     from rig.report.trace.words import gloss, not_read, remainder, runs_read
 
-    print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}")
+    out = f", {counted_out(found)} left out" if found.left_out else ""
+    print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}{out}")
     if found.left_out:
         print(f"  {runs_read(found)} read. {not_read(found)}")
     print(f"  {found.verdict.sentence}")

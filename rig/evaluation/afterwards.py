@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 from rig.campaign.journal import read_journal
 from rig.core.errors import Exit, UsageError
-from rig.evaluation.identification import TERMS, Say, identify
+from rig.evaluation.identification import TERMS, identify
 from rig.evaluation.run import exit_of
 from rig.evaluation.sweep import Sweep, assembly_sweep_of, load_sweep_of
+from rig.evaluation.to_identify import Say
 from rig.runfile.listing import runs_in
 
 if TYPE_CHECKING:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.core.errors import DataError, Exit, HdrigError, said_of
+from rig.core.errors import DataError, Exit
 from rig.core.units import RPM
+from rig.evaluation.to_identify import Say, open_runs
 
 if TYPE_CHECKING:
     from rig.analysis.findings.result import Result
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from rig.runfile.run import Run
 
 TERMS = 15  # orders of the paper's series
-Say = Callable[[str], None]
-"""Told of progress; what it is told need not be kept."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +34,7 @@ class Identification:
     used: int  # runs the fit could read
     of: int  # runs there were, completed or not
     simulated: bool
+    said: tuple[str, ...] = ()  # of runs that were left out, and of what their manifests cannot mean
 
     @property
     def exit(self) -> Exit:
@@ -56,34 +56,35 @@ class Identification:
             *text.coasting(self.coasts),
             *text.characteristic_lines(self.file.characteristics),
             *text.breakaway_beside(self.file),
-            *(f"  note: {sentence}" for sentence in found.cannot),
+            *(f"  note: {sentence}" for sentence in (*self.said, *found.cannot)),
         ]
 
 
 def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
-    """The gear of the runs in `folders`, its θ̃_p with `terms` orders. Raises DataError: no run, two gears, or nothing
-    that can be determined."""
+    """The gear of the runs in `folders`, its θ̃_p with `terms` orders. Raises UsageError: two gears; DataError: no run,
+    or nothing that can be determined."""
     from rig.analysis.identify.predictions import predictions
 
-    runs, recordings = open_runs(folders, say)
+    runs, recordings, said = open_runs(folders, say)
     found, file = _fitted(runs, recordings, terms, say)
     characteristics = beside(runs, say)
     if not characteristics:
         refuse_nothing(found, recordings)
     return Identification(
         found=found,
-        file=replace(file, characteristics=characteristics, covered=covered(found)),
+        file=replace(file, characteristics=characteristics, covered=covered(found), cannot=(*said, *file.cannot)),
         predictions=predictions(recordings, file.gear(), terms),
         coasts=coasts(runs, found, say),
         used=len(recordings),
         of=len(folders),
         simulated=file.simulated,
+        said=said,
     )
 
 
 def gear_of(folders: Sequence[Path], terms: int, say: Say) -> GearFile:
     """The gear file alone, without what is measured beside the model. Raises DataError as `identify`."""
-    runs, recordings = open_runs(folders, say)
+    runs, recordings, _ = open_runs(folders, say)
     found, file = _fitted(runs, recordings, terms, say)
     refuse_nothing(found, recordings)
     return file
@@ -108,60 +109,6 @@ def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:
         f"nothing of the gear can be determined from what is here ({kinds}): it takes runs in which the motor turns "
         "at constant speed, or a lock test beside a slow run"
     )
-
-
-def open_runs(folders: Sequence[Path], say: Say) -> tuple[list[Run], list[Recording]]:
-    """All runs of the campaign, and those that identification can read; a run that cannot be opened is left out in
-    words. Raises what the first one is refused with when none can be opened; DataError when none is left, or two
-    gears, another gear ratio than declared, or two zeros of the motor's encoder."""
-    from rig.analysis.identify.recording import recording, refuse_another_ratio
-    from rig.analysis.identify.zeros import refuse_other_zeros
-    from rig.analysis.motion.held import not_held
-
-    runs = [
-        one
-        for one in opened(folders, say)
-        if one.manifest.get("status") in ("completed", "imported", None) and one.procedure != "other"
-    ]
-    if not runs:
-        raise DataError("no completed run of an experiment among these folders: nothing to identify from")
-    for what, values in (
-        ("gear ratios", {r.ratio for r in runs}),
-        ("gears", {(r.manifest.get("gear") or {}).get("serial") for r in runs}),
-        ("assemblies", {r.conditions.get("assembly", 1) for r in runs}),
-    ):
-        if len(values) > 1:
-            words = ", ".join(map(str, sorted(map(str, values))))
-            raise DataError(f"these runs are of {len(values)} {what} ({words}): identify one at a time")
-    found = [r for one in runs if (r := recording(one)) is not None]
-    no_lock = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}
-    for name, why in no_lock.items():
-        say(f"{name} is left out: {why}")
-    runs = [run for run in runs if run.name not in no_lock]
-    found = [run for run in found if run.name not in no_lock]
-    if not found:
-        raise DataError("no run here has time and both angles: nothing to identify from")
-    refuse_another_ratio(found)
-    refuse_other_zeros(found)
-    return runs, found
-
-
-def opened(folders: Sequence[Path], say: Say) -> list[Run]:
-    """The runs among `folders` that can be opened, and a word for each that cannot. Raises the first refusal where
-    there is none."""
-    from rig.runfile.run import Run
-
-    runs, refused = [], []
-    for folder in folders:
-        try:
-            runs.append(Run.open(folder))
-        except HdrigError as error:
-            refused.append((folder, error))
-    if not runs and refused:
-        raise refused[0][1]
-    for folder, why in refused:
-        say(f"{folder.name} is left out: {said_of(folder, why)}")
-    return runs
 
 
 def coasts(runs: list[Run], found: Identified, say: Say) -> list[Coasting]:

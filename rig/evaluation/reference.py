@@ -74,11 +74,12 @@ def _beside(run: Run, fits: Callable[[Mapping[str, Any], Mapping[str, Any]], boo
 def _runs(folder: Path, fits: Callable[[Mapping[str, Any]], bool]) -> Iterator[Run]:
     """Those directly in `folder` whose manifest `fits`, as they are named."""
     from rig.runfile import manifest
+    from rig.runfile.misfits import usable
     from rig.runfile.run import Run
 
     for path in sorted(folder.glob(f"*/{manifest.NAME}")):
         try:
-            if fits(manifest.read(path.parent)):
+            if fits(usable(manifest.read(path.parent))):
                 yield Run.open(path.parent)
         except HdrigError:  # somebody else's folder, or a damaged one: not the one to compare with
             continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 NEEDED = ("rig.analysis.analyse", "rig.report.page")
 """What `analyse_folder` imports, for those who load it once and for all beforehand."""
+KEPT = (
+    "Judged by the limit set in an earlier analysis ({}): --limit NAME=LIMIT sets another one, --limit NAME=none none."
+)
 NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -32,24 +36,28 @@ def analyse_folder(
     that stands there already is kept in the result as a former one.
 
     `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
-    in the same folder is taken. `limits` join those of the run's manifest and go before them. Returns the result, and
-    whether the run is simulated. Raises UsageError: no run folder, or `target` cannot be written; DataError: samples
-    that are not those the run was closed with.
+    in the same folder is taken. `limits` go before those the run was judged by the last time, and those before the ones
+    of its manifest; one that is None lifts the limit. Returns the result, and whether the run is simulated. Raises
+    UsageError: no run folder, or `target` cannot be written; DataError: samples that are not those the run was closed
+    with.
     """
     from rig.analysis.analyse import analyse
-    from rig.report.history import with_former
+    from rig.report.history import asked_before, with_former
     from rig.report.page import bench, write
     from rig.report.record import write_result
     from rig.runfile.events import read_events
     from rig.runfile.finalise import add_derived
     from rig.runfile.run import Run
 
-    run = judged_by(Run.open(folder), limits)
+    there = Run.open(folder)
+    before = {name: limit for name, limit in asked_before(target, folder).items() if name not in limits}
+    run = judged_by(there, {**before, **limits})
     refuse_changed(folder, run.manifest)
     doubt = changed_journal(folder, run.manifest)
     if reference is None:
         reference = BESIDE.get(regime_of(run.procedure), without)(run)
     result = with_former(target, analyse(run, reference, doubt, beyond_ranges(run, bench(folder))))
+    result = replace(result, asked=limits_in(run), cannot=(*result.cannot, *_kept(result, before, limits_in(there))))
     if result.broke_off:
         result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")
     with writing(target):
@@ -87,9 +95,20 @@ def judged_by(run: Run, limits: Mapping[str, Any]) -> Run:
     """The run with `limits` before those its manifest has; the manifest on disk stays as it is."""
     if not limits:
         return run
-    own = run.manifest.get("limits")
-    both = {**(own if isinstance(own, Mapping) else {}), **limits}
-    return type(run)(run.path, {**run.manifest, "limits": both}, run.samples)
+    judged = copy(run)
+    judged.manifest = {**run.manifest, "limits": {**limits_in(run), **limits}}
+    return judged
+
+
+def limits_in(run: Run) -> dict[str, Any]:
+    """Those of its manifest."""
+    return dict(run.manifest.get("limits") or {})
+
+
+def _kept(result: Result, before: Mapping[str, Any], own: Mapping[str, Any]) -> list[str]:
+    """Says which limits are those of the last analysis, and neither new nor the run's own."""
+    kept = [words for name, words in result.limits.items() if name in before and before[name] != own.get(name)]
+    return [KEPT.format(" and ".join(kept))] if kept else []
 
 
 def without(run: Run) -> None:
@@ -123,8 +142,8 @@ def changed_journal(folder: Path, manifest: Mapping[str, Any]) -> str:
     """Says which file of a journal that stands in for samples.parquet is not what it was; "" when each is. Raises
     DataError when one cannot be read."""
     from rig.runfile.finalise import describe
-    from rig.runfile.journal import journal_files
     from rig.runfile.manifest import told
+    from rig.runfile.remains import journal_files
 
     if (folder / "samples.parquet").exists():
         return ""

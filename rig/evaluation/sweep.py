@@ -57,11 +57,13 @@ def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
     from rig.analysis.across_runs.assembly_band import AssemblyRun
     from rig.analysis.findings.intervals import Ranged
     from rig.catalogue.figures import figures
+    from rig.core.numbers import number
     from rig.runfile.manifest import read
+    from rig.runfile.misfits import usable
 
     found = []
     for path in sorted(folder.glob("*/result.json")):
-        manifest, figure = read(path.parent), figures(path.parent).get(FIGURE)
+        manifest, figure = usable(read(path.parent)), figures(path.parent).get(FIGURE)
         if (
             figure is None
             or figure.rejected
@@ -72,7 +74,7 @@ def runs_of(folder: Path) -> list[tuple[AssemblyRun, bool]]:
         about = manifest.get("conditions") or {}
         load, depth = float(about.get("tau_ext") or 0.0), float(about.get("depth_mm") or 0.0)
         size = Ranged(figure.value, figure.low, figure.high)
-        found.append((AssemblyRun(load, depth, int(about.get("assembly") or 1), size), _down(manifest)))
+        found.append((AssemblyRun(load, depth, int(number(about.get("assembly"), 1.0)), size), _down(manifest)))
     return found
 
 

@@ -30,6 +30,19 @@ def with_former(folder: Path, result: Result) -> Result:
     return dataclasses.replace(result, former=tuple(past))
 
 
+def asked_before(*folders: Path) -> Mapping[str, Any]:
+    """The limits by which the result in the first of `folders` that has one was judged, as they were set; none where
+    nothing says."""
+    for folder in folders:
+        try:
+            there = parse(contents(folder / NAME))
+        except (OSError, ValueError):
+            continue
+        asked = there.get("asked") if isinstance(there, Mapping) else None
+        return asked if isinstance(asked, Mapping) else {}
+    return {}
+
+
 def told(result: Result, last: int = 0) -> str:
     """What the verdict was, by which limit, and what it is now; "" of a run that was judged in one way only.
 

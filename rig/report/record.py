@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ NAME = "result.json"
 
 
 def as_json(result: Result) -> dict[str, Any]:
-    """Everything but the curves; a number that is not finite becomes null. `limits`, `former`: see Result."""
+    """Everything but the curves; a number that is not finite becomes null. `limits`, `asked`, `former`: see Result."""
     return {
         "schema": "hdrig.result/1",
         "procedure": result.procedure,
@@ -22,6 +23,7 @@ def as_json(result: Result) -> dict[str, Any]:
         "sentence": result.sentence,
         "rejected": result.rejected,
         "limits": dict(result.limits),
+        "asked": finite(result.asked),
         "former": [{"verdict": f.verdict, "limits": dict(f.limits)} for f in result.former],
         "estimates": {
             e.name: {
@@ -44,6 +46,10 @@ def as_json(result: Result) -> dict[str, Any]:
 
 def finite(value: Any) -> Any:
     """JSON has no NaN: what was not measured is null."""
+    if isinstance(value, Mapping):
+        return {str(key): finite(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [finite(inner) for inner in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

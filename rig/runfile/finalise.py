@@ -17,11 +17,11 @@ from rig.core.regular import regular
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.columns import columns_of_rows, schema_of
-from rig.runfile.journal import JournalReader, JournalWriter, journal_files, rows_in_journal
+from rig.runfile.journal import JournalReader, JournalWriter, rows_in_journal
 from rig.runfile.process import sole_writer, this_process
+from rig.runfile.remains import journal_files, ring_of
 
 READ_ONLY = 0o444
-NOWHERE = "/nonexistent"  # the ring of a run that has none
 PATIENCE = 5.0  # s for a killed recorder to be gone altogether
 
 StepHook = Callable[[str], None]
@@ -63,7 +63,7 @@ def finalise(
         raise UsageError(f"{folder} is closed already, as {about['status']}: {about.get('exit_reason', '')}")
     if status not in manifest.ENDINGS:
         raise UsageError(f"a run cannot end as {status!r}, expected one of {', '.join(manifest.ENDINGS)}")
-    if not Path(about.get("ring") or NOWHERE).exists():
+    if not ring_of(about).exists():
         _refuse_fewer_rows(folder)
     if expected_rows is not None:
         facts["rows_expected"] = expected_rows
@@ -143,7 +143,7 @@ def drain(folder: Path, about: Mapping[str, Any]) -> int:
 
     The ring goes only when they are on disk, so this can be done again.
     """
-    path = Path(about.get("ring") or NOWHERE)
+    path = ring_of(about)
     if not path.exists():
         return 0
     ring = Ring.attach(path)

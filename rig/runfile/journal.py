@@ -18,15 +18,11 @@ import pyarrow as pa
 from rig.core.regular import regular
 from rig.runfile.columns import checksum, no_rows
 from rig.runfile.manifest import sync_folder
+from rig.runfile.remains import journal_files
 
 FIRST, CRC = b"first", b"crc32"  # keys of a batch's own metadata
 GATHERED = 65_536  # bytes: 0.2 s at 2 kHz; of what is larger, columns go by themselves
 END = b"\xff\xff\xff\xff\0\0\0\0"  # how an Arrow stream says that nothing follows
-
-
-def journal_files(folder: Path) -> list[Path]:
-    """The journals of a run, oldest first."""
-    return sorted(folder.glob("journal-*.arrows"))
 
 
 def _last_number(folder: Path) -> int:

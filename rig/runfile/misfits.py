@@ -4,34 +4,151 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from datetime import datetime
+from typing import Any, NamedTuple
 
 from rig.core.kinds import KINDS
 from rig.core.nearest import nearest
-from rig.core.numbers import stated
+from rig.core.numbers import number, stated
 
-POSITIVE, NOT_NEGATIVE, ANY = "above 0", "of 0 or more", ""
-NUMBERS: Mapping[str, Mapping[str, tuple[str, str]]] = {  # what it has to be, and its unit
-    "conditions": {"tau_ext": (ANY, "N·m"), "speed_rpm": (ANY, "rpm"), "depth_mm": (ANY, "mm")},
-    "declared": {
-        "J_m": (POSITIVE, "kg·m²"),
-        "J_l": (POSITIVE, "kg·m²"),
-        "K": (POSITIVE, "N·m/rad"),
-        "B_m": (NOT_NEGATIVE, "N·m·s/rad"),
-        "B_ml": (NOT_NEGATIVE, "N·m·s/rad"),
-        "B_l": (NOT_NEGATIVE, "N·m·s/rad"),
-        "B_sp": (NOT_NEGATIVE, "N·m·s/rad"),
-        "fourier_terms": (POSITIVE, ""),
-    },
-    "encoders": {"motor_counts_per_rev": (POSITIVE, "counts"), "load_counts_per_rev": (POSITIVE, "counts")},
+OUTPUTS = ("flexspline", "circular_spline")
+
+
+class Kind(NamedTuple):
+    """What a key may hold."""
+
+    expected: str
+    fits: Callable[[object], bool]
+
+
+def _is_text(said: object) -> bool:
+    return isinstance(said, str)
+
+
+def _is_table(said: object) -> bool:
+    return isinstance(said, Mapping)
+
+
+def _is_name(said: object) -> bool:
+    """A number is one too."""
+    return isinstance(said, str) or math.isfinite(number(said))
+
+
+def _is_time(said: object) -> bool:
+    try:
+        return isinstance(said, str) and (not said or bool(datetime.fromisoformat(said)))
+    except ValueError:
+        return False
+
+
+def _are_numbers(said: object) -> bool:
+    return isinstance(said, list) and all(math.isfinite(number(one)) for one in said)
+
+
+def _above_zero(unit: str = "") -> Kind:
+    return Kind(f"a number above 0{f' in {unit}' if unit else ''}", lambda said: stated(said) > 0.0)
+
+
+def _not_negative(unit: str) -> Kind:
+    return Kind(f"a number of 0 or more in {unit}", lambda said: stated(said) >= 0.0)
+
+
+def _any(unit: str) -> Kind:
+    return Kind(f"a number in {unit}", lambda said: math.isfinite(stated(said)))
+
+
+TEXT, TABLE, TIME = Kind("text", _is_text), Kind("an object", _is_table), Kind("ISO 8601", _is_time)
+NAME = Kind("a number or a name", _is_name)
+NUMBER = Kind("a number", lambda said: math.isfinite(number(said)))
+COUNT = Kind("a whole number", lambda said: isinstance(said, int) and math.isfinite(number(said)))
+LIST = Kind("a list of numbers", _are_numbers)
+
+Path = tuple[str, ...]
+Kinds = Mapping[Path, Kind]
+FORMAT: Kinds = {  # the keys that exchange needs
+    ("started_utc",): TIME,
+    ("gear", "serial"): NAME,
+    ("gear", "output"): Kind(" or ".join(OUTPUTS), lambda said: said in OUTPUTS),
+    ("declared", "J_m"): _above_zero("kg·m²"),
+    ("declared", "J_l"): _above_zero("kg·m²"),
+    ("declared", "K"): _above_zero("N·m/rad"),
+    ("declared", "B_m"): _not_negative("N·m·s/rad"),
+    ("declared", "B_ml"): _not_negative("N·m·s/rad"),
+    ("declared", "B_l"): _not_negative("N·m·s/rad"),
+    ("declared", "B_sp"): _not_negative("N·m·s/rad"),
+    ("declared", "fourier_terms"): _above_zero(),
+    ("conditions", "tau_ext"): _any("N·m"),
+    ("conditions", "output_locked"): Kind("true or false", lambda said: isinstance(said, bool)),
+    ("conditions", "depth_mm"): _any("mm"),
+    ("conditions", "speed_rpm"): _any("rpm"),
+    ("conditions", "assembly"): NAME,
+    ("conditions", "note"): TEXT,
+    ("encoders", "motor_counts_per_rev"): _above_zero("counts"),
+    ("encoders", "load_counts_per_rev"): _above_zero("counts"),
 }
+OURS: Kinds = {  # what our own runs say besides, and somebody else may mean otherwise
+    ("label",): TEXT,
+    ("operator",): TEXT,
+    ("verdict",): TEXT,
+    ("finding",): TEXT,
+    ("ended_utc",): TIME,
+    ("rows",): COUNT,
+    ("rows_expected",): COUNT,
+    ("duration",): NUMBER,
+    ("limits",): TABLE,
+    ("latch_skew",): TABLE,
+    ("loop",): TABLE,
+    ("loop", "rate"): NUMBER,
+    ("loop", "mode"): TEXT,
+    ("loop", "clock"): TEXT,
+    ("campaign",): TABLE,
+    ("campaign", "uid"): TEXT,
+    ("campaign", "kind"): TEXT,
+    ("campaign", "way"): TEXT,
+    ("campaign", "run"): COUNT,
+    ("campaign", "session"): COUNT,
+    ("campaign", "rig_time_s"): NUMBER,
+    ("conditions", "settle_s"): NUMBER,
+    ("conditions", "tolerance"): NUMBER,
+    ("conditions", "revolutions"): NUMBER,
+    ("conditions", "lead_turns"): NUMBER,
+    ("conditions", "speeds_rpm"): LIST,
+    ("conditions", "feedforward_a"): LIST,
+    ("conditions", "feedforward_b"): LIST,
+}
+OF_A_FILE: Mapping[str, Kind] = {"sha256": TEXT, "rows": COUNT, "bytes": COUNT}
+BARE = ("conditions", "encoders")  # tables whose numbers are read bare, as most write them
 
 
 def misfits(about: Mapping[str, Any]) -> list[str]:
     """One clause for every value of the manifest `about` that is none: key, value, what was expected. Keys that are
     absent or null, and such as the format does not name, are no misfits."""
-    return [*_procedure(about.get("procedure")), *_locked(about), *_numbers(about)]
+    return [*_procedure(about.get("procedure")), *(said for _, said in _wrong(about, FORMAT))]
+
+
+def misfits_of_ours(about: Mapping[str, Any]) -> list[str]:
+    """The same of keys the format does not name, that this program writes."""
+    return [said for _, said in _wrong(about, {**OURS, **_of_files(about)})]
+
+
+def usable(about: Mapping[str, Any]) -> dict[str, Any]:
+    """The manifest without those values: what they would say is unknown. Numbers with their unit beside them stand
+    bare where most write them so."""
+    out = {key: dict(said) if isinstance(said, Mapping) else said for key, said in about.items()}
+    if entries := {name: dict(_at(about, ("files", name))) for name in _at(about, ("files",))}:
+        out["files"] = entries
+    for path, _ in _wrong(about, {**FORMAT, **OURS, **_of_files(about)}):
+        _at(out, path[:-1]).pop(path[-1], None)
+    for table in (_at(out, (name,)) for name in BARE):
+        beside = {key: stated(said) for key, said in table.items() if isinstance(said, Mapping)}
+        table.update({key: value for key, value in beside.items() if math.isfinite(value)})
+    return out
+
+
+def notes(clauses: Iterable[str]) -> list[str]:
+    """Misfits as sentences of an analysis that goes on without them."""
+    return [f"manifest.json: {said}{'' if said.endswith('?') else '.'} It counts as not said." for said in clauses]
 
 
 def _procedure(said: object) -> Iterator[str]:
@@ -39,29 +156,23 @@ def _procedure(said: object) -> Iterator[str]:
         yield f"procedure is {_short(said)}, no kind of run there is; {nearest(said.replace('-', '_'), KINDS)}"
 
 
-def _locked(about: Mapping[str, Any]) -> Iterator[str]:
-    said = _table(about, "conditions").get("output_locked")
-    if said is not None and not isinstance(said, bool):
-        yield f"conditions.output_locked is {_short(said)}, expected true or false"
+def _of_files(about: Mapping[str, Any]) -> Kinds:
+    names = _at(about, ("files",))
+    return {("files", name, key): kind for name in names for key, kind in OF_A_FILE.items()}
 
 
-def _numbers(about: Mapping[str, Any]) -> Iterator[str]:
-    for table, keys in NUMBERS.items():
-        for key, (bound, unit) in keys.items():
-            said = _table(about, table).get(key)
-            if said is not None and not _meant(stated(said), bound):
-                expected = " ".join(word for word in ("a number", bound, f"in {unit}" if unit else "") if word)
-                yield f"{table}.{key} is {_short(said)}, expected {expected}"
+def _wrong(about: Mapping[str, Any], kinds: Kinds) -> Iterator[tuple[Path, str]]:
+    for path, kind in kinds.items():
+        said = _at(about, path[:-1]).get(path[-1])
+        if said is not None and not kind.fits(said):
+            yield path, f"{'.'.join(path)} is {_short(said)}, expected {kind.expected}"
 
 
-def _meant(value: float, bound: str) -> bool:
-    least = {POSITIVE: value > 0.0, NOT_NEGATIVE: value >= 0.0, ANY: True}
-    return math.isfinite(value) and least[bound]
-
-
-def _table(about: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    found = about.get(key)
-    return found if isinstance(found, Mapping) else {}
+def _at(about: Any, path: Path) -> Any:
+    """The table at `path`; an empty one where there is none."""
+    for key in path:
+        about = about.get(key) if isinstance(about, Mapping) else None
+    return about if isinstance(about, Mapping) else {}
 
 
 def _short(value: object) -> str:

@@ -11,9 +11,9 @@ from rig.core.errors import DataError, NotReady, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events, read_events
-from rig.runfile.finalise import NOWHERE, Closed, StepHook, finalise, is_closed, refuse_stranger
-from rig.runfile.journal import journal_files
+from rig.runfile.finalise import Closed, StepHook, finalise, is_closed, refuse_stranger
 from rig.runfile.process import Process, lives
+from rig.runfile.remains import ring_of, to_recover_from
 from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.run import ratio_of
 
@@ -63,25 +63,21 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
 
 def _is_whole(folder: Path, about: Mapping[str, Any]) -> bool:
     """Samples and nothing they could be made of again: a folder of somebody else, or imported."""
-    return (folder / archive.NAME).exists() and not journal_files(folder) and not _ring(about).exists()
+    return (folder / archive.NAME).exists() and not to_recover_from(folder, about)
 
 
 def _refuse_empty(folder: Path, about: Mapping[str, Any]) -> None:
     """Raises UsageError when nothing is there to be recovered. A run of ours killed before its first row is closed."""
     ours = about.get("status") == "running" and "uid" in about and "process" in about
-    if not ours and not journal_files(folder) and not _ring(about).exists():
+    if not ours and not to_recover_from(folder, about):
         raise UsageError(f"{folder} has no samples: neither {archive.NAME} nor a journal; nothing to recover")
-
-
-def _ring(about: Mapping[str, Any]) -> Path:
-    return Path(about.get("ring") or NOWHERE)
 
 
 def _refuse_living(folder: Path, about: Mapping[str, Any]) -> None:
     loop = about.get("process")
     if loop and loop.get("pid") != os.getpid() and lives(loop):  # our own try to close it may have failed
         raise NotReady(f"{folder.name} is still being made by process {loop['pid']}; stop that first")
-    ring = _ring(about)
+    ring = ring_of(about)
     if ring.exists():
         recorder = _recorder_of(folder, ring, loop)
         if lives(recorder):

@@ -10,8 +10,9 @@ from rig.core.errors import DataError
 from rig.runfile import archive, manifest
 from rig.runfile.columns import schema_of
 from rig.runfile.finalise import READ_ONLY, describe
-from rig.runfile.journal import JournalReader, journal_files
+from rig.runfile.journal import JournalReader
 from rig.runfile.process import sole_writer
+from rig.runfile.remains import journal_files
 
 
 def samples_as_closed(folder: Path, about: Mapping[str, Any]) -> bool:
@@ -26,9 +27,11 @@ def samples_as_closed(folder: Path, about: Mapping[str, Any]) -> bool:
     with manifest.told(DataError, f"{path} cannot be read"):
         same = said is None or describe(path)["sha256"] == said
     if not same:
+        anew = "move it away, and hdrig recover makes it anew from the journal"
+        nothing = "there is no journal to make it anew from: the file it was has to come from a copy of the folder"
         raise DataError(
-            f"{path} is not the file the run was closed with, and is not overwritten; move it away, and hdrig recover "
-            "makes it anew from the journal"
+            f"{path} is not the file the run was closed with, and is not overwritten; "
+            f"{anew if journal_files(folder) else nothing}"
         )
     return True
 

@@ -18,6 +18,7 @@ from rig.core.numbers import number
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
+from rig.runfile.misfits import misfits, misfits_of_ours, usable
 from rig.runfile.samples import Samples, open_samples
 
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
@@ -27,8 +28,10 @@ class Run:
     """One run folder, ours or another logger's. Holds no file open; can be sent to another process."""
 
     def __init__(self, path: Path, manifest: manifests.Manifest, samples: Samples) -> None:
+        """`manifest` as it stands in the folder; what of it is of no use, by `misfits`, counts as not said."""
         self.path = path
-        self.manifest = manifest
+        self.manifest = usable(manifest)
+        self.misfits = (*misfits(manifest), *misfits_of_ours(manifest))
         self.samples = samples
         self.ratio = ratio_of(path, manifest)
         self.procedure = _procedure(path, manifest)
@@ -80,13 +83,9 @@ class Run:
 
     @property
     def started(self) -> datetime | None:
-        """When the run started; None when not said. Raises UsageError when what is said is no time."""
+        """When the run started; None when not said."""
         said = self.manifest.get("started_utc")
-        try:
-            return datetime.fromisoformat(said) if said else None
-        except ValueError:
-            where = self.path / manifests.NAME
-            raise UsageError(f"{where}: started_utc is {json.dumps(said)[:60]}, expected ISO 8601") from None
+        return datetime.fromisoformat(said) if said else None
 
     @cached_property
     def timing(self) -> Mapping[str, Any]:

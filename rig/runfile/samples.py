@@ -18,7 +18,8 @@ from rig.core.rows import room
 from rig.runfile.archive import NAME
 from rig.runfile.columns import Array, as_float
 from rig.runfile.importing.units import known
-from rig.runfile.journal import JournalReader, journal_files
+from rig.runfile.journal import JournalReader
+from rig.runfile.remains import journal_files
 
 BATCH = 65_536  # rows at a time, where somebody reads them all
 

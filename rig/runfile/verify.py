@@ -14,10 +14,11 @@ from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.finding import Finding
-from rig.runfile.journal import JournalReader, journal_files
-from rig.runfile.misfits import misfits
+from rig.runfile.journal import JournalReader
+from rig.runfile.misfits import misfits, misfits_of_ours
 from rig.runfile.process import is_being_made
 from rig.runfile.promised import time_untold
+from rig.runfile.remains import advice, journal_files
 from rig.runfile.run import Run
 from rig.runfile.samples import Archive
 from rig.runfile.values import values
@@ -33,8 +34,9 @@ def verify(folder: Path) -> list[Finding]:
     is no run folder at all.
     """
     about = manifest.read(folder)
-    findings = [*_status(about), *_hashes(folder, about), *_read_only(folder, about)]
+    findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
+    findings += [Finding("warning", "manifest", f"{manifest.NAME}: {said}") for said in misfits_of_ours(about)]
     try:
         run = Run.open(folder)
     except HdrigError as error:
@@ -49,13 +51,13 @@ def _is_foreign(about: Mapping[str, Any]) -> bool:
     return about.get("backend") == "imported" or "import" in about
 
 
-def _status(about: Mapping[str, Any]) -> Iterator[Finding]:
+def _status(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
     if is_closed(about) or _is_foreign(about) or "status" not in about:
         return
     if is_being_made(about):
         yield Finding("warning", "status", f"process {about['process']['pid']} is still making this run")
     else:
-        yield Finding("error", "status", "the run was never closed; hdrig recover makes it readable")
+        yield Finding("error", "status", f"the run was never closed; {advice(folder, about)}")
 
 
 def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:

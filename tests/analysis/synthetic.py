@@ -29,6 +29,7 @@ class MadeRun:
     columns: Mapping[str, Array]
     manifest: Mapping[str, Any] = field(default_factory=dict)
     name: str = "made"
+    misfits: tuple[str, ...] = ()
 
     def column(self, name: str) -> Array | None:
         return self.columns.get(name)

@@ -172,7 +172,9 @@ def test_a_manifest_just_written_is_not_remembered_its_time_may_not_change_again
 def test_a_run_whose_program_has_died_is_interrupted_each_time_it_is_asked(tmp_path: Path) -> None:
     run(tmp_path, "2026-11-20", status="running", process={"pid": 2**22 + 1, "started": 1, "host": "elsewhere"})
     (row,) = runs(tmp_path)
-    assert (row.status, "hdrig recover" in row.reason) == ("interrupted", True)
+    assert (row.status, row.reason) == ("interrupted", "found dead; there is no journal to recover it from")
+    (row.path / "journal-0001.arrows").touch()
+    assert runs(tmp_path)[0].reason == "found dead; hdrig recover makes it readable"
 
 
 def test_the_command_lists_damage_in_words_and_json_line_by_line(

@@ -34,6 +34,8 @@ def test_a_channel_counts_the_runs_that_have_it(capsys: pytest.CaptureFixture[st
 
 def test_runs_that_were_left_out_are_counted_and_named(capsys: pytest.CaptureFixture[str]) -> None:
     tell(replace(made_up.nothing(), read=7, left_out=("torn",)))
-    assert "7 of 8 runs read. Left out: torn." in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert said.splitlines()[0].endswith(": no missing effect, 1 of 8 runs was left out")
+    assert "7 of 8 runs read. Left out: torn." in said
     tell(replace(made_up.nothing(), read=7))
     assert "Left out" not in capsys.readouterr().out

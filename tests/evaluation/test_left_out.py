@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 
+from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.core.errors import UsageError
-from rig.evaluation.identification import open_runs, opened
-from tests.commands.made_run import made_run
+from rig.evaluation.to_identify import open_runs, opened
+from tests.commands.made_run import made_run, rows
 
 
 def test_a_run_that_cannot_be_opened_is_left_out_in_words(tmp_path: Path) -> None:
@@ -28,7 +30,21 @@ def test_a_lock_test_whose_output_turns_is_left_out_in_words(tmp_path: Path) -> 
     good = made_run(tmp_path / "good")
     turns = made_run(tmp_path / "turns", {"procedure": "stiffness_lock", "conditions": {"output_locked": True}})
     said: list[str] = []
-    runs, recordings = open_runs([good, turns], said.append)
+    runs, recordings, _ = open_runs([good, turns], said.append)
     assert [run.name for run in runs] == [r.name for r in recordings] == ["good"]
     assert len(said) == 1
     assert said[0].startswith("turns is left out: it says its output is locked, and its load angle goes")
+
+
+def test_a_torque_in_another_unit_than_that_of_the_other_runs_is_left_out_as_by_a_trace(tmp_path: Path) -> None:
+    folders = [made_run(tmp_path / name) for name in ("one", "two")]
+    table = rows()
+    place = table.column_names.index("tau_l")
+    in_mNm = table.set_column(place, table.schema.field(place), pa.array(1e3 * table["tau_l"].to_numpy()))
+    folders.append(made_run(tmp_path / "odd", table=in_mNm))
+    told: list[str] = []
+    runs, recordings, said = open_runs(folders, told.append)
+    assert [run.name for run in runs] == [r.name for r in recordings] == ["one", "two"]
+    assert said == tuple(told)
+    assert told[0].startswith("odd is left out: its τ_l is 1000 times that of its repeats, as if in another unit")
+    assert read_campaign(tmp_path).left_out == ("odd",)

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from rig.core.channels import CHANNEL
 from rig.runfile.archive import row_groups, write_archive
 from rig.runfile.columns import checksum, columns_of_rows, schema
-from rig.runfile.journal import JournalReader, JournalWriter, journal_files
+from rig.runfile.journal import JournalReader, JournalWriter
+from rig.runfile.remains import journal_files
 from tests.runfile.rows import expected, new_folder, ring_of, write_journal
 
 OURS = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=40)

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from rig.cli import main
-from rig.runfile.misfits import misfits
+from rig.model.gear import SIGMA
+from rig.runfile.misfits import FORMAT, OURS, OUTPUTS, misfits, misfits_of_ours, notes, usable
+from rig.runfile.run import Run
 from tests.commands.made_run import made_run, manifest
 
 
@@ -51,4 +53,60 @@ def test_verify_calls_it_broken_and_an_analysis_says_it_and_gives_the_figures_al
     assert main(["verify", folder]) == 6
     assert f"error   manifest.json: {said}" in capsys.readouterr().out
     assert main(["analyse", folder]) == 0
-    assert f"  note: The manifest's {said}." in capsys.readouterr().out
+    assert f"  note: manifest.json: {said}. It counts as not said." in capsys.readouterr().out
+
+
+ODD = [[], [1], {}, {"x": 1}, "", "abc", True, math.nan, math.inf, 10**400, -1, [[]]]
+NESTED = [".".join(path) for path in (*FORMAT, *OURS)]
+
+
+@pytest.mark.parametrize("key", NESTED)
+def test_whatever_a_key_holds_it_is_of_its_kind_or_named_and_taken_out(key: str) -> None:
+    table, _, name = key.rpartition(".")
+    kind = {**FORMAT, **OURS}[tuple(key.split("."))]
+    for odd in ODD:
+        about = {**manifest(), **({table: {name: odd}} if table else {name: odd})}
+        said = [*misfits(about), *misfits_of_ours(about)]
+        here = usable(about)[table] if table else usable(about)
+        assert (name in here) == (not said)
+        if said:
+            assert said == [f"{key} is {said[0].removeprefix(f'{key} is ').partition(', expected')[0]}, expected "
+                            f"{kind.expected}"]  # fmt: skip
+
+
+def test_what_is_usable_has_numbers_bare_and_leaves_the_manifest_as_it_is() -> None:
+    about = {**manifest(), "conditions": {"tau_ext": {"value": -5, "unit": "N·m"}, "assembly": [], "oil": {"x": 1}}}
+    assert usable(about)["conditions"] == {"tau_ext": -5.0, "oil": {"x": 1}}
+    assert about["conditions"]["assembly"] == []
+    assert usable({"files": {"samples.parquet": {"sha256": 7, "rows": 3}}}) == {
+        "files": {"samples.parquet": {"rows": 3}}
+    }
+
+
+def test_the_outputs_are_those_of_the_model() -> None:
+    assert set(OUTPUTS) == set(SIGMA)
+
+
+def test_a_run_has_its_manifest_without_misfits_and_a_sentence_for_each(tmp_path: Path) -> None:
+    run = Run.open(made_run(tmp_path / "run", {"conditions": {"assembly": [], "tau_ext": 1.0}, "campaign": "summer"}))
+    assert run.conditions == {"tau_ext": 1.0}
+    assert notes(run.misfits) == [
+        "manifest.json: conditions.assembly is [], expected a number or a name. It counts as not said.",
+        'manifest.json: campaign is "summer", expected an object. It counts as not said.',
+    ]
+
+
+def test_a_key_of_ours_that_somebody_else_means_otherwise_breaks_no_promise(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = str(made_run(tmp_path / "run", {"campaign": "summer"}))
+    assert main(["verify", folder]) == 0
+    assert 'warning manifest.json: campaign is "summer", expected an object' in capsys.readouterr().out
+
+
+def test_a_list_and_a_comparison_say_it_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(tmp_path / "run", {"gear": {"ratio": 50, "serial": ["A1"]}})
+    assert main(["list", str(tmp_path)]) == 0
+    assert (
+        'run  (manifest.json: gear.serial is ["A1"], expected a number or a name. It counts' in capsys.readouterr().out
+    )

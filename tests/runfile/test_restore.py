@@ -58,3 +58,16 @@ def test_without_a_journal_or_with_another_one_nothing_is_made_up(tmp_path: Path
     with pytest.raises(DataError, match="no journal to make it from"):
         recover(folder)
     assert not (folder / "samples.parquet").exists()
+
+
+def test_changed_samples_without_a_journal_promise_no_recovery(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    path = folder / "samples.parquet"
+    path.chmod(0o644)
+    path.write_bytes(path.read_bytes()[:1000])
+    (folder / "journal-0001.arrows").unlink()
+    with pytest.raises(
+        DataError, match="no journal to make it anew from: the file it was has to come from a copy"
+    ) as e:
+        recover(folder)
+    assert "hdrig recover" not in str(e.value)

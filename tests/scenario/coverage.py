@@ -50,6 +50,7 @@ class Memory:
     procedure: str = "kinematic_error"
     ratio: float = 50.0
     conditions: dict[str, Any] = field(default_factory=dict)
+    misfits: tuple[str, ...] = ()
 
     @property
     def declared(self) -> dict[str, Any]:

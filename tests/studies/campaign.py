@@ -56,6 +56,7 @@ class MemoryRun:
     name: str
     manifest: dict[str, Any]
     columns: dict[str, Array]
+    misfits: tuple[str, ...] = ()
 
     def column(self, name: str) -> Array | None:
         return self.columns.get(name)

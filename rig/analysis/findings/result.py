@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -81,6 +82,7 @@ class Result:
     tables: dict[str, list[dict[str, float | str]]] = field(default_factory=dict)
     curves: dict[str, Array] = field(default_factory=dict)
     limits: Mapping[str, str] = field(default_factory=dict)
+    asked: Mapping[str, Any] = field(default_factory=dict)  # limits as they were set, for the next analysis
     former: tuple[Former, ...] = ()
     rejected: bool = False
     broke_off: str = ""  # the traceback of an analysis that broke off, "" of one that came to its end

@@ -14,7 +14,7 @@ from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.friction import SLOW
 from rig.analysis.identify.mode import add_mode, damping_gradient
-from rig.analysis.identify.possible import refuse_impossible, strange
+from rig.analysis.identify.possible import refuse_impossible, strange, taken_out
 from rig.analysis.identify.solve import Solved
 from rig.analysis.identify.undetermined import NOTHING, said_open, stand_in, undetermined
 from rig.analysis.motion.declared import declared
@@ -102,14 +102,14 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     _spring(found, cannot, fits)
     _load(found, cannot, fits)
     _motor(found, cannot, fits, said, sigma)
+    refuse_impossible(found)
+    cannot += [*strange(found, said), *taken_out(found)]
     cannot += stand_in(found, fits, said, sigma)
     if "tau_s" not in found:
         unknown = found["tau_c"].note == NOTHING
         note = NOTHING if unknown else _no_fall(fits)
         found["tau_s"] = Parameter(BREAKAWAY * found["tau_c"].value, origin="assumed", note=note)
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
-    refuse_impossible(found)
-    cannot += strange(found, said)
     add_mode(found, fits)
     series = _series(fits, cannot)
     return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series), output)

@@ -17,6 +17,8 @@ SIGNS = {
 """What makes a number negative that is never so."""
 
 DRAGS = ("B_sp", "B_m", "B_l")
+ABOVE_ZERO = ("J_m", "J_l", "K", "omega_s")  # what no gear is without
+BOUNDED = (*ABOVE_ZERO, "tau_c", "tau_s", "F_cl", "B_m", "B_ml", "B_l", "B_sp")
 FAR = 10.0  # times what is declared, or a part of it: no estimate of a builder is as far off
 COMPARED = ("K", "J_l", "J_m")
 
@@ -27,6 +29,19 @@ def refuse_impossible(found: Mapping[str, Parameter]) -> None:
         p = found.get(name)
         if p is not None and _negative(p):
             raise DataError(f"{name} comes out at {_said(name, p)}, expected above 0: {why}")
+
+
+def taken_out(found: dict[str, Parameter]) -> list[str]:
+    """Takes out of `found` every number that no gear has, however uncertain: it is not known. A sentence for each."""
+    said = []
+    for name in [name for name in BOUNDED if name in found and not _possible(name, found[name].value)]:
+        least = "above 0" if name in ABOVE_ZERO else "0 or more"
+        said.append(f"{name} cannot be told: it comes out at {_said(name, found.pop(name))}, expected {least}.")
+    return said
+
+
+def _possible(name: str, value: float) -> bool:
+    return value > 0.0 if name in ABOVE_ZERO else value >= 0.0
 
 
 def strange(found: Mapping[str, Parameter], said: Mapping[str, object]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -30,6 +30,11 @@ class Source(Protocol):
 
     @property
     def manifest(self) -> Mapping[str, Any]: ...
+
+    @property
+    def misfits(self) -> Sequence[str]:
+        """Of what the manifest says and cannot mean, a clause each; `manifest` is without it."""
+        ...
 
     @property
     def name(self) -> str: ...

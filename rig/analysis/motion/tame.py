@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Source
 from rig.core.numbers import number
 from rig.core.rows import stretches
-from rig.runfile.misfits import misfits
+from rig.runfile.misfits import notes, usable
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
@@ -26,12 +26,16 @@ class Tame:
         self._run = run
         self.notes: list[str] = []
         self._columns: dict[str, Array | None] = {}
-        self._manifest = self._tables(run.manifest)
+        self._manifest = self._tables(run)
         self.name, self.ratio, self.procedure = run.name, float(run.ratio), run.procedure
 
     @property
     def manifest(self) -> Mapping[str, Any]:
         return self._manifest
+
+    @property
+    def misfits(self) -> Sequence[str]:
+        return self._run.misfits
 
     @property
     def conditions(self) -> Mapping[str, Any]:
@@ -69,9 +73,9 @@ class Tame:
         usable = any(np.isfinite(values[some]).any() for some in stretches(values.size))
         return values if usable or not values.size else None
 
-    def _tables(self, manifest: Any) -> dict[str, Any]:
-        out = dict(manifest) if isinstance(manifest, Mapping) else {}
-        self.notes += [f"The manifest's {said}." for said in misfits(out)]
+    def _tables(self, run: Source) -> dict[str, Any]:
+        self.notes += notes(run.misfits)
+        out = usable(run.manifest)
         for key in TABLES:
             if not isinstance(out.get(key), Mapping):
                 if out.get(key) is not None:

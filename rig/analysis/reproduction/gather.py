@@ -18,6 +18,7 @@ from rig.analysis.reproduction.reading import Reading, read
 from rig.core.errors import DataError, HdrigError
 from rig.core.kinds import Regime, regime_of
 from rig.runfile import manifest as manifests
+from rig.runfile.misfits import usable
 
 PROCESSES = 2  # the machine beside a rig has two cores to spare
 SLOW = ("kinematic_error", "full_turn")  # unloaded, at one speed, smooth
@@ -51,11 +52,16 @@ class Entry:
         return not self.locked and not self.conditions.get("tau_ext")
 
 
+def entry(folder: Path) -> Entry:
+    """The run in `folder`, by what of its manifest can be used. Raises UsageError where there is none."""
+    return Entry(folder, usable(manifests.read(folder)))
+
+
 def entries(campaign: Path) -> list[Entry]:
     """Every run in the folder that came to its end, in order; checks and warm-up left out. Raises DataError: none, or
     runs of several gears.
     """
-    found = [Entry(path.parent, manifests.read(path.parent)) for path in sorted(campaign.rglob(manifests.NAME))]
+    found = [entry(path.parent) for path in sorted(campaign.rglob(manifests.NAME))]
     found = [e for e in found if _counts(e.manifest)]
     if not found:
         raise DataError(f"{campaign} holds no completed run")
@@ -95,8 +101,8 @@ class Ahead:
 
     def begin(self, folder: Path) -> None:
         """Read the run in `folder`, which is closed. Raises HdrigError when it has no manifest."""
-        entry = Entry(folder, manifests.read(folder))
-        if _counts(entry.manifest) and not entry.locked:
+        found = entry(folder)
+        if _counts(found.manifest) and not found.locked:
             self.begun[folder.resolve()] = self._pool.submit(read, folder)
 
 

@@ -39,6 +39,7 @@ class Reading:
     manifest: Mapping[str, Any]
     ratio: float
     procedure: str
+    misfits: tuple[str, ...] = ()
     slow: tuple[KinematicError, ...] = ()  # one for each speed below FAST at which it ran smoothly, slowest first
     rejected: tuple[str, ...] = ()  # why the others do not count
     fast: KinematicError | None = None  # over the settled part at the speed held longest
@@ -94,7 +95,7 @@ def read(folder: Path, reference: Path | None = None) -> Reading:
 
 def reading_of(run: Source, reference: Source | None = None) -> Reading:
     """What the figures need of `run`."""
-    bare = Reading(run.name, dict(run.manifest), run.ratio, run.procedure)
+    bare = Reading(run.name, dict(run.manifest), run.ratio, run.procedure, tuple(run.misfits))
     with np.errstate(all="ignore"):
         if bare.conditions.get("output_locked"):
             return replace(bare, lock=analyse(run, reference))

@@ -56,11 +56,14 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
     result = Converted({}, list(table.notes), simulated=table.simulated)
     keep = np.ones(rows, dtype=bool)
     if clock := mapping.channels.get("t"):
-        keep = _time(result, table, clock, file)
+        keep = _time(result, table, clock, file, mapping.csv.decimal)
     skip = np.diff(result.channels["t"].values) > timing.GAP * result.time["period_median"] if clock else None
     for name, channel in mapping.channels.items():
         if name != "t":
-            raw = [_numbers(table.columns[term.column], term.column, file)[keep] for term in channel.terms]
+            raw = [
+                _numbers(table.columns[term.column], term.column, file, mapping.csv.decimal)[keep]
+                for term in channel.terms
+            ]
             _add(result, channel, raw, skip, file)
     if result.utc is None and table.started is not None and table.started.tzinfo is not None:
         result.utc = table.started + timedelta(seconds=result.time.get("first", 0.0))
@@ -96,7 +99,7 @@ def _waived(mapping: Mapping) -> bool:
     return "file_unit" in mapping.accept
 
 
-def _time(result: Converted, table: Table, clock: ChannelMap, file: str) -> Array:
+def _time(result: Converted, table: Table, clock: ChannelMap, file: str, decimal: str) -> Array:
     """Add `t`; the rows to keep."""
     column = clock.terms[0].column
     raw = table.columns[column]
@@ -107,7 +110,7 @@ def _time(result: Converted, table: Table, clock: ChannelMap, file: str) -> Arra
             f"{file}: column '{column}' is no date (first value {raw[0]}); expected one, as unit = 'datetime'"
         )
     else:
-        raw = _numbers(raw, column, file)
+        raw = _numbers(raw, column, file, decimal)
         refuse.holes(raw, ~np.isfinite(raw), "t", column, file)
     keep = timing.check_order(raw, "" if clock.unit == "datetime" else clock.unit, file, clock.drop_duplicates)
     if dropped := int((~keep).sum()):
@@ -124,7 +127,7 @@ def _time(result: Converted, table: Table, clock: ChannelMap, file: str) -> Arra
     return keep
 
 
-def _numbers(raw: Array, column: str, file: str) -> Array:
+def _numbers(raw: Array, column: str, file: str, decimal: str) -> Array:
     """The column as int64 or float64. Raises UsageError for text, with its first cell that is none."""
     match raw.dtype.kind:
         case "f":
@@ -133,7 +136,7 @@ def _numbers(raw: Array, column: str, file: str) -> Array:
             return raw.astype(np.float64)
         case "i" | "u" | "b":
             return raw.astype(np.int64)
-    raise refuse.not_numbers(raw, column, file)
+    raise refuse.not_numbers(raw, column, file, decimal)
 
 
 def _add(result: Converted, channel: ChannelMap, raw: list[Array], skip: Array | None, file: str) -> None:

@@ -36,17 +36,18 @@ def enough(rows: int, file: str) -> None:
         raise UsageError(f"{file} has {rows} row{'' if rows == 1 else 's'} of data; expected at least 2")
 
 
-def not_numbers(raw: Array, column: str, file: str) -> UsageError:
-    """The sentence for a column of text, dates or the like, showing the first cell that is no number."""
+def not_numbers(raw: Array, column: str, file: str, decimal: str = ".") -> UsageError:
+    """The sentence for a column of text, dates or the like, showing the first cell that is no number where the mapping
+    says that `decimal` divides."""
     cells = raw.tolist()
     if said := _two_decimals(cells):
         return UsageError(f"{file}: column '{column}' is not numbers: {said}; expected one decimal character in all")
     for row, cell in enumerate(cells):
         try:
-            float(cell)
+            float(cell.replace(decimal, ".") if isinstance(cell, str) else cell)
         except (TypeError, ValueError):
             hint = ""
-            if isinstance(cell, str) and cell.count(",") == 1 and cell.replace(",", "").strip(" +-").isdigit():
+            if decimal != "," and isinstance(cell, str) and _is_number(cell, ","):
                 hint = '; set [csv] decimal = ","'
             elif row == 0 and isinstance(cell, str) and known(cell):
                 hint = ", a unit; set [csv] units_row = true"
@@ -65,9 +66,14 @@ def _two_decimals(cells: Sequence[Any]) -> str:
     first: dict[str, str] = {}
     for row, cell in enumerate(cells, 1):
         for mark in ",.":
-            if isinstance(cell, str) and cell.count(mark) == 1 and cell.replace(mark, "").strip(" +-").isdigit():
+            if isinstance(cell, str) and _is_number(cell, mark):
                 first.setdefault(mark, f"row {row} holds {cell!r}")
     return " and ".join(first.values()) if len(first) > 1 else ""
+
+
+def _is_number(cell: str, mark: str) -> bool:
+    """Whether `mark` divides the digits of a number."""
+    return cell.count(mark) == 1 and cell.replace(mark, "").strip(" +-").isdigit()
 
 
 def holes(values: Array, bad: Array, name: str, column: str, file: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.identify.mode import add_mode
-from rig.analysis.identify.possible import refuse_impossible, strange
+from rig.analysis.identify.possible import refuse_impossible, strange, taken_out
 from rig.analysis.identify.recording import Recording, recording, refuse_another_ratio
 from rig.analysis.identify.zeros import refuse_other_zeros
 from rig.core.errors import DataError
@@ -72,3 +72,18 @@ def test_an_inertia_that_may_as_well_be_negative_has_no_frequency() -> None:
     found = {name: measured(value, half) for name, (value, half) in sizes.items()}
     add_mode(found, cast(Any, None))
     assert found.keys() == sizes.keys()
+
+
+def test_a_number_no_gear_has_is_taken_out_however_uncertain_and_said_to_be() -> None:
+    found = {
+        "J_m": measured(-1e-4, 1e-3),
+        "tau_c": measured(-0.001, 0.01),
+        "B_sp": measured(-0.5, 3.0),
+        "F_cl": measured(0.0, 0.1),
+        "K": measured(7000.0, 10.0),
+    }
+    said = taken_out(found)
+    assert sorted(found) == ["F_cl", "K"]
+    assert said[0] == "J_m cannot be told: it comes out at -0.0001 ± 0.001 kg·m², expected above 0."
+    assert [sentence.partition(" ")[0] for sentence in said] == ["J_m", "tau_c", "B_sp"]
+    assert said[1].endswith("expected 0 or more.")

@@ -14,6 +14,7 @@ from rig.analysis.identify.undetermined import NOTHING, WANTED
 from rig.bench import read, twin_parameters
 from rig.core.errors import DataError
 from rig.evaluation.identification import gear_of, refuse_nothing
+from rig.evaluation.to_identify import Opened
 from rig.model import gearfile
 from rig.model.gear import Gear
 from rig.report.text.gear import parameter_line
@@ -42,7 +43,7 @@ def single(alone: Recording) -> Identified:
 
 @pytest.mark.slow
 def test_one_run_at_one_speed_says_which_parameters_it_leaves_open(single: Identified) -> None:
-    assert single.undetermined == ("J_m", "B_m", "B_l", "tau_c", "F_cl")
+    assert single.undetermined == ("J_m", "B_sp", "B_m", "B_l", "tau_c", "F_cl")
     assert all(single.parameters[name].origin != "measured" for name in single.undetermined)
     assert single.parameters["K"].origin == "measured"
     said = " ".join(single.cannot)
@@ -69,7 +70,7 @@ def test_a_mode_made_with_a_declared_inertia_is_not_measured_and_has_no_interval
     for name in ("omega_n", "zeta"):
         assert single.parameters[name].origin == "declared"
         assert not single.parameters[name].half > 0.0
-        assert "made with J_m, not determined" in single.parameters[name].note
+        assert "not determined by these runs" in single.parameters[name].note
 
 
 @pytest.mark.slow
@@ -77,8 +78,8 @@ def test_the_gear_file_says_it_too(single: Identified) -> None:
     file = single.gear_file("A1", True, "a test")
     first = gearfile.loads(gearfile.dumps(file), "gear.toml").cannot[0]
     assert first == (
-        "Not determined by these runs: J_m, B_m, B_l, tau_c, F_cl; what stands in their place: "
-        "J_m, B_m, B_l declared; tau_c, F_cl assumed."
+        "Not determined by these runs: J_m, B_sp, B_m, B_l, tau_c, F_cl; what stands in their place: "
+        "J_m, B_sp, B_m, B_l declared; tau_c, F_cl assumed."
     )
 
 
@@ -96,7 +97,7 @@ def test_runs_that_determine_nothing_are_refused_and_give_no_gear(monkeypatch: p
     found = identified(fit([still], 15), {"declared": DECLARED})
     with pytest.raises(DataError, match=r"nothing of the gear can be determined from what is here \(constant-torque\)"):
         refuse_nothing(found, [still])
-    monkeypatch.setattr("rig.evaluation.identification.open_runs", lambda folders, say: ([], [still]))
+    monkeypatch.setattr("rig.evaluation.identification.open_runs", lambda folders, say: Opened([], [still]))
     monkeypatch.setattr("rig.evaluation.identification._fitted", lambda *known: (found, None))
     with pytest.raises(DataError, match="nothing of the gear can be determined"):
         gear_of([], 15, lambda text: None)
@@ -108,3 +109,10 @@ def test_both_directions_at_three_speeds_leave_nothing_open(gear: Gear) -> None:
     found = identified(fit([r for run in runs if (r := recording(run)) is not None], 15), {"declared": DECLARED})
     assert found.undetermined == ()
     assert not any(text.startswith("Not determined") for text in found.cannot)
+
+
+def test_a_damping_below_zero_is_declared_and_open_and_the_gear_file_can_be_read(single: Identified) -> None:
+    assert (single.parameters["B_sp"].value, single.parameters["B_sp"].origin) == (DECLARED["B_sp"], "declared")
+    assert any(sentence.startswith("B_sp cannot be told: it comes out at -") for sentence in single.cannot)
+    file = gearfile.loads(gearfile.dumps(single.gear_file("A1", True, "a test")), "gear.toml")
+    assert min(p.value for p in file.parameters.values()) >= 0.0

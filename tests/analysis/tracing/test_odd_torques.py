@@ -19,7 +19,8 @@ N, SPEEDS = 400, (12.0, 20.0, -20.0, 31.0)
 
 @pytest.fixture(autouse=True)
 def _said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "alike", lambda a, b: bool(a.said == b.said))
+    monkeypatch.setattr(module, "moved_alike", lambda a, b: bool(a.said == b.said))
+    monkeypatch.setattr(module, "alike", lambda a, b: bool(a.said == b.said and abs(a.mean_torque - b.mean_torque) < 1))
 
 
 def run(rng: np.random.Generator, speed: float, locked: bool = False, **as_read: Any) -> Any:
@@ -37,6 +38,8 @@ def run(rng: np.random.Generator, speed: float, locked: bool = False, **as_read:
         procedure="constant_torque",
         has={"tau_m", "tau_l"},
         pieces=(piece,),
+        load_stated=True,
+        mean_torque=float(torques["tau_l"].mean()),
     )
 
 
@@ -75,6 +78,20 @@ def test_without_a_repeat_a_size_or_a_sign_tells_nothing(rng: np.random.Generato
     runs = [run(rng, speed) for speed in SPEEDS]
     odd = run(rng, 5.0, tau_m=lambda x: -1000 * x)
     assert odd_torques([*runs, odd]) == {}
+
+
+def test_a_shaft_torque_in_another_unit_makes_no_other_weight_of_it_where_the_weight_is_said(
+    rng: np.random.Generator,
+) -> None:
+    odd = run(rng, SPEEDS[0], tau_l=lambda x: 1000 * x)
+    assert list(odd_torques([*campaign(rng), odd])) == [odd.name]
+    odd.load_stated = False  # then it may be one that nobody wrote down
+    assert odd_torques([*campaign(rng), odd]) == {}
+
+
+def test_power_that_is_little_of_torque_and_speed_has_no_sign(rng: np.random.Generator) -> None:
+    loaded = [run(rng, SPEEDS[0], tau_l=lambda x, by=by: 0.01 * by + 20.0 * rng.standard_normal(N)) for by in (1, -1)]
+    assert odd_torques([*campaign(rng), *loaded]) == {}
 
 
 def test_where_most_runs_read_nothing_none_is_odd_for_it(rng: np.random.Generator) -> None:

@@ -86,3 +86,13 @@ def test_a_unit_in_a_key_is_the_unit_that_is_told() -> None:
         keys = [key for key in ROWS if key.endswith(ending)]
         assert keys
         assert {ROWS[key][0] for key in keys} == {unit}
+
+
+def test_the_verdict_says_which_runs_it_does_not_go_by() -> None:
+    whole = made_up.nothing()
+    assert document(whole)["verdict"]["sentence"] == whole.verdict.sentence
+    assert document(whole)["verdict"]["left_out"] == []
+    out = ("a", "b", "c", "d", "e")
+    verdict = document(replace(whole, read=7, left_out=out))["verdict"]
+    assert verdict["sentence"] == f"{whole.verdict.sentence} 5 of 12 runs were left out: a, b, c and 2 more."
+    assert verdict["left_out"] == list(out)

@@ -230,3 +230,16 @@ def test_an_optional_package_that_is_absent(
     monkeypatch.setattr(builtins, "__import__", without)
     said = foreign.refused(path)
     assert said.endswith(f"needs the package {package}, which is not installed; {how_to_install()}")
+
+
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_text_far_down_is_blamed_by_its_own_row_and_no_setting_is_advised_that_is_made(
+    foreign: Foreign, decimal: str
+) -> None:
+    path = foreign.folder / "run.csv"
+    write_csv(path, columns(), delimiter=";", decimal=decimal)
+    lines = path.read_text().splitlines(keepends=True)
+    lines[301] = ";".join([*lines[301].split(";")[:3], "overflow", *lines[301].split(";")[4:]])
+    path.write_text("".join(lines))
+    said = foreign.refused(path, MAPPING + f'[csv]\ndelimiter = ";"\ndecimal = "{decimal}"\n')
+    assert said == "run.csv: column 'torque' is not numbers: row 301 holds 'overflow'"

@@ -53,9 +53,14 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
 
 def alike(a: Recording, b: Recording) -> bool:
     """Same words, and the same motion, the same way round and under the same torque: words may leave both out."""
-    if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
+    if "tau_l" in a.has & b.has and not np.isclose(a.mean_torque, b.mean_torque, rtol=CLOSE, atol=SAME_LOAD):
         return False
-    if "tau_l" in a.has and not np.isclose(a.mean_torque, b.mean_torque, rtol=CLOSE, atol=SAME_LOAD):
+    return moved_alike(a, b)
+
+
+def moved_alike(a: Recording, b: Recording) -> bool:
+    """The same, whatever the torque reads."""
+    if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
         return False
     close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
     ways = zip(travel(a), travel(b), close, strict=True)

@@ -12,6 +12,7 @@ from typing import Any
 from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Before, Trace
 from rig.analysis.tracing.outcome.told import meaning, unmoved, why_unmoved
+from rig.analysis.tracing.outcome.without import ruled
 from rig.model.effect import Parameter
 from rig.model.effects import LIBRARY
 from rig.runfile.manifest import write_atomic
@@ -49,7 +50,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "mean_drift": [drift.document() for drift in trace.mean_drift],
         },
         "candidates": [asdict(candidate) for candidate in trace.candidates],
-        "verdict": asdict(trace.verdict),
+        "verdict": asdict(trace.verdict) | {"sentence": ruled(trace), "left_out": trace.left_out},
         "effects": {
             f.effect: {"parameters": _parameters(f.parameters, f.effect), "share_removed": min(f.share, 1.0)}
             for f in trace.effects

@@ -11,11 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from rig.analysis.motion.held import not_held
+from rig.analysis.motion.one_rig import refuse_other_gears
+from rig.analysis.tracing.runs.balance import odd_balances
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
+from rig.analysis.tracing.runs.signs import refuse_odd_torques
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
@@ -74,14 +77,14 @@ def read_campaign(folder: Path) -> Campaign:
     nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
-    _refuse_other_gears(folder.name, opened)
+    refuse_other_gears(folder.name, opened)
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(_record, opened, begun))
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, folder.name)
-    for sort in (_odd, _lacking, _same_gear, _odd_torques):
+    for sort in (_odd, _lacking, _same_gear, _odd_torques, _odd_balances):
         runs, odd = sort(runs)
         out += odd
     runs, carrying = weighed(runs)
@@ -99,6 +102,20 @@ def read_campaign(folder: Path) -> Campaign:
     return Campaign(
         folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left))
     )
+
+
+def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
+    """Why some of `runs` do not go with the others of the campaign `name`, by the run's name: other units of angle or
+    torque, other signs, another ratio. What cannot be told of a run is no reason. Raises UsageError where most are so.
+    """
+    found = [r for r in map(_record, runs, starts(runs)) if isinstance(r, Recording)]
+    refuse_odd_angles(found, name)
+    out: list[Said] = []
+    for sort in (_odd, _same_gear, _odd_torques, _odd_balances):
+        found, odd = sort(found)
+        out += odd
+    refuse_odd_torques(found, name)
+    return {said.run: said.reason for said in out}
 
 
 def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
@@ -157,6 +174,11 @@ def _odd_torques(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     return _apart(runs, odd_torques(runs))
 
 
+def _odd_balances(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """Runs in which a torque is none that friction, weight and spring allow are left out."""
+    return _apart(runs, odd_balances(runs))
+
+
 def _apart(runs: list[Recording], wrong: Mapping[str, str]) -> tuple[list[Recording], list[Said]]:
     """The runs but for those that are `wrong`, by name, and why those are."""
     return [r for r in runs if r.name not in wrong], [left_out(name, said) for name, said in wrong.items()]
@@ -202,14 +224,6 @@ def _moved(run: Recording) -> Moved:
     omega = np.concatenate([p.omega_m for p in run.pieces])
     start, end = float(run.pieces[0].t[0]), float(run.pieces[-1].t[-1])
     return Moved(start, end, float(np.mean(np.abs(omega))), float(np.mean(omega**2)))
-
-
-def _refuse_other_gears(campaign: str, opened: Sequence[Run]) -> None:
-    """Two gears differ by more than repeats do: taken for one, what they differ by would be the floor."""
-    tables = [run.manifest.get("gear") for run in opened]
-    serials = sorted({str(t["serial"]) for t in tables if isinstance(t, Mapping) and t.get("serial")})
-    if len(serials) > 1:
-        raise UsageError(f"{campaign}: its runs are of {len(serials)} gears ({', '.join(serials)[:80]}), expected one")
 
 
 def _same_gear(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rig.core.errors import UsageError
+from rig.analysis.motion.one_rig import assembly_of
 from rig.runfile.run import Run
 
 
@@ -16,16 +16,12 @@ def one_rig(runs: Sequence[Run]) -> tuple[list[Run], list[str]]:
     Taking the wave generator out and fitting it again changes the kinematic error: two assemblies are two gears.
     """
     whole, notes = _last_attempts(runs)
-    assemblies = Counter(map(_assembly, whole))
-    usual = max(assemblies, key=lambda a: assemblies[a]) if assemblies else ()
+    assemblies = Counter(map(assembly_of, whole))
+    usual: tuple[Any, ...] = max(assemblies, key=lambda a: assemblies[a]) if assemblies else ()
     others = len(whole) - assemblies[usual]
     if others:
         notes.append(f"{others} runs of other assemblies or depths than {_words(usual)} were left out.")
-    return [run for run in whole if _assembly(run) == usual], notes
-
-
-def _assembly(run: Run) -> tuple[Any, ...]:
-    return (run.conditions.get("assembly", 1), run.conditions.get("depth_mm", 0.0))
+    return [run for run in whole if assembly_of(run) == usual], notes
 
 
 def _words(assembly: tuple[Any, ...]) -> str:
@@ -73,8 +69,4 @@ def starts(runs: Sequence[Run]) -> list[float]:
 
 
 def _utc(run: Run) -> float | None:
-    try:
-        said = run.started
-    except UsageError:
-        return None
-    return said.timestamp() if said else None
+    return run.started.timestamp() if run.started else None

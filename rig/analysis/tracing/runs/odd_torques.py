@@ -11,11 +11,12 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.floor.repeats import alike, moved_alike
 from rig.analysis.tracing.runs.recording import Recording
 
 TORQUES: Final = {"tau_m": "τ_m", "tau_l": "τ_l"}
 UNIT: Final = 20.0  # times what repeats read: friction that warms away halves, and the next unit is 100 or 1000
+SHARE: Final = 0.1  # of size times speed: less power has no sign
 MOST: Final = 0.8  # of the runs that turn freely: the sign they agree in is right
 
 
@@ -29,6 +30,12 @@ class Read:
     spread: float
     first: float
     power: float
+    speed: float  # rad/s, RMS
+
+    @property
+    def tells(self) -> bool:
+        """Whether friction is enough of it to have a sign: under a weight, forth and back, the shaft shows little."""
+        return abs(self.power) > SHARE * self.size * self.speed
 
 
 def odd_torques(runs: Sequence[Recording]) -> dict[str, str]:
@@ -47,8 +54,13 @@ def odd_torques(runs: Sequence[Recording]) -> dict[str, str]:
 
 
 def _said(one: Read, others: Sequence[Read]) -> str | None:
-    like = [other for other in others if alike(one.run, other.run)]
+    like = [other for other in others if _repeats(one.run, other.run)]
     return _stuck(one, others) or (_unit(one, like, others) or _sign(one, like, others) if like else None)
+
+
+def _repeats(a: Recording, b: Recording) -> bool:
+    """Whether both are of one condition; under one weight by what is said, for what is read may be the odd torque."""
+    return moved_alike(a, b) if a.load_stated and b.load_stated else alike(a, b)
 
 
 def _stuck(one: Read, others: Sequence[Read]) -> str | None:
@@ -76,7 +88,7 @@ def _unit(one: Read, like: Sequence[Read], others: Sequence[Read]) -> str | None
 def _sign(one: Read, like: Sequence[Read], others: Sequence[Read]) -> str | None:
     """Where it takes what its repeats and most other runs give, the motor against its friction."""
     against = float(np.mean([other.power * one.power < 0 for other in others]))
-    if one.run.locked or against < MOST:
+    if one.run.locked or against < MOST or not all(other.tells for other in (one, *like)):
         return None
     if not all(0.5 * abs(other.power) < abs(one.power) < 2.0 * abs(other.power) for other in like):
         return None
@@ -89,4 +101,5 @@ def _read(run: Recording, channel: str) -> Read:
     x = np.concatenate([getattr(piece, channel) for piece in run.pieces])
     omega = np.concatenate([piece.omega_m for piece in run.pieces])
     size = float(np.sqrt(np.nanmean(x**2)))
-    return Read(run, size, float(np.ptp(x)), float(x[0]), float(np.nanmean(x * omega)))
+    speed = float(np.sqrt(np.mean(omega**2)))
+    return Read(run, size, float(np.ptp(x)), float(x[0]), float(np.nanmean(x * omega)), speed)

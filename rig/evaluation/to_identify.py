@@ -1,0 +1,108 @@
+"""The runs an identification goes by: opened, of one gear in one assembly, none of them odd beside the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from rig.core.errors import DataError, HdrigError, said_of
+from rig.runfile.misfits import notes
+
+if TYPE_CHECKING:
+    from rig.analysis.identify.recording import Recording
+    from rig.runfile.run import Run
+
+Say = Callable[[str], None]
+"""Told of progress; what it is told need not be kept."""
+
+
+class Opened(NamedTuple):
+    """All runs of the campaign, those that identification can read, and what is to be known of the others."""
+
+    runs: list[Run]
+    recordings: list[Recording]
+    said: tuple[str, ...] = ()
+
+
+def open_runs(folders: Sequence[Path], say: Say) -> Opened:
+    """The runs in `folders`; one that cannot be opened, or is odd beside the others as `hdrig trace` sees it, is left
+    out in words. Raises what the first one is refused with when none can be opened; UsageError for two gears, or a
+    torque or an angle that is odd in most; DataError when no run is left, or two assemblies, another gear ratio than
+    declared, or two zeros of the motor's encoder."""
+    from rig.analysis.identify.recording import recording, refuse_another_ratio
+    from rig.analysis.identify.zeros import refuse_other_zeros
+    from rig.analysis.motion.held import not_held
+
+    runs = _experiments(opened(folders, say))
+    _refuse_mixed(_where(folders), runs)
+    found = [r for one in runs if (r := recording(one)) is not None]
+    out = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}
+    found = [run for run in found if run.name not in out]
+    if not found:
+        raise DataError("no run here has time and both angles: nothing to identify from")
+    refuse_another_ratio(found)
+    out |= _odd([run for run in runs if run.name not in out], _where(folders))
+    said = [f"{name} is left out: {why}" for name, why in out.items()]
+    for sentence in said:
+        say(sentence)
+    runs = [run for run in runs if run.name not in out]
+    found = [run for run in found if run.name not in out]
+    if not found:
+        raise DataError(f"no run is left to identify from: {' '.join(said)[:300]}")
+    refuse_other_zeros(found)
+    return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
+
+
+def _experiments(runs: Sequence[Run]) -> list[Run]:
+    """Those that came to their end. Raises DataError where there is none."""
+    found = [
+        run
+        for run in runs
+        if run.manifest.get("status") in ("completed", "imported", None) and run.procedure != "other"
+    ]
+    if not found:
+        raise DataError("no completed run of an experiment among these folders: nothing to identify from")
+    return found
+
+
+def _refuse_mixed(name: str, runs: Sequence[Run]) -> None:
+    from rig.analysis.motion.one_rig import assembly_of, refuse_other_gears
+
+    refuse_other_gears(name, runs)
+    for what, values in (
+        ("gear ratios", {run.ratio for run in runs}),
+        ("assemblies", {assembly_of(run)[0] for run in runs}),
+    ):
+        if len(values) > 1:
+            words = ", ".join(map(str, sorted(map(str, values))))
+            raise DataError(f"these runs are of {len(values)} {what} ({words}): identify one at a time")
+
+
+def _odd(runs: Sequence[Run], name: str) -> dict[str, str]:
+    from rig.analysis.tracing.runs.campaign import odd_runs
+
+    return odd_runs(runs, name)
+
+
+def _where(folders: Sequence[Path]) -> str:
+    """What the runs lie in."""
+    return folders[0].resolve().parent.name
+
+
+def opened(folders: Sequence[Path], say: Say) -> list[Run]:
+    """The runs among `folders` that can be opened, and a word for each that cannot. Raises the first refusal where
+    there is none."""
+    from rig.runfile.run import Run
+
+    runs, refused = [], []
+    for folder in folders:
+        try:
+            runs.append(Run.open(folder))
+        except HdrigError as error:
+            refused.append((folder, error))
+    if not runs and refused:
+        raise refused[0][1]
+    for folder, why in refused:
+        say(f"{folder.name} is left out: {said_of(folder, why)}")
+    return runs

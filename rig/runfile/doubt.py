@@ -1,0 +1,64 @@
+"""Are the samples still those that a result was made from? What stands in a result is believed no further than that."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rig.core.errors import HdrigError, said_of
+
+RESULT, SAMPLES = "result.json", "samples.parquet"
+
+
+def doubt(folder: Path, about: Mapping[str, Any]) -> str:
+    """Why the figures of the run in `folder`, whose manifest is `about`, are not to be believed; "" where nothing says
+    so. Reads all samples of a run that has a result."""
+    if not (folder / RESULT).exists():
+        return ""
+    for name in (RESULT, SAMPLES):
+        if _is_another(folder / name, _sha256(about, name)):
+            return f"{name} is not what it was when the run was closed or analysed (see hdrig verify)"
+    there, said = (folder / SAMPLES).exists(), _entry(about, SAMPLES)
+    if (there and said.get("sha256")) or not (there or said):  # a folder of results alone promises no samples
+        return ""
+    return _unreadable(folder)
+
+
+def quick_doubt(folder: Path, about: Mapping[str, Any]) -> str:
+    """The same, looking into the samples only where they are gone, of another size, or younger than the result."""
+    try:
+        result, samples = (folder / RESULT).stat(), (folder / SAMPLES).stat()
+    except OSError:
+        return doubt(folder, about)
+    size = _entry(about, SAMPLES).get("bytes", samples.st_size)
+    return doubt(folder, about) if samples.st_mtime > result.st_mtime or size != samples.st_size else ""
+
+
+def _unreadable(folder: Path) -> str:
+    """Of samples that nobody took a hash of, or that a journal stands in for."""
+    from rig.runfile.run import Run
+
+    try:
+        Run.open(folder)
+    except HdrigError as error:
+        return said_of(folder, error)
+    return ""
+
+
+def _is_another(path: Path, sha256: str | None) -> bool:
+    from rig.runfile.finalise import describe
+
+    try:
+        return bool(sha256) and path.exists() and describe(path)["sha256"] != sha256
+    except OSError:  # what cannot be read is said by those who read it
+        return False
+
+
+def _sha256(about: Mapping[str, Any], name: str) -> str | None:
+    return _entry(about, name).get("sha256")
+
+
+def _entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    entry = about.get("files", {}).get(name)
+    return entry if isinstance(entry, Mapping) else {}
