@@ -44,7 +44,8 @@ def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
     """
     low, high = float(theta.min()) / TURN, float(theta.max()) / TURN
     bins = max(int((high - low) * per_turn), 1)
-    rows, where, total = np.zeros(bins + 1), np.zeros(bins + 1), np.zeros(bins + 1)  # the last is a part of a bin
+    # behind the last whole bin a part of one, and a row that rounding puts behind that
+    rows, where, total = np.zeros(bins + 2), np.zeros(bins + 2), np.zeros(bins + 2)
     for start in range(0, theta.size, WIDE_BLOCK):  # whole arrays of a long run do not fit the cache: twice the time
         along = theta[start : start + WIDE_BLOCK] * (per_turn / TURN)
         along -= low * per_turn
@@ -55,9 +56,9 @@ def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
         where[first : last + 1] += np.bincount(place, along)
         total[first : last + 1] += np.bincount(place, y[start : start + WIDE_BLOCK])
     for sums in (rows, where, total):
-        sums[-2] += sums[-1]
-    here = rows[:-1] > 0
-    rows, where, total = (sums[:-1] if here.all() else sums[:-1][here] for sums in (rows, where, total))
+        sums[bins - 1] += sums[bins:].sum()
+    here = rows[:bins] > 0
+    rows, where, total = (sums[:bins] if here.all() else sums[:bins][here] for sums in (rows, where, total))
     where /= rows
     total /= rows
     centre = np.arange(0.5, bins)

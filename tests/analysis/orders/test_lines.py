@@ -81,3 +81,14 @@ def test_resampling_keeps_every_row_and_fills_gaps() -> None:
     theta = np.concatenate((np.linspace(0, 3, 3000), np.linspace(3.5, TURN, 3000)))
     turns, values = resample(theta, theta, 64)
     assert np.allclose(values, turns * TURN, atol=0.05)
+
+
+@pytest.mark.parametrize("turns", [1.0, 3.0, 7.0, 100.0, 314.37])
+@pytest.mark.parametrize("per_turn", [2, 100, 314, 1000])
+def test_a_whole_number_of_bins_holds_every_row_whatever_rounding_does(turns: float, per_turn: int) -> None:
+    theta = 0.1 + np.linspace(0.0, turns * TURN, 40_001)
+    for angle in (theta, -theta):
+        grid, values = resample(angle, np.ones_like(angle), per_turn)
+        assert grid.size == values.size
+        assert abs(grid.size - turns * per_turn) <= 1
+        assert values == pytest.approx(1.0)

@@ -21,7 +21,7 @@ RPM = np.pi / 30
 
 
 def run(rpm: float, rate: float = 250.0, locked: bool = False) -> Any:
-    piece = SimpleNamespace(theta_m=np.array([0.0, 1.0, 0.0]))
+    piece = SimpleNamespace(theta_m=np.array([0.0, 1.0, 0.0]), omega_m=np.full(3, rpm * RPM))
     return SimpleNamespace(
         turning=rpm * RPM,
         locked=locked,
@@ -74,6 +74,12 @@ def test_at_one_speed_constant_friction_and_drag_may_each_be_all_of_it() -> None
     assert found["tau_cl"].ci95[1] == pytest.approx(0.2 + omega / 100)
     assert found["B_l"].ci95[1] == pytest.approx(0.2 * 100 / omega + 1.0)
     assert found["K"] == BASELINE[0]
+
+
+def test_a_run_whose_own_speed_changes_tells_drag_from_constant_friction() -> None:
+    swings = run(300.0)
+    swings.pieces[0].omega_m = 300.0 * RPM * np.sin(np.linspace(0.0, 6.28, 100))
+    assert named(honest(BASELINE, [swings, swings]))["tau_c"] == BASELINE[2]
 
 
 def test_orders_beyond_the_rows_of_the_slowest_run_are_not_given() -> None:
