@@ -14,8 +14,9 @@ import pyarrow.parquet as pq
 
 from rig.runfile.columns import as_float
 from rig.runfile.manifest import sync_folder
+from rig.runfile.remains import SAMPLES
 
-NAME = "samples.parquet"
+NAME = SAMPLES
 GROUP = 60.0  # s in a row group: one channel of ten hours is 600 small reads, and memory stays flat
 GROUP_ROWS = 1 << 20  # at most: 60 s at 17 kHz, or a time that stands still
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.errors import HdrigError, said_of
+from rig.runfile.remains import SAMPLES
 
-RESULT, SAMPLES = "result.json", "samples.parquet"
+RESULT = "result.json"
 
 
 def doubt(folder: Path, about: Mapping[str, Any]) -> str:

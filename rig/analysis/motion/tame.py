@@ -70,8 +70,8 @@ class Tame:
             self.notes.append(f"{count} values of {name} are infinite or absurdly large: taken as missing.")
             values = values.copy()
             values[np.concatenate(absurd)] = np.nan
-        usable = any(np.isfinite(values[some]).any() for some in stretches(values.size))
-        return values if usable or not values.size else None
+        any_left = any(np.isfinite(values[some]).any() for some in stretches(values.size))
+        return values if any_left or not values.size else None
 
     def _tables(self, run: Source) -> dict[str, Any]:
         self.notes += notes(run.misfits)

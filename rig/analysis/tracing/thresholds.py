@@ -27,6 +27,9 @@ FLOOR_LEAST: Final = 400  # rows that two repeats must share before their differ
 UNCORRELATED: Final = 0.05  # of the autocorrelation: below it rows count as independent
 
 FAINTEST: Final = 1e-5  # share of a column that must be its own before it is solved for
+NOISE_ALONE: Final = (
+    1e-9  # of what noise adds to a column, its own at least: a column that is noise alone is not divided by
+)
 RELATIVE: Final = 3e-4  # of the first effect's evidence: below a sixtieth of its size lies what its law has wrong
 CLEAR: Final = 0.5  # share of a column beside the model that must not be sensor noise
 EVIDENCE: Final = 12.0  # nats; at 300 variants tried, chance gets there once in a thousand campaigns

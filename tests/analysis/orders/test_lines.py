@@ -83,12 +83,11 @@ def test_resampling_keeps_every_row_and_fills_gaps() -> None:
     assert np.allclose(values, turns * TURN, atol=0.05)
 
 
-@pytest.mark.parametrize("turns", [1.0, 3.0, 7.0, 100.0, 314.37])
-@pytest.mark.parametrize("per_turn", [2, 100, 314, 1000])
-def test_a_whole_number_of_bins_holds_every_row_whatever_rounding_does(turns: float, per_turn: int) -> None:
-    theta = 0.1 + np.linspace(0.0, turns * TURN, 40_001)
-    for angle in (theta, -theta):
-        grid, values = resample(angle, np.ones_like(angle), per_turn)
-        assert grid.size == values.size
-        assert abs(grid.size - turns * per_turn) <= 1
-        assert values == pytest.approx(1.0)
+@pytest.mark.parametrize(("per_turn", "bins", "first"), [(1000, 60, 137.59590236508745), (50, 6, -300.57337880034885)])
+def test_the_row_that_rounding_puts_behind_the_last_bin_is_in_it(per_turn: int, bins: int, first: float) -> None:
+    """Sixty bins are 59.999… by one product and 60 by another."""
+    theta = first + bins * TURN / per_turn * np.linspace(0.0, 1.0, 4001)
+    assert int((theta.max() / TURN - theta.min() / TURN) * per_turn) == bins - 1
+    grid, values = resample(theta, np.ones_like(theta), per_turn)
+    assert grid.size == values.size == bins - 1
+    assert values == pytest.approx(1.0)

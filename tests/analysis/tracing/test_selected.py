@@ -57,10 +57,12 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     assert selected._without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == left
 
 
-@pytest.mark.parametrize(("unread", "left", "expected"), [(True, 1.01, ["weight"]), (True, 1.1, ["weight", "mode"]),
-                                                         (False, 1.01, ["weight", "mode"])])  # fmt: skip
+@pytest.mark.parametrize(("unread", "now", "left", "expected"), [
+    (True, 1.0, 1.01, ["weight"]), (True, 1.0, 1.1, ["weight", "mode"]), (False, 1.0, 1.01, ["weight", "mode"]),
+    (True, 0.5, 0.9, ["weight"]),  # nothing above the floor without it
+])  # fmt: skip
 def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
-    monkeypatch: pytest.MonkeyPatch, unread: bool, left: float, expected: list[str]
+    monkeypatch: pytest.MonkeyPatch, unread: bool, now: float, left: float, expected: list[str]
 ) -> None:
     """A mode stood for an inertia that was not known yet; the weight is needed."""
     size = {"weight": 9.0, "mode": 2.0}
@@ -75,4 +77,4 @@ def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
 
     monkeypatch.setattr(selected, "_without", without)
     nothing: Any = None
-    assert selected._without_needless(with_(["weight", "mode"], 1.0), (), nothing).names == expected
+    assert selected._without_needless(with_(["weight", "mode"], now), (), nothing).names == expected

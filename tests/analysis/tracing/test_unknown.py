@@ -10,6 +10,7 @@ from rig.analysis.tracing.rest import unknown
 from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, straightened
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.past import since_turned
 from rig.analysis.tracing.rest.sudden import turned_since
 from rig.analysis.tracing.rest.unknown import homes
@@ -279,3 +280,14 @@ def test_another_kinematic_error_from_one_run_on_is_one_thing_and_not_what_the_w
     assert told((at["time"] > 50.0) * wave) > 0.95
     assert told(at["direction"] * wave) < 0.5
     assert told(at["load"] / 8.0 * wave) < 0.1
+
+
+def test_within_a_seventh_of_a_turn_no_order_is_told_that_does_not_come_round_once() -> None:
+    rng = np.random.default_rng(10)
+    swing = 0.44 * np.sin(np.linspace(0.0, 20.0, RUNS * ROWS))  # rad
+    at = coordinates(rng) | {"load_angle": swing}
+    bent = Rest(8.0 * np.cos(3 * swing) + rng.normal(0, 1, swing.size), np.repeat(np.arange(RUNS), ROWS), at, DT,
+                *NO_BASELINE)  # fmt: skip
+    found = best_order(Halves(bent, folds(bent)), "load_angle", "A", SENSES[0])
+    assert found is not None
+    assert (found.order or 0.0) > 7.0

@@ -13,11 +13,9 @@ from rig.analysis.tracing.fit.bank import Bank, Products
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
-from rig.analysis.tracing.thresholds import CLEAR, FAINTEST
+from rig.analysis.tracing.thresholds import CLEAR, FAINTEST, NOISE_ALONE
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
-
-FAINT = 1e-9  # of what noise adds to a column, its own at least
 
 
 @dataclass(frozen=True)
@@ -108,7 +106,7 @@ def drops(bank: Bank, mine: Own, u: dict[str, Array], s: Solution) -> list[Drop]
 
 def _drop(i: int, gram: Array, noise: Array, v: Array, b: Array) -> Drop:
     """One term: project out the model, leave directions out that are not its own or mostly sensor noise."""
-    least = FAINT * np.abs(np.diag(noise))  # a column that is nothing but noise is no more than that
+    least = NOISE_ALONE * np.abs(np.diag(noise))
     size = np.sqrt(np.maximum(np.maximum(np.diag(gram), least), 1e-300))
     noise = noise / size / size[:, None]
     left = gram / size / size[:, None] - noise - (v / size).T @ (v / size)

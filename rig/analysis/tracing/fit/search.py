@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -77,13 +78,17 @@ class Search:
 
     def least(self, r: Scored, ranking: Sequence[Scored]) -> float:
         """Evidence that `r` must have: more than what the law of the first of `ranking` has wrong, where both act."""
-        shadow = ranking and self._acts(r.term.name) & self._acts(ranking[0].term.name)
-        return max(EVIDENCE, RELATIVE * ranking[0].evidence if shadow else 0.0)
+        first = ranking[0]
+        shadow = not self.acts[r.term.name].isdisjoint(self.acts.get(first.term.name, ()))
+        return max(EVIDENCE, RELATIVE * first.evidence) if shadow else EVIDENCE
 
-    def _acts(self, name: str) -> set[str]:
-        """Channels in which any law of an effect shows."""
-        mine = [i for i, term in enumerate(self.bank.terms) if term.name == name]
-        return {c for c, places in self.bank.places.items() if any(places[i] is not None for i in mine)}
+    @cached_property
+    def acts(self) -> dict[str, set[str]]:
+        """Channels in which any law of an effect shows, by its name."""
+        found: dict[str, set[str]] = {}
+        for i, term in enumerate(self.bank.terms):
+            found.setdefault(term.name, set()).update(c for c, at in self.bank.places.items() if at[i] is not None)
+        return found
 
     def size(self, d: Design, found: Drop) -> float:
         """RMS of the term over the floor, in the block where it is largest."""
@@ -138,10 +143,8 @@ def search(
         d = s.design
         if entered not in d.terms:
             barren.add(chosen.term)
-        if (
-            _carries(d) and not carried
-        ):  # the bank's columns go by a torque without that weight: they have to be made anew
-            break
+        if _carries(d) and not carried:
+            break  # columns of the bank go by a torque without that weight: they are made anew
     return Found(s, ranking)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.analysis.tracing.thresholds import FLOOR_LEAST, UNCORRELATED
 from rig.model.effect import Array
 
@@ -82,7 +82,7 @@ def _heading(run: Recording) -> int:
     """1 or −1 of a run that turns one way, else 0: conditions may give a speed without its sign."""
     if run.locked:
         return 0
-    way = float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
+    way = mean_way(run)
     return 0 if abs(way) < ONE_WAY else int(np.sign(way))
 
 

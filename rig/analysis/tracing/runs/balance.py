@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.core.rows import Array
 
 UNIT: Final = 20.0  # times what others show: loads treble friction, and the next unit is 100 or 1000
@@ -112,7 +112,7 @@ def _load_taken(run: Recording) -> float:
 
 def _heading(run: Recording) -> int:
     """1 or −1 of a run that turns mostly one way, else 0."""
-    way = float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
+    way = mean_way(run)
     return 0 if abs(way) < EVEN else int(np.sign(way))
 
 

@@ -12,7 +12,7 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.core.units import RPM
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
-EVEN: Final = 1.5  # of the slower quarter's speed, the faster one's: a sine has 2.4
+EVEN: Final = 2.0  # of the slower quarter's speed, the faster one's: a sine has 2.4
 MOVES: Final = 0.05  # of its fastest, below which a run rests
 ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
 ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a start or a stop, not a direction
@@ -63,12 +63,12 @@ def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
 def _loaded_by(run: Recording) -> str:
     if run.look.inertia:
         return (
-            "the weight as declared and an inertia of the load that nobody declared: what both do to the angles and to "
-            "the motor's torque tells it and the stiffness, as well as they are told apart"
+            "the weight as declared or found and an inertia of the load that nobody declared: what both do to the "
+            "angles and to the motor's torque tells it and the stiffness, as well as they are told apart"
         )
     return (
-        f"a load inertia of {run.pieces[0].gear.J_l:.3g} kg·m² and the weight as declared. Stiffness and the motor's "
-        "torque balance are in proportion to them"
+        f"a load inertia of {run.pieces[0].gear.J_l:.3g} kg·m² and the weight as declared or found. Stiffness "
+        "and the motor's torque balance are in proportion to them"
     )
 
 

@@ -117,6 +117,11 @@ class Recording(Once):
         return replace(self, pieces=_each(self.pieces, lambda piece: reloaded(piece, piece.gear, taken(piece), timed)))
 
 
+def mean_way(run: Recording) -> float:
+    """1 or −1 of a motor that turned one way all the time, 0 of one that went as far forth as back."""
+    return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
+
+
 def record(whole_run: Run, start: float) -> Recording:
     """Read the columns the tracer uses; what is absurd counts as missing. Raises UsageError when the run has no angle
     it can use, rows too far apart or too close, or a ratio no gear has.

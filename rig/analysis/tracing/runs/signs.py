@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Signals
 
@@ -60,7 +60,7 @@ def _but_for_one(runs: Sequence[Recording], weight: Array, mean: Array) -> str:
 
 def _both_ways(run: Recording) -> bool:
     """Whether friction, which is no weight, goes out of a run's mean."""
-    return abs(float(np.mean(np.concatenate([p.way for p in run.pieces])))) < EVEN
+    return abs(mean_way(run)) < EVEN
 
 
 def refuse_negative(s: Solution, name: str) -> None:

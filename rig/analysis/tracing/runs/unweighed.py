@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.analysis.tracing.runs.told_once import Said
 
 LEAST: Final = 0.5  # N·m, a weight
@@ -40,7 +40,7 @@ def weighed(runs: Sequence[Recording]) -> tuple[list[Recording], list[Said]]:
 
 def _one_way(run: Recording) -> float:
     """1 where the motor never turned back, 0 where it went as far forth as back and friction is in no mean."""
-    return abs(float(np.mean(np.concatenate([piece.way for piece in run.pieces]))))
+    return abs(mean_way(run))
 
 
 def _in_groups(weights: dict[str, float]) -> dict[str, float]:
