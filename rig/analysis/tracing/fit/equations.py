@@ -129,7 +129,10 @@ class Equations:
 
     def bare(self, key: Key, x: Array) -> Array:
         """`x` (n,) or (n, k) without what the run has to itself."""
-        x = self.without_offset(key, x)
+        return self.without_local(key, self.without_offset(key, x))
+
+    def without_local(self, key: Key, x: Array) -> Array:
+        """`x` (n,) or (n, k) without what lies along columns that no other run shares."""
         local = self.local.get(key)
         return x if local is None else np.asarray(x - local @ (local.T @ x))
 

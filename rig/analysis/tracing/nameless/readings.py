@@ -154,6 +154,28 @@ class Droop(Nameless):
         return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
 
 
+class ConstantDrift(Nameless):
+    """The torque constant changes through the campaign, as magnets weaken that warm: the torque told is
+    τ_m·(c_1·t + c_2·t²) too high      [krause2013]"""
+
+    name: ClassVar[str] = "constant_drift"
+    in_short: ClassVar[str] = "the torque constant changes through the campaign"
+    source: ClassVar[str] = "krause2013"
+    needs: ClassVar[frozenset[str]] = frozenset({"t"})
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs, where something else tells the torque."""
+        return when(reach.runs >= SEVERAL and _is_told(reach))
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Two columns in the reading."""
+        return {Port.READS_TAU_M: by_time(np.nan_to_num(signals.tau_m), signals)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative."""
+        return sum_of(fit, "in 1000 s the torque told for the same torque changes by", 100, "%")
+
+
 class TwoConstants(Nameless):
     """The torque constant is another one for negative current: the torque told is c·|τ_m| too high      [krause2013]"""
 

@@ -45,10 +45,10 @@ class Binned:
     values: Array
     beside: Beside
 
-    def guess(self, index: Index) -> Array:
-        """Value of the bin of each row, NaN where there is none; (n,)."""
+    def guess(self, index: Index, worth: Array) -> Array:
+        """Value of the bin of each row in floors of its own, NaN where there is none; (n,)."""
         inside = (index >= 0) & (index < self.values.size)
-        return np.where(inside, self.values[np.where(inside, index, 0)], np.nan)
+        return np.where(inside, self.values[np.where(inside, index, 0)] * worth, np.nan)
 
 
 @dataclass(frozen=True)
@@ -114,11 +114,11 @@ def binned(r: Rest, index: Index, rows: Rows) -> Binned:
     inside &= often[np.maximum(index, 0)]
     s = _sums(r, np.where(inside, index, size), inside if inside.any() else rows, size)
     own = r.whole.runs.size if r.own_zeros else 0
-    share = s.by_bin / np.maximum(s.count, 1.0)[:, None]
+    share = s.by_bin / np.maximum(s.count, 1e-9)[:, None]
     normal = s.normal - share.T @ s.by_bin
     normal[own:, own:] += r.known * s.fitted
     x = solved(normal, s.right - share.T @ s.total)
-    values = np.where(often, (s.total - s.by_bin @ x) / np.maximum(s.count, 1.0), np.nan)
+    values = np.where(often, (s.total - s.by_bin @ x) / np.maximum(s.count, 1e-9), np.nan)
     zeros = x[:own] if r.own_zeros else np.zeros(r.whole.runs.size)
     return Binned(values, Beside(r.whole.runs, zeros, x[own:]))
 
@@ -126,7 +126,7 @@ def binned(r: Rest, index: Index, rows: Rows) -> Binned:
 @dataclass(frozen=True)
 class _Sums:
     """Of what stands beside the bins: normal matrix (k, k), right side (k,); by bin its columns (b, k), the rest (b,)
-    and the rows (b,). `fitted`: rows in all."""
+    and their worth squared (b,). `fitted`: rows in all."""
 
     normal: Array
     right: Array
@@ -141,27 +141,28 @@ def _sums(r: Rest, at: Index, fitted: Rows, size: int) -> _Sums:
     all_of, out = r.whole, np.flatnonzero(~fitted)
     less, runs = all_of.wide[out], all_of.runs.size if r.own_zeros else 0
     gram = all_of.gram - less.T @ less
-    by_bin = _ones(at, size + 1, at.size) @ all_of.wide
-    by_run = (all_of.by_run - _ones(all_of.run[out], all_of.runs.size, out.size) @ less)[:runs]
-    table = np.bincount(at * runs + all_of.run, minlength=(size + 1) * runs) if runs else np.zeros(0)
-    table = table[: (size + 1) * runs].reshape(size + 1, runs).astype(float)
+    by_bin = _added(at, size + 1, r.worth) @ all_of.wide
+    by_run = (all_of.by_run - _added(all_of.run[out], all_of.runs.size, np.ones(out.size)) @ less)[:runs]
+    table = np.bincount(at * runs + all_of.run, r.worth, (size + 1) * runs) if runs else np.zeros(0)
+    table = table[: (size + 1) * runs].reshape(size + 1, runs)
+    count = np.bincount(at, r.worth**2, size + 1)
     normal = np.block([[np.diag(by_run[:, -1]), by_run[:, :-2]], [by_run[:, :-2].T, gram[:-2, :-2]]])
     right = np.concatenate([by_run[:, -2], gram[:-2, -2]])
     columns = np.hstack([table, by_bin[:, :-2]])
-    return _Sums(normal, right, columns[:size], by_bin[:size, -2], by_bin[:size, -1], at.size - out.size)
+    return _Sums(normal, right, columns[:size], by_bin[:size, -2], count[:size], at.size - out.size)
 
 
-def _ones(at: Index, size: int, rows: int) -> csr_matrix:
-    """Adds up rows by where they are, (size, rows)."""
-    return csr_matrix((np.ones(rows), (at, np.arange(rows))), shape=(size, rows))
+def _added(at: Index, size: int, worth: Array) -> csr_matrix:
+    """Adds up rows (n,) by where they are, each as often as it is worth, (size, n)."""
+    return csr_matrix((worth, (at, np.arange(at.size))), shape=(size, at.size))
 
 
 def solved(normal: Array, right: Array) -> Array:
-    """Coefficients (k,) from a normal matrix (k, k) and its right side (k,); those of columns that the bins leave
-    nothing of stay at zero."""
+    """Coefficients (k,) or (k, m) from a normal matrix (k, k) and its right side, one or m of them; those of columns
+    that the bins leave nothing of stay at zero."""
     scale = np.sqrt(np.maximum(np.diag(normal), 1e-12))
-    held = normal / scale / scale[:, None] + EVEN * np.eye(right.size)
-    return np.asarray(np.linalg.solve(held, right / scale) / scale)
+    held = normal / scale / scale[:, None] + EVEN * np.eye(scale.size)
+    return np.asarray((np.linalg.solve(held, (right.T / scale).T).T / scale).T)
 
 
 def score(h: Halves, index: Index) -> float:
@@ -171,7 +172,7 @@ def score(h: Halves, index: Index) -> float:
     for test in (0, 1):
         (_, train), (rows, tested) = h.parts[1 - test], h.parts[test]
         found = binned(train, index[h.parts[1 - test][0]], np.ones(train.e.size, dtype=np.bool_))
-        guess = found.guess(index[rows])
+        guess = found.guess(index[rows], tested.worth)
         seen = np.isfinite(guess)
         before = h.alone[test][rows][seen]
         after = (tested.e - guess - found.beside.of(tested))[seen]

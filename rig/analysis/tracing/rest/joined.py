@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,7 +37,9 @@ class Rest:
     `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
     the other channels, and a little what all of this one, know of its coefficients, for each row. `own_zeros`: whether
     every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known. `every`: one
-    of how many rows each is."""
+    of how many rows each is. `worth` (n,) is how many floors that is in each row
+    what is one of them in most: what has one size in all runs is a small part of the floor of a lock test. `offset`
+    (n,) is the share of its run's mean that was taken off as the run's own."""
 
     e: Array
     run: Array
@@ -48,6 +50,8 @@ class Rest:
     own_zeros: bool = True
     timed: bool = True
     every: int = 1
+    worth: Array = field(default_factory=lambda: np.ones(1))
+    offset: Array = field(default_factory=lambda: np.zeros(1))
 
     @cached_property
     def whole(self) -> Whole:
@@ -57,6 +61,15 @@ class Rest:
         by_run: Array = np.stack([np.bincount(run, column, minlength=runs.size) for column in wide.T], 1)
         return Whole(wide, runs, run, np.asarray(wide.T @ wide), by_run)
 
+    def __post_init__(self) -> None:
+        for name in ("worth", "offset"):
+            object.__setattr__(self, name, np.broadcast_to(getattr(self, name), self.e.shape))
+
+    def over_the_floor(self, x: Array) -> Array:
+        """Columns (n, k) of one size in all runs as they show in `e`."""
+        mean = np.stack([np.bincount(self.whole.run, column) for column in x.T], 1) / self.whole.by_run[:, -1:]
+        return np.asarray((x - mean[self.whole.run] * self.offset[:, None]) * self.worth[:, None])
+
     @property
     def by_itself(self) -> Rest:
         """The same with nothing known from the other channels."""
@@ -65,14 +78,13 @@ class Rest:
     def part(self, rows: Index) -> Rest:
         """Some rows of it, side by side in memory."""
         at = {name: x[rows] for name, x in self.at.items()}
-        return replace(self, e=self.e[rows], run=self.run[rows], at=at, z=self.z[rows])
+        e, run, z, worth, offset = (x[rows] for x in (self.e, self.run, self.z, self.worth, self.offset))
+        return replace(self, e=e, run=run, at=at, z=z, worth=worth, offset=offset)
 
     def thinned(self, most: int) -> Rest:
         """Every so many-th row of it, so that no more than `most` are left."""
         by = -(-self.e.size // most)
-        at = {name: x[::by] for name, x in self.at.items()}
-        thin = replace(self, e=self.e[::by], run=self.run[::by], at=at, dt=self.dt * by, z=self.z[::by])
-        return replace(thin, every=self.every * by)
+        return replace(self.part(np.arange(0, self.e.size, by)), dt=self.dt * by, every=self.every * by)
 
 
 def rest(
@@ -90,7 +102,11 @@ def rest(
     smooth = eq.runs[keys[0][0]].smoother
     left = np.concatenate([e[k] / floors[k] for k in keys])
     z, known = _beside(eq, keys, floors, channel) if beside else (np.zeros((left.size, 0)), np.zeros((0, 0)))
-    return Rest(left, run, at, smooth.dt * smooth.step, z, known, channel != "M", eq.timed)
+    usual = float(np.median([floor for k, floor in floors.items() if k[1] == channel]))
+    worth = np.concatenate([np.full(e[k].size, usual / floors[k]) for k in keys])
+    offset = np.concatenate([np.full(e[k].size, eq.share_of_mean(k, e[k].size)) for k in keys])
+    between = smooth.dt * smooth.step
+    return Rest(left, run, at, between, z, known, channel != "M", eq.timed, worth=worth, offset=offset)
 
 
 def loudness(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> dict[str, float]:

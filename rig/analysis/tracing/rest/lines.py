@@ -49,7 +49,7 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     good = np.isfinite(x)
     if not good.any():
         return None
-    x, e = x[good], (r.e * sense(r))[good]
+    x, e = x[good], (r.e * r.worth * sense(r))[good]
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
     first = max(SPAN[name][0], step, 1 / turns if 0 < turns < HALF else 0.0)
@@ -130,7 +130,7 @@ def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among:
     run has a phase of its own, as clocks that are read to the second leave it.
     """
     r = h.rest
-    t, e = r.at["time"], r.e * sense(r)
+    t, e = r.at["time"], r.e * r.worth * sense(r)
     size = int(4 * _longest(r) / STEP)  # to a quarter of what the longest run can tell apart
     hz = np.fft.rfftfreq(size, STEP)
     power = np.zeros(hz.size)
@@ -139,7 +139,7 @@ def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among:
     f = float(hz[int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power, 0.0)))])
 
     def phase(rest: Rest) -> Index:
-        own, signed = np.zeros(rest.e.size), rest.e * sense(rest)
+        own, signed = np.zeros(rest.e.size), rest.e * rest.worth * sense(rest)
         for run in np.unique(rest.run):
             mine = rest.run == run
             own[mine] = _phase(rest.at["time"][mine], signed[mine], f)
@@ -156,7 +156,8 @@ def by_the_day(h: Halves, channel: str) -> Home | None:
     rough = np.arange(step, SLOWEST, step)
     if rough.size < DAY:
         return None
-    f = _sharpened(x, r.e, float(rough[int(np.argmax(spectrum(x, r.e, rough)))]), step)
+    e = r.e * r.worth
+    f = _sharpened(x, e, float(rough[int(np.argmax(spectrum(x, e, rough)))]), step)
     read = in_columns(lambda rest: waves(TURN * rest.at["time"], f))
     return Home("time_periodic", channel, share(h, read), frequency_hz=f, read=read, late=True)
 

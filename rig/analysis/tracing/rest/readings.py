@@ -29,7 +29,7 @@ def in_bins(index: Callable[[Rest], Index]) -> Reading:
         """Bins of `rows` (n,), for all."""
         at = index(r)
         found = binned(r, at, rows)
-        return np.nan_to_num(found.guess(at) + r.z @ found.beside.shift)
+        return np.nan_to_num(found.guess(at, r.worth) + r.z @ found.beside.shift)
 
     return read
 
@@ -41,7 +41,7 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
         """Coefficients of `rows` (n,), for all."""
         z = columns(r)
         good = np.asarray(np.isfinite(z).all(1))
-        z = np.hstack([np.where(good[:, None], z, 0.0), r.z])
+        z = np.hstack([r.over_the_floor(np.where(good[:, None], z, 0.0)), r.z])
         fitted = rows & good
         e = r.e
         if r.own_zeros:

@@ -17,12 +17,13 @@ from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.sudden import since, turned_since
-from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
+from rig.analysis.tracing.thresholds import ALL, PLAIN_ENOUGH
 from rig.model.effect import Array
 
 WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
+FOLLOWS = 0.25  # of what another coordinate leaves, what a step may leave that is said before it
 LEAST_WAY = 0.1  # of the rows at a speed, forth and back each: with fewer, single runs are all there is of one of them
 WITH_TIME = ("time", "temperature")
 
@@ -132,11 +133,17 @@ def _of_the_output(found: Home, r: Rest) -> Home:
 
 def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
     """Steps at one moment, said first of all: they have one number. Not where a coordinate by itself does nearly as
-    well: all slow runs may have been taken before all fast ones."""
+    well: all slow runs may have been taken before all fast ones. Where a step leaves next to nothing, a coordinate that
+    leaves several times as much only follows the order of the runs."""
     turned = turned_since(h, channel) if channel == "A" else None
     steps = [*(since(h, channel, sense) for sense in SENSES), *([turned] if turned else [])]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
-    return [replace(step, first=best < PLAIN_ENOUGH * step.share) for step in steps]
+    return [replace(step, first=best < PLAIN_ENOUGH * step.share or _is_it(step.share, best)) for step in steps]
+
+
+def _is_it(share: float, other: float) -> bool:
+    """Whether one share of the excess is all of it, and what the other one leaves several times what it leaves."""
+    return other < ALL and 1.0 - share < FOLLOWS * (1.0 - other)
 
 
 def _wound(h: Halves, channel: str) -> Home | None:
@@ -197,6 +204,8 @@ def smooth_term(
         train.known,
         found.own_zeros,
         train.timed,
+        worth=np.concatenate([train.worth, test.worth]),
+        offset=np.concatenate([train.offset, test.offset]),
     )
     if found.read is None:
         return out
@@ -204,7 +213,7 @@ def smooth_term(
     start = 0
     for key in [k for k in unseen if k[1] == found.channel]:
         n = unseen[key].size
-        left = unseen[key] - eq.bare(key, guess[start : start + n]) * floors[key]
+        left = unseen[key] - eq.without_local(key, guess[start : start + n]) * floors[key]
         out[key] = left - np.mean(left) if found.own_zeros else left
         start += n
     return out

@@ -15,6 +15,7 @@ from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingD
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
+    ConstantDrift,
     Droop,
     SensorGainDrift,
     SensorJump,
@@ -100,6 +101,12 @@ CONFOUNDERS: Final = {
         "time",
         "The torque sensor's gain changes through the campaign: the same torque reads more or less in later runs. No "
         "effect of the library does so.",
+    ),
+    "constant_drift": Confounder(
+        ConstantDrift(),
+        "time",
+        "The motor's torque constant changes through the campaign: the same torque is told as more or less in later "
+        "runs. No effect of the library does so.",
     ),
     "sensor_jump": Confounder(
         SensorJump(),

@@ -37,8 +37,8 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
 
 def _may_stand(one: HeldOutScore, scored: Sequence[HeldOutScore]) -> bool:
     """Whether it is named, and in nobody's shadow. A law without a name that takes no look-alike's place has many
-    columns, and no reason but the rest itself: it has to be plain to see."""
-    sure = one.plain or one.name not in CONFOUNDERS or bool(CONFOUNDERS[one.name].mimics)
+    columns, and no reason but the rest itself: it has to be plain to see, or repeats vouch for it."""
+    sure = one.plain or one.as_repeats or one.name not in CONFOUNDERS or bool(CONFOUNDERS[one.name].mimics)
     return one.named and sure and not _in_the_shadow(one, scored)
 
 
