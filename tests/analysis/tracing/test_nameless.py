@@ -68,7 +68,8 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(weights=1) == {"oval_pulley"}
-    assert everything - laws(runs=2) == {"spring_drift", "error_drift", "sensor_gain_drift", "sensor_ripple"}
+    drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
+    assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
     assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
 
 
@@ -78,6 +79,13 @@ def two_gains(c: Columns, began: float) -> Columns:
 
 def two_constants(c: Columns, began: float) -> Columns:
     return {"tau_m": c["tau_m"] + 0.04 * np.abs(c["tau_m"])}
+
+
+MORNING: Final = float(np.datetime64("2026-11-01T09:00:00").astype(float))  # s, when the open campaign began
+
+
+def constant_drift(c: Columns, began: float) -> Columns:
+    return {"tau_m": c["tau_m"] * (1 + 0.03 * (began + c["t"] - MORNING) / LONG)}
 
 
 def sensor_ripple(c: Columns, began: float) -> Columns:
@@ -108,6 +116,18 @@ def test_gauges_that_feel_the_wave_generator_are_told_with_how_much(shared: Path
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law in found.law if (match := re.search(r"turn by (\S+) ± (\S+) % of the torque", law))]
     assert float(much[1]) == pytest.approx(2.0, abs=1.5 * float(much[2]))
+
+
+@pytest.mark.slow
+def test_a_torque_constant_that_changes_through_the_campaign_is_told_with_how_much(
+    shared: Path, tmp_path: Path
+) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", constant_drift, SOME)
+    told = CONFOUNDERS["constant_drift"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"changes by (\S+) ± (\S+) %", law))]
+    assert float(much[1]) == pytest.approx(3.0, rel=0.05)  # as read: of what is told, which has grown
 
 
 OF_THE_BLIND_PLANT: Final = ("growing_error", "stiffness_aging", "one_way_drag", "sensor_gain_temperature")

@@ -282,6 +282,36 @@ def test_another_kinematic_error_from_one_run_on_is_one_thing_and_not_what_the_w
     assert told(at["load"] / 8.0 * wave) < 0.1
 
 
+def drives(rng: np.random.Generator) -> At:
+    """Slow runs first, fast ones after."""
+    at = coordinates(rng)
+    return at | {"speed": at["direction"] * np.repeat(np.linspace(1.0, 40.0, RUNS), ROWS)}
+
+
+def bent_by_a_step(at: At, rng: np.random.Generator, worth: np.ndarray, offset: np.ndarray) -> Rest:
+    """Friction that is more from one moment on, of which the baseline has taken on what dry and viscous friction can;
+    rows where a floor is worth less of it, and of whose mean a share is the run's own."""
+    made = np.stack([at["direction"] * (at["time"] > 70.0), at["direction"], at["speed"]], 1)
+    means = np.concatenate([np.tile(x.mean(0), (ROWS, 1)) for x in np.split(made, RUNS)])
+    step, *z = (worth[:, None] * (made - offset[:, None] * means)).T
+    e = 8.0 * step + rng.normal(0, 1, step.size)
+    baseline = np.stack(z, 1)
+    left = e - baseline @ np.linalg.lstsq(baseline, e, rcond=None)[0]
+    run = np.repeat(np.arange(RUNS), ROWS)
+    return Rest(left, run, at, DT, baseline, np.zeros((2, 2)), own_zeros=False, worth=worth, offset=offset)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("uneven", [False, True], ids=["one floor", "floors and offsets of their own"])
+def test_friction_that_steps_up_before_all_fast_runs_is_told_beside_the_baseline_it_bent(uneven: bool) -> None:
+    rng = np.random.default_rng(11)
+    at = drives(rng)
+    odd = np.repeat(np.arange(RUNS) % 3 == 2, ROWS) & uneven
+    bent = bent_by_a_step(at, rng, np.where(odd, 0.2, 1.0), np.where(odd, 0.6, 0.0))
+    found = plainest(homes(bent, "M"))[0]
+    assert (found.coordinate, found.share) == ("time", pytest.approx(1.0, abs=0.05))
+
+
 def test_within_a_seventh_of_a_turn_no_order_is_told_that_does_not_come_round_once() -> None:
     rng = np.random.default_rng(10)
     swing = 0.44 * np.sin(np.linspace(0.0, 20.0, RUNS * ROWS))  # rad

@@ -143,9 +143,9 @@ def _sums(r: Rest, at: Index, fitted: Rows, size: int) -> _Sums:
     gram = all_of.gram - less.T @ less
     by_bin = _added(at, size + 1, r.worth) @ all_of.wide
     by_run = (all_of.by_run - _added(all_of.run[out], all_of.runs.size, np.ones(out.size)) @ less)[:runs]
-    table = np.bincount(at * runs + all_of.run, r.worth, (size + 1) * runs) if runs else np.zeros(0)
-    table = table[: (size + 1) * runs].reshape(size + 1, runs)
-    count = np.bincount(at, r.worth**2, size + 1)
+    crossed = np.bincount(at * runs + all_of.run, r.worth, (size + 1) * runs)[: (size + 1) * runs]
+    table = crossed.reshape(size + 1, runs).astype(float)
+    count = np.asarray(np.bincount(at, r.worth**2, size + 1), dtype=np.float64)
     normal = np.block([[np.diag(by_run[:, -1]), by_run[:, :-2]], [by_run[:, :-2].T, gram[:-2, :-2]]])
     right = np.concatenate([by_run[:, -2], gram[:-2, -2]])
     columns = np.hstack([table, by_bin[:, :-2]])
