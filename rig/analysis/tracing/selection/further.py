@@ -13,7 +13,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.fit.model import design, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
 from rig.analysis.tracing.fit.some import ranking_of_some, search_some
@@ -65,7 +65,22 @@ def try_without_eliminated(
     if not set(others.names) - stay:
         return selected
     other = select(selected.p, others, runs, covered)
-    return other if _settles(other, stay) or _stands_alone(other, stay) else selected
+    stands = _settles(other, stay) or _stands_alone(other, stay)
+    return other if stands and not _stands_in(other, stay, found, eliminated, runs) else selected
+
+
+def _stands_in(
+    other: Selected, stay: Collection[str], found: Found, eliminated: Collection[str], runs: Sequence[int]
+) -> bool:
+    """Whether a name that came in for want of the eliminated ones explains less of the fitted runs than one of those in
+    its place: a torque once a turn of the output for a torque sensor that is read so."""
+    d = other.solution.design
+    gone = [term for term in found.solution.design.terms if term.name in eliminated]
+    for name in {term.name for term in d.terms} - set(stay):
+        bare = reduced(d, [i for i, term in enumerate(d.terms) if term.name == name])
+        if any(fit(extended(bare, term, runs)).gain > other.solution.gain for term in gone):
+            return True
+    return False
 
 
 def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
