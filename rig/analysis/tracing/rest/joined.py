@@ -67,8 +67,10 @@ class Rest:
 
     def over_the_floor(self, x: Array) -> Array:
         """Columns (n, k) of one size in all runs as they show in `e`."""
-        mean = np.stack([np.bincount(self.whole.run, column) for column in x.T], 1) / self.whole.by_run[:, -1:]
-        return np.asarray((x - mean[self.whole.run] * self.offset[:, None]) * self.worth[:, None])
+        whole = self.whole
+        sums = np.array([np.bincount(whole.run, column) for column in x.T]).reshape(x.shape[1], whole.runs.size)
+        mean = sums.T / whole.by_run[:, -1:]
+        return np.asarray((x - mean[whole.run] * self.offset[:, None]) * self.worth[:, None])
 
     @property
     def by_itself(self) -> Rest:

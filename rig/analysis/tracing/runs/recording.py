@@ -25,6 +25,7 @@ from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
 from rig.runfile.run import Run
 
+UNTIMED = 1000.0  # Hz, taken for the rate of rows without a time: taken for less, ω̇ of a 16-bit encoder is all noise
 GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
 DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
@@ -186,7 +187,7 @@ def _there(x: Array | None) -> Array | None:
 def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
     """Time of each row, s between rows, and whether there is a time at all (else rows count)."""
     if t is None or t.size < 3:
-        said = abs(stated(run.manifest, "sample_rate_hz", RATE))
+        said = abs(stated(run.manifest, "sample_rate_hz", UNTIMED))
         return np.arange(rows) / said, 1 / said, False
     return t, float(np.median(np.diff(t))), True
 
