@@ -49,7 +49,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     runs = [run for run in runs if run.name not in out]
     found = [run for run in found if run.name not in out]
     if not found:
-        raise DataError(f"no run is left to identify from: {' '.join(said)[:300]}")
+        raise DataError(f"no run is left to identify from: {'; '.join(said)[:300]}")
     refuse_other_zeros(found)
     return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
 

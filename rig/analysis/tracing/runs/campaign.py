@@ -105,12 +105,14 @@ def read_campaign(folder: Path) -> Campaign:
 
 
 def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
-    """Why some of `runs` do not go with the others of the campaign `name`, by the run's name: other units of angle or
-    torque, other signs, another ratio. What cannot be told of a run is no reason. Raises UsageError where most are so.
+    """Why some of `runs` do not go with the others of the campaign `name`, by the run's name: other units of time,
+    angle or torque, other signs, another ratio. What cannot be told of a run is no reason. Raises UsageError where
+    most are so.
     """
-    found = [r for r in map(_record, runs, starts(runs)) if isinstance(r, Recording)]
+    read = [_read(*one) for one in zip(runs, starts(runs), strict=True)]
+    out = [r for r in read if isinstance(r, Said)]
+    found = [r for r in read if isinstance(r, Recording) and not _unfit(r)]
     refuse_odd_angles(found, name)
-    out: list[Said] = []
     for sort in (_odd, _same_gear, _odd_torques, _odd_balances):
         found, odd = sort(found)
         out += odd
@@ -144,18 +146,29 @@ def _closed(folder: Path) -> list[Said]:
 
 
 def _record(run: Run, start: float) -> Recording | Said:
+    """What the tracer reads of `run`, or why it cannot use it."""
+    made = _read(run, start)
+    return left_out(run.name, why) if isinstance(made, Recording) and (why := _unfit(made)) else made
+
+
+def _read(run: Run, start: float) -> Recording | Said:
+    """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
-        made = record(run, start)
+        return record(run, start)
     except (HdrigError, ValueError) as error:
         return left_out(run.name, error)
+
+
+def _unfit(made: Recording) -> str:
+    """Why a run that can be read is none for a trace; "" where it is one."""
     if not made.pieces:
-        return left_out(run.name, "no 0.1 s of it without a gap")
+        return "no 0.1 s of it without a gap"
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
     if made.locked and (why := _gave_way(made)):
-        return left_out(run.name, why)
+        return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        return left_out(run.name, f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one")
-    return made
+        return f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+    return ""
 
 
 def _gave_way(run: Recording) -> str:
