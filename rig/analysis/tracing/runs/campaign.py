@@ -25,6 +25,7 @@ from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
+from rig.runfile.copies import links_last, once
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
@@ -73,7 +74,8 @@ def folders_of_runs(folder: Path) -> list[Path]:
 def read_campaign(folder: Path) -> Campaign:
     """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
     places = folders_of_runs(folder)
-    opened, out = _open(places)
+    opened, out = _open(links_last(places))
+    opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
     nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
