@@ -17,6 +17,7 @@ from rig.catalogue.sameness import beside, mounting, point
 from rig.catalogue.scan import doubted, row, rows
 from rig.catalogue.scatter import SHARE, Scatter, between
 from rig.core.errors import UsageError
+from rig.runfile.copies import once
 
 DOUBTED = "its figures are not to be believed: {}"
 DATE = "2026-11-20"  # how folders by date are named
@@ -85,19 +86,23 @@ class Comparison:
 def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
     """Compare the runs in `paths` with the first of them. Repeats are looked for under `root`, or where the runs lie.
 
-    A figure that one run alone has is no line; the remarks say who lacks it. Raises UsageError for fewer than two runs,
-    a path that is none, a result that is damaged, or when no other run has any figure of the first.
+    A figure that one run alone has is no line; the remarks say who lacks it. A run given twice counts once. Raises
+    UsageError for fewer than two runs, a path that is none, a result that is damaged, or when no other run has any
+    figure of the first.
     """
     if len(paths) < 2:
         raise UsageError(
             f"compare was given {len(paths)} run folder: expected two or more, the others against the first"
         )
-    found = tuple(_run(path) for path in paths)
+    copies: list[str] = []
+    found = tuple(once([_run(path) for path in paths], lambda f, why: copies.append(f"{f.name} counts once: {why}")))
+    if len(found) < 2:
+        raise UsageError(f"compare was given one run {len(paths)} times: {'; '.join(copies)[:300]}")
     known = [figures(one.path) for one in found]
     refuse_nothing(found, known)
     repeats = Repeats(rows(str(root or _home(paths))))
     lines = tuple(_line(name, found, known, repeats) for name in shared(known))
-    return Comparison(found, lines, tuple(_remarks(found, known)))
+    return Comparison(found, lines, (*copies, *_remarks(found, known)))
 
 
 def _run(path: Path) -> Row:
@@ -145,7 +150,7 @@ def _counted(f: Figure) -> bool:
 def _scatters(name: str, a: Row, b: Row, repeats: Repeats) -> tuple[Scatter, Scatter]:
     """Of both kinds of run. Two runs that are repeats of each other do not judge themselves."""
     same = point(a) == point(b) and mounting(a) == mounting(b)
-    without = (a.path, b.path) if same else ()
+    without = (a, b) if same else ()
     of_a = repeats.scatter(point(a), name, without)
     return of_a, of_a if point(a) == point(b) else repeats.scatter(point(b), name)
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable
-from pathlib import Path
 
 from rig.catalogue.figures import Figure, figures
 from rig.catalogue.row import Row
 from rig.catalogue.sameness import Mounting, Point, mounting, point
 from rig.catalogue.scatter import Scatter, scatter
 from rig.core.errors import UsageError
+from rig.runfile.copies import known_by
 
 COUNTS = ("completed", "imported", "")  # statuses of runs whose figures count; a folder made elsewhere may say nothing
 
@@ -36,8 +36,8 @@ class Repeats:
         for row in sorted(rows, key=lambda row: row.started_utc):
             self._sets[point(row)][mounting(row)].append(row)
 
-    def scatter(self, at: Point, name: str, without: Iterable[Path] = ()) -> Scatter:
+    def scatter(self, at: Point, name: str, without: Iterable[Row] = ()) -> Scatter:
         """Of the figure `name` at one point. `without` are runs that may not speak for themselves."""
-        left_out = {path.resolve() for path in without}
-        rows = [[r for r in one if r.path.resolve() not in left_out] for one in self._sets.get(at, {}).values()]
+        left_out = {known_by(row) for row in without}
+        rows = [[r for r in one if known_by(r) not in left_out] for one in self._sets.get(at, {}).values()]
         return scatter([[f.value for r in one if (f := figure_of(r, (name,))) is not None] for one in rows])

@@ -12,6 +12,7 @@ from rig.catalogue.remembered import Remembered
 from rig.catalogue.row import UNREADABLE, Row, row_of, text
 from rig.core.errors import UsageError
 from rig.runfile import manifest
+from rig.runfile.copies import Seen, Twice, passed_over
 from rig.runfile.doubt import doubt, quick_doubt
 from rig.runfile.listing import Unread, is_run, passed_by, run_folders
 from rig.runfile.process import is_being_made
@@ -21,27 +22,30 @@ RUNNING = "running"
 ASKED = ("process", "ring", "files")  # of a manifest, each time anew: what they stand for may have changed
 
 
-def runs(root: Path | str, filter: Filter = ALL) -> list[Row]:
-    """The runs under `root`, in folders by date or side by side, that pass the filter, in its order.
-
-    Raises UsageError without such a folder.
+def runs(root: Path | str, filter: Filter = ALL, twice: Twice = passed_over) -> list[Row]:
+    """The runs under `root`, in folders by date or side by side, that pass the filter, in its order; `twice` is told
+    of copies. Raises UsageError without such a folder.
     """
     _refuse_no_folder(root)
-    return filter.of(rows(str(root)))
+    return filter.of(rows(str(root), twice))
 
 
-def passing(root: Path | str, filter: Filter = ALL, unread: Unread = passed_by) -> Iterator[Row]:
-    """The same runs one by one, as they lie on disk; none is kept or remembered; `unread` is told of folders that may
-    not be looked into. Raises UsageError at once."""
+def passing(
+    root: Path | str, filter: Filter = ALL, unread: Unread = passed_by, twice: Twice = passed_over
+) -> Iterator[Row]:
+    """The same runs one by one, as they lie on disk; of none is more kept than who it is; `unread` is told of folders
+    that may not be looked into. Raises UsageError at once."""
     _refuse_no_folder(root)
     found = (_fresh(f"{folder}/{manifest.NAME}") for folder in _folders(str(root), unread))
     rows = ((_now(row, about), about) for row, about in found)
-    return (_doubted(row, about) for row, about in rows if filter.passes(row))
+    seen = Seen(twice)
+    return (_doubted(r, about) for r, about in rows if filter.passes(r) and seen.is_new(r))
 
 
-def rows(root: str) -> Iterator[Row]:
-    """Every run under `root`, or the run that it is, as the disk has it."""
-    return (row(folder) for folder in _folders(root))
+def rows(root: str, twice: Twice = passed_over) -> Iterator[Row]:
+    """Every run under `root`, or the run that it is, as the disk has it, once; `twice` is told of copies."""
+    seen = Seen(twice)
+    return filter(seen.is_new, map(row, _folders(root)))
 
 
 def _folders(root: str, unread: Unread = passed_by) -> Iterator[str]:

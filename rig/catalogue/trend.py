@@ -71,6 +71,7 @@ class Trend:
     figure: str
     series: tuple[Series, ...]
     left_out: int  # runs that have the figure and do not count: not completed, or rejected
+    copies: tuple[str, ...] = ()  # folders left out because their run is there already, a sentence each
 
     def as_json(self) -> dict[str, Any]:
         """Schema hdrig.trend/1; numbers that are not finite as null."""
@@ -78,6 +79,7 @@ class Trend:
             "schema": "hdrig.trend/1",
             "figure": self.figure,
             "left_out": self.left_out,
+            "copies": list(self.copies),
             "marked_at": SHARE,
             "series": [
                 {
@@ -103,7 +105,8 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
 
     Raises UsageError without such a folder, without a run in it, or when none of its runs has the figure.
     """
-    found = runs(root, Filter(gear=gear))
+    copies: list[str] = []
+    found = runs(root, Filter(gear=gear), lambda folder, why: copies.append(f"{folder.name} is left out: {why}"))
     kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
     for row in found:
         one = figure_of(row, names_of(figure))
@@ -116,7 +119,7 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     measured = {row.path for members in kept.values() for row, _ in members}
     numbers = _numbers([row for row in found if row.path in measured])
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
-    return Trend(figure, series, _left_out(found, figure) - sum(len(s.spots) for s in series))
+    return Trend(figure, series, _left_out(found, figure) - sum(len(s.spots) for s in series), tuple(copies))
 
 
 def _seen(found: Sequence[Row]) -> set[str]:

@@ -36,6 +36,11 @@ def say_unread(error: OSError) -> None:
     print(f"left out: {error.filename} cannot be read: {error.strerror}", file=sys.stderr)
 
 
+def say_twice(folder: Path, why: str) -> None:
+    """On stderr: a copy is no run of its own."""
+    print(f"left out: {folder}: {why}", file=sys.stderr)
+
+
 def expand(paths: list[Path]) -> list[Path]:
     """Run folders as given; a folder that is no run gives the runs below it.
 

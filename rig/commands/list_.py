@@ -10,7 +10,7 @@ from pathlib import Path
 from rig.catalogue.filter import ORDERS, STATUSES, VERDICTS, asked
 from rig.catalogue.row import UNREADABLE, Row
 from rig.catalogue.scan import passing
-from rig.commands.folders import say_unread
+from rig.commands.folders import say_twice, say_unread
 from rig.core.in_order import in_order
 
 HEAD = (
@@ -39,8 +39,8 @@ def run(args: argparse.Namespace) -> int:
     filter = asked(**{name: getattr(args, name) for name in names})
     line_of, tell = (_json, print) if args.json else (_line, say)
     count = 0
-    # of each run nothing is kept but its line: years of runs take no more memory than a day's
-    found = passing(args.root, filter, say_unread)
+    # of each run nothing is kept but its line and who it is: years of runs take little more memory than a day's
+    found = passing(args.root, filter, say_unread, say_twice)
     for line in in_order(((filter.key(row), line_of(row)) for row in found), filter.reverse):
         if not count and not args.json:
             say(HEAD)

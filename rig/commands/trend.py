@@ -48,6 +48,7 @@ def lines(found: Trend) -> list[str]:
         out += [f"  {series.sentence}", ""]
     if found.left_out:
         out.append(f"{found.left_out} more runs have the figure and do not count: not completed, or rejected")
+    out += [f"note: {said}" for said in found.copies]
     out.append("intervals are 95 %; a run is marked when an unchanged gear would show as much in 1 of 100 cases")
     return out
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rig.core.errors import DataError, HdrigError, said_of
+from rig.runfile.copies import links_last, once
 from rig.runfile.misfits import notes
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     from rig.analysis.identify.zeros import refuse_other_zeros
     from rig.analysis.motion.held import not_held
 
-    runs = _experiments(opened(folders, say))
+    copies: list[str] = []
+    runs = _experiments(once(opened(links_last(folders), say), lambda f, why: copies.append(left_out(f.name, why))))
     _refuse_mixed(_where(folders), runs)
     found = [r for one in runs if (r := recording(one)) is not None]
     out = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}
@@ -43,15 +45,20 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
         raise DataError("no run here has time and both angles: nothing to identify from")
     refuse_another_ratio(found)
     out |= _odd([run for run in runs if run.name not in out], _where(folders))
-    said = [f"{name} is left out: {why}" for name, why in out.items()]
+    said = [*copies, *(left_out(name, why) for name, why in out.items())]
     for sentence in said:
         say(sentence)
     runs = [run for run in runs if run.name not in out]
     found = [run for run in found if run.name not in out]
     if not found:
-        raise DataError(f"no run is left to identify from: {' '.join(said)[:300]}")
+        raise DataError(f"no run is left to identify from: {'; '.join(said)[:300]}")
     refuse_other_zeros(found)
     return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
+
+
+def left_out(name: str, why: str) -> str:
+    """In words."""
+    return f"{name} is left out: {why}"
 
 
 def _experiments(runs: Sequence[Run]) -> list[Run]:
@@ -104,5 +111,5 @@ def opened(folders: Sequence[Path], say: Say) -> list[Run]:
     if not runs and refused:
         raise refused[0][1]
     for folder, why in refused:
-        say(f"{folder.name} is left out: {said_of(folder, why)}")
+        say(left_out(folder.name, said_of(folder, why)))
     return runs

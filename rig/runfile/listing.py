@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from rig.runfile.manifest import NAME
@@ -37,14 +37,14 @@ def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
 
 
 def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:
-    """Folders with a manifest, down to ./runs/date/run; hidden ones are passed by."""
+    """Folders with a manifest, down to ./runs/date/run, links after folders; hidden ones are passed by."""
     try:
         entries = os.scandir(root)
     except OSError as error:
         unread(error)
         return
     with entries:
-        for entry in entries:
+        for entry in _links_last(entries):
             if entry.name.startswith(".") or not _is_folder(entry):
                 continue
             try:
@@ -56,6 +56,16 @@ def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterat
                 yield entry.path
             elif depth > 1:
                 yield from run_folders(entry.path, depth - 1, unread)
+
+
+def _links_last(entries: Iterable[os.DirEntry[str]]) -> Iterator[os.DirEntry[str]]:
+    links = []
+    for entry in entries:
+        if entry.is_symlink():
+            links.append(entry)
+        else:
+            yield entry
+    yield from links
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

@@ -57,6 +57,12 @@ class Run:
         return self.path.name
 
     @property
+    def uid(self) -> str:
+        """What no other run has; "" where the manifest does not say it."""
+        said = self.manifest.get("uid")
+        return said if isinstance(said, str) else ""
+
+    @property
     def rows(self) -> int:
         """Samples in the run."""
         return self.samples.rows

@@ -72,7 +72,8 @@ def made_run(folder: Path, change: dict[str, Any] | None = None, table: pa.Table
     pq.write_table(rows() if table is None else table, folder / "samples.parquet")
     data = (folder / "samples.parquet").read_bytes()
     files = {"samples.parquet": {"sha256": hashlib.sha256(data).hexdigest(), "bytes": len(data), "rows": 6000}}
-    about = {**manifest(), "files": files, **(change or {})}
+    own = {"uid": hashlib.md5(str(folder).encode()).hexdigest()}  # no two runs have one
+    about = {**manifest(), **own, "files": files, **(change or {})}
     (folder / "manifest.json").write_text(json.dumps(about))
     return folder
 

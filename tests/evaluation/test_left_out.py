@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pyarrow as pa
@@ -10,6 +11,7 @@ import pytest
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.core.errors import UsageError
 from rig.evaluation.to_identify import open_runs, opened
+from rig.runfile.run import Run
 from tests.commands.made_run import made_run, rows
 
 
@@ -37,14 +39,42 @@ def test_a_lock_test_whose_output_turns_is_left_out_in_words(tmp_path: Path) -> 
 
 
 def test_a_torque_in_another_unit_than_that_of_the_other_runs_is_left_out_as_by_a_trace(tmp_path: Path) -> None:
+    why = odd_one(tmp_path, "tau_l", 1e3)
+    assert why.startswith("odd is left out: its τ_l is 1000 times that of its repeats, as if in another unit")
+
+
+def test_a_time_in_another_unit_is_left_out_as_by_a_trace(tmp_path: Path) -> None:
+    why = odd_one(tmp_path, "t", 1e3)
+    assert why == "odd is left out: it has one row every 5 s, expected one every 1e-06 to 0.2 s"
+
+
+def test_a_copy_of_a_run_and_a_link_to_it_are_no_runs_of_their_own(tmp_path: Path) -> None:
     folders = [made_run(tmp_path / name) for name in ("one", "two")]
+    (tmp_path / "a-link").symlink_to("one")
+    shutil.copytree(tmp_path / "two", tmp_path / "zwei")
+    uid = [Run.open(folder).uid for folder in folders]
+    runs, recordings, said = open_runs(sorted(tmp_path.iterdir()), lambda text: None)
+    assert [run.name for run in runs] == [r.name for r in recordings] == ["one", "two"]
+    assert said == (
+        f"zwei is left out: it is the same run as two (uid {uid[1]})",
+        f"a-link is left out: it is the same run as one (uid {uid[0]})",
+    )
+    campaign = read_campaign(tmp_path)
+    assert [run.name for run in campaign.runs] == ["one", "two"]
+    assert campaign.left_out == ("a-link", "zwei")
+    assert f"a-link was left out: it is the same run as one (uid {uid[0]})." in campaign.notes
+
+
+def odd_one(folder: Path, channel: str, factor: float) -> str:
+    """Why, of three runs in `folder`, the one with a `channel` so many times as large is left out of both."""
+    folders = [made_run(folder / name) for name in ("one", "two")]
     table = rows()
-    place = table.column_names.index("tau_l")
-    in_mNm = table.set_column(place, table.schema.field(place), pa.array(1e3 * table["tau_l"].to_numpy()))
-    folders.append(made_run(tmp_path / "odd", table=in_mNm))
+    place = table.column_names.index(channel)
+    other = table.set_column(place, table.schema.field(place), pa.array(factor * table[channel].to_numpy()))
+    folders.append(made_run(folder / "odd", table=other))
     told: list[str] = []
     runs, recordings, said = open_runs(folders, told.append)
     assert [run.name for run in runs] == [r.name for r in recordings] == ["one", "two"]
     assert said == tuple(told)
-    assert told[0].startswith("odd is left out: its τ_l is 1000 times that of its repeats, as if in another unit")
-    assert read_campaign(tmp_path).left_out == ("odd",)
+    assert read_campaign(folder).left_out == ("odd",)
+    return told[0]

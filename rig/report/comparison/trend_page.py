@@ -32,6 +32,7 @@ def render(found: Trend) -> str:
         "origin": origin,
         "figure": found.figure,
         "left_out": found.left_out,
+        "copies": found.copies,
         "series": [_series(k, s, origin.mark) for k, s in enumerate(found.series)],
         "note": NOTE,
         "css": css("trend", origin.mark),

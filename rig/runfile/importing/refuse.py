@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -108,13 +109,27 @@ def whole_counts(raw: Array, column: str, name: str, file: str) -> Array:
 
 
 def beyond_modulus(raw: Array, channel: ChannelMap, file: str) -> None:
-    """Raises UsageError when a column spans more than the modulus at which it is said to wrap."""
+    """Raises UsageError when a column spans more than the modulus at which it is said to wrap.
+
+    Either end may be off by half of its last digit: 2π written to four places is 6.2832.
+    """
     low, high = raw.min(), raw.max()
-    if high - low > channel.modulus:
+    if high - low > channel.modulus + last_digit(max(low, high, key=abs)):
         raise UsageError(
-            f"{file}: channels.{channel.name} wraps at {channel.modulus:g} {channel.unit}, but column "
-            f"'{channel.terms[0].column}' goes from {low:g} to {high:g}; take modulus (or bits) out, or correct it"
+            f"{file}: channels.{channel.name} wraps at {channel.modulus:.10g} {channel.unit}, but column "
+            f"'{channel.terms[0].column}' goes from {low:.10g} to {high:.10g}; take modulus (or bits) out, or correct "
+            "it"
         )
+
+
+def last_digit(value: Any) -> float:
+    """What the last digit of `value` stands for as it was written, or its last bit in single precision; 0 for a whole
+    number."""
+    if np.issubdtype(type(value), np.integer):
+        return 0.0
+    single = np.float32(value)
+    bit = float(np.spacing(np.abs(single))) if float(single) == float(value) else 0.0
+    return max(10.0 ** int(Decimal(repr(float(value))).as_tuple().exponent), bit)
 
 
 def undeclared_wrap(raw: Array, channel: ChannelMap, skip: Array | None, file: str) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -94,6 +96,31 @@ def test_one_wild_value_is_not_called_a_wrap(foreign: Foreign) -> None:
 def test_a_modulus_that_is_too_small(foreign: Foreign) -> None:
     said = foreign.refused(foreign.file(), MAPPING.replace("bits = 16", "bits = 12"))
     assert "channels.theta_m wraps at 4096 counts, but column 'motor' goes from " in said
+
+
+@pytest.mark.parametrize("low", [0.0, -np.pi])
+@pytest.mark.parametrize("written", [3, 4, 9, 12, np.float32])
+def test_the_modulus_that_was_advised_is_taken_however_many_digits_were_written(
+    foreign: Foreign, low: float, written: Any
+) -> None:
+    def wrapped(load: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        rad = low + np.radians(load + 300.0) % (2 * np.pi)
+        rad[np.argmax(rad)], rad[np.argmin(rad)] = low + 2 * np.pi - 1e-13, low  # at the very ends
+        return np.round(rad, written) if isinstance(written, int) else rad.astype(written).astype(np.float64)
+
+    mapping = MAPPING.replace('unit = "deg"', 'unit = "rad"').replace("sign = -1", "sign = 1")
+    mapping += '[accept]\nratio = "only the wrap matters here"\n'
+    file = foreign.file(with_column("load", lambda load: wrapped(-load)))
+    advice = "set channels.theta_l.modulus = 6.283185307179586"
+    assert advice in foreign.refused(file, mapping)
+    run = foreign.imported(file, mapping.replace("sign = 1", "modulus = 6.283185307179586"))
+    assert float(np.abs(np.diff(run.need("theta_l"))).max()) < 0.1
+
+
+def test_what_spans_more_than_its_last_digit_beyond_the_modulus_is_refused(foreign: Foreign) -> None:
+    data = with_column("load", lambda load: np.linspace(0.0, 6.2835, load.size))
+    mapping = MAPPING.replace('unit = "deg"', 'unit = "rad"').replace("sign = -1", "modulus = 6.2832")
+    assert "goes from 0 to 6.2835; take modulus" in foreign.refused(foreign.file(data), mapping)
 
 
 def test_counts_that_are_not_whole(foreign: Foreign) -> None:

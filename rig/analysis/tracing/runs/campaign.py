@@ -25,6 +25,7 @@ from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
+from rig.runfile.copies import links_last, once
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
@@ -73,7 +74,8 @@ def folders_of_runs(folder: Path) -> list[Path]:
 def read_campaign(folder: Path) -> Campaign:
     """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
     places = folders_of_runs(folder)
-    opened, out = _open(places)
+    opened, out = _open(links_last(places))
+    opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
     nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
@@ -105,12 +107,14 @@ def read_campaign(folder: Path) -> Campaign:
 
 
 def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
-    """Why some of `runs` do not go with the others of the campaign `name`, by the run's name: other units of angle or
-    torque, other signs, another ratio. What cannot be told of a run is no reason. Raises UsageError where most are so.
+    """Why some of `runs` do not go with the others of the campaign `name`, by the run's name: other units of time,
+    angle or torque, other signs, another ratio. What cannot be told of a run is no reason. Raises UsageError where
+    most are so.
     """
-    found = [r for r in map(_record, runs, starts(runs)) if isinstance(r, Recording)]
+    read = [_read(*one) for one in zip(runs, starts(runs), strict=True)]
+    out = [r for r in read if isinstance(r, Said)]
+    found = [r for r in read if isinstance(r, Recording) and not _unfit(r)]
     refuse_odd_angles(found, name)
-    out: list[Said] = []
     for sort in (_odd, _same_gear, _odd_torques, _odd_balances):
         found, odd = sort(found)
         out += odd
@@ -144,18 +148,29 @@ def _closed(folder: Path) -> list[Said]:
 
 
 def _record(run: Run, start: float) -> Recording | Said:
+    """What the tracer reads of `run`, or why it cannot use it."""
+    made = _read(run, start)
+    return left_out(run.name, why) if isinstance(made, Recording) and (why := _unfit(made)) else made
+
+
+def _read(run: Run, start: float) -> Recording | Said:
+    """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
-        made = record(run, start)
+        return record(run, start)
     except (HdrigError, ValueError) as error:
         return left_out(run.name, error)
+
+
+def _unfit(made: Recording) -> str:
+    """Why a run that can be read is none for a trace; "" where it is one."""
     if not made.pieces:
-        return left_out(run.name, "no 0.1 s of it without a gap")
+        return "no 0.1 s of it without a gap"
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
     if made.locked and (why := _gave_way(made)):
-        return left_out(run.name, why)
+        return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        return left_out(run.name, f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one")
-    return made
+        return f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+    return ""
 
 
 def _gave_way(run: Recording) -> str:
