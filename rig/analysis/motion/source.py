@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.angle import is_wrapped, unwrap
+from rig.analysis.motion.angle import is_wrapped, joined, unwrap
+from rig.analysis.motion.gaps import find_gaps, that_matter
 from rig.core.channels import UNTRUSTED, Flag
 from rig.core.rows import picked, room, stretches
 from rig.core.units import ARCSEC, RPM, TURN
@@ -56,7 +57,7 @@ class Source(Protocol):
 class Motion:
     """The rows in which the motor angle (and, if measured, the load angle) is valid; all shapes (n,), SI.
 
-    `breaks` are the rows before which an encoder was re-referenced: angles do not join across them.
+    `breaks` are the rows before which an encoder was re-referenced or rows are missing: angles do not join across them.
     """
 
     ratio: float
@@ -93,9 +94,6 @@ def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
             return None
         notes.append(f"theta_{side} was made from counts_{side} at {per_turn:g} counts per turn.")
         theta = counts * (TURN / float(per_turn))
-    if theta.size > 2 and is_wrapped(theta):
-        notes.append(f"theta_{side} jumps by whole turns; it was unwrapped first.")
-        theta = unwrap(theta, TURN)
     return theta
 
 
@@ -114,13 +112,40 @@ def motion_of(run: Source) -> Motion | None:
         )
         theta_m, theta_l = picked(theta_m, rows), None if theta_l is None else picked(theta_l, rows)
         t = None if t is None else picked(t, rows)
+    t = _usable(t, notes)
+    gaps = find_gaps(t if t is not None or rows is None else rows.astype(np.float64), timed=t is not None)
+    theta_m, theta_l = _unwrapped(theta_m, theta_l, float(run.ratio), gaps.before, notes)
+    gaps = that_matter(gaps, theta_m)
+    notes += gaps.words
+    breaks = tuple(sorted({*breaks, *gaps.before.tolist()}))
+    return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+
+
+def _usable(t: Array | None, notes: list[str]) -> Array | None:
+    """The time column [s] where it can be one, else None and a note."""
     if t is not None and not _increases(t):
         notes.append("The time column does not increase everywhere; it was not used.")
-        t = None
+        return None
     if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
         notes.append(f"The time column says {(t[-1] - t[0]) / (t.size - 1):.3g} s between rows; it was not used.")
-        t = None
-    return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+        return None
+    return t
+
+
+def _unwrapped(
+    theta_m: Array, theta_l: Array | None, ratio: float, gaps: Rows, notes: list[str]
+) -> tuple[Array, Array | None]:
+    """Both angles [rad], (n,), unwrapped where they jump by whole turns; across the rows `gaps` the load tells how
+    often the motor went round."""
+    if theta_l is not None and theta_l.size > 2 and is_wrapped(theta_l, gaps):
+        notes.append("theta_l jumps by whole turns; it was unwrapped first.")
+        theta_l = unwrap(theta_l, TURN)
+    if theta_m.size > 2 and is_wrapped(theta_m, gaps):
+        notes.append("theta_m jumps by whole turns; it was unwrapped first.")
+        theta_m = unwrap(theta_m, TURN)
+        if theta_l is not None:
+            theta_m = joined(theta_m, theta_l, ratio, gaps)
+    return theta_m, theta_l
 
 
 def _trusted(columns: list[Array], flags: Array | None) -> tuple[Rows | None, tuple[int, ...]]:

@@ -7,7 +7,7 @@ import numpy as np
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.result import Array, Check
 from rig.analysis.kinematic_error.reference import kinematic_error_reference
-from rig.analysis.motion.declared import declared
+from rig.analysis.motion.declared import declared, far_off
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.tame import Tame
 from rig.analysis.stiffness.counts import one_count
@@ -52,6 +52,8 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
         return
     less = f", less the kinematic error of {reference.name}" if reference is not None and s.share is not None else ""
     K, half = _add_secant(found, s, motion)
+    said = declared(run.declared, "K")
+    found.beyond = found.beyond or (far_off("K", K, said) if said else "")
     add_lines(found, s)
     add_cubic(found, s)
     add_play(found, s)

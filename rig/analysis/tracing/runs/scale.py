@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.motion.declared import beside, far_off
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
@@ -18,7 +19,6 @@ from rig.core.errors import UsageError
 from rig.core.units import DEG
 
 SURELY: Final = 5.0  # standard deviations above zero
-FAR: Final = 30.0  # times the declared value, or a part of it: worth a note
 NEAR: Final = 1.4  # how far a factor may be from that of a unit: what is declared is a design value
 UNITS: Final[Mapping[float, str]] = {
     DEG: "angles seem to be in degrees, expected rad",
@@ -26,7 +26,6 @@ UNITS: Final[Mapping[float, str]] = {
     1e-3: "torques seem to be in kN·m, expected N·m",
 }
 """By the factor that every one of K, J_m and J_l is then off by."""
-SI: Final = {"K": "N·m/rad", "J_m": "kg·m²", "J_l": "kg·m²"}
 
 
 def off_scale(s: Solution, name: str) -> tuple[str, ...]:
@@ -35,17 +34,9 @@ def off_scale(s: Solution, name: str) -> tuple[str, ...]:
     for unit, words in UNITS.items():
         alike = [n for n, (factor, _) in off.items() if 1 / NEAR < factor / unit < NEAR]
         if len(alike) > 1:
-            found = " and ".join(f"{n} comes out as {_beside(n, *off[n])}" for n in alike[:2])
+            found = " and ".join(f"{n} comes out as {beside(n, off[n][0] * off[n][1], off[n][1])}" for n in alike[:2])
             raise UsageError(f"{name}: {found}: {words}")
-    return tuple(
-        f"{n} comes out as {_beside(n, factor, said)}: one of them is in another unit, or was declared of another rig."
-        for n, (factor, said) in off.items()
-        if not 1 / FAR < factor < FAR
-    )
-
-
-def _beside(name: str, factor: float, said: float) -> str:
-    return f"{factor * said:.3g} {SI[name]}, {factor:.3g} times the {said:.3g} declared"
+    return tuple(words for n, (factor, said) in off.items() if (words := far_off(n, factor * said, said)))
 
 
 def _factors(s: Solution) -> dict[str, tuple[float, float]]:
