@@ -9,13 +9,14 @@ from functools import cached_property
 
 import numpy as np
 
+from rig.analysis.motion.degrees import smallest_step
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.meanings import computed_torque
-from rig.analysis.tracing.runs.resolution import noise_of, quiet, smallest_step
+from rig.analysis.tracing.runs.resolution import noise_of, quiet
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, substituted

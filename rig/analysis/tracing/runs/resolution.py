@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rig.analysis.motion.degrees import smallest_step
 from rig.analysis.tracing.thresholds import BANDWIDTH
 from rig.model.effect import Array
 
 KEPT = 0.98  # of the differences: all but the largest
 OF_KEPT = 0.7598  # their mean, of normal ones of RMS 1
-ROUNDED = 1e-12  # relative: what double precision leaves of two equal angles
 
 
 COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do no harm, 4096 do
@@ -69,11 +69,3 @@ def _divided(x: Array, t: Array) -> Array:
         weights = [1.0 / np.prod([at[i] - at[j] for j in range(5) if j != i], axis=0) for i in range(5)]
         sum_of = sum(w * x[i : x.size - 4 + i] for i, w in enumerate(weights))
         return np.asarray(sum_of / np.sqrt(sum(w * w for w in weights)))
-
-
-def smallest_step(x: Array) -> float:
-    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
-    one count of a coarse reading, next to nothing of a fine one."""
-    steps = np.abs(np.diff(x, 2))
-    steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
-    return float(np.min(steps, initial=np.inf)) if steps.size else 0.0

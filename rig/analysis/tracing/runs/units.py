@@ -1,8 +1,7 @@
 """Angles in another unit than rad, or not in the declared ratio: seen run by run, refused where most runs show it.
 
 A kinematic error is some 1e-4 of a motor turn, and wind-up comes and goes: neither makes the travels of both angles go
-otherwise than 1:N. Both angles in degrees go as 1:N too: then the motor is far too fast, or its smallest steps are
-57.3 declared counts.
+otherwise than 1:N. Both angles in degrees go as 1:N too: see motion/degrees.py.
 """
 
 from __future__ import annotations
@@ -13,16 +12,12 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.motion.angle import is_another_ratio
+from rig.analysis.motion.degrees import DEGREES, Turning
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.units import RPM
 
-DEGREES: Final = 180 / np.pi
 ALIKE: Final = 0.01  # how far a slope may be from that of degrees
-STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts are 5e-3 off
-SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
-UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
-FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
 
 
 def odd_angles(run: Recording) -> str | None:
@@ -79,27 +74,8 @@ def _reason(ratio: float, slope: float) -> str:
 
 
 def _degrees(run: Recording) -> str | None:
-    """Both angles in degrees: by the smallest step, by the declared speed, by what no motor reaches."""
     if "theta_m" not in run.has:
         return None
-    count = 2 * np.pi / run.counts_m if run.counts_m else np.inf
-    if abs(run.step_m / count / DEGREES - 1) < STEP:
-        return (
-            f"θ_m moves in steps of {run.step_m:.4g} rad, {run.step_m / count:.1f} times the declared count of "
-            f"{count:.3g} rad: both angles seem to be in degrees, expected rad"
-        )
-    if "t" not in run.has:
-        return None
-    turning = run.turning / RPM
-    own = abs(run.ratio / DEGREES - 1) > UNLIKE
-    if own and run.speed_rpm and abs(turning / run.speed_rpm / DEGREES - 1) < SPEED:
-        return (
-            f"the motor turns at {turning:.4g} rpm, {turning / run.speed_rpm:.1f} times the declared speed_rpm "
-            f"{run.speed_rpm:g}: both angles seem to be in degrees, expected rad"
-        )
-    if turning > FASTEST:
-        return (
-            f"the motor turns at {turning:.4g} rpm, expected below {FASTEST:.0f} rpm: its angle seems to be in "
-            "degrees or counts, expected rad"
-        )
-    return None
+    count = 2 * np.pi / run.counts_m if run.counts_m else 0.0
+    turning = run.turning / RPM if "t" in run.has else None
+    return Turning(run.step_m, count, turning, run.speed_rpm, run.ratio).in_degrees

@@ -1,0 +1,78 @@
+"""Both angles in degrees where rad are expected: they keep their ratio, so nothing else in them says so."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.motion.source import Motion, Source
+from rig.core.numbers import stated
+from rig.core.units import RPM, TURN
+
+DEGREES: Final = 360 / TURN
+STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts are 5e-3 off
+SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
+UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
+FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
+ROUNDED: Final = 1e-12  # relative: what double precision leaves of two equal angles
+
+
+@dataclass(frozen=True)
+class Turning:
+    """What tells the unit of a motor's angle: its smallest step and one declared count (rad, 0 where there is none),
+    its mean speed and the declared one (rpm; None where no time tells it, 0 where nobody says it), the gear's ratio."""
+
+    step: float
+    count: float
+    rpm: float | None
+    said_rpm: float
+    ratio: float
+
+    @property
+    def in_degrees(self) -> str | None:
+        """Why it seems to be in degrees: by the smallest step, by the declared speed, by what no motor reaches."""
+        if self.count and abs(self.step / self.count / DEGREES - 1) < STEP:
+            return (
+                f"θ_m moves in steps of {self.step:.4g} rad, {self.step / self.count:.1f} times the declared count of "
+                f"{self.count:.3g} rad: both angles seem to be in degrees, expected rad"
+            )
+        if self.rpm is None:
+            return None
+        own = abs(self.ratio / DEGREES - 1) > UNLIKE
+        if own and self.said_rpm and abs(self.rpm / self.said_rpm / DEGREES - 1) < SPEED:
+            return (
+                f"the motor turns at {self.rpm:.4g} rpm, {self.rpm / self.said_rpm:.1f} times the declared speed_rpm "
+                f"{self.said_rpm:g}: both angles seem to be in degrees, expected rad"
+            )
+        if self.rpm > FASTEST:
+            return (
+                f"the motor turns at {self.rpm:.4g} rpm, expected below {FASTEST:.0f} rpm: its angle seems to be in "
+                "degrees or counts, expected rad"
+            )
+        return None
+
+
+def turning_of(run: Source, motion: Motion) -> Turning:
+    """Of a run as it was read."""
+    encoders = run.manifest.get("encoders")
+    counts = stated(encoders.get("motor_counts_per_rev"), 0.0) if isinstance(encoders, dict) else 0.0
+    way = float(np.sum(np.abs(np.diff(motion.theta_m))))
+    lasted = 0.0 if motion.t is None else float(motion.t[-1] - motion.t[0])
+    return Turning(
+        step=smallest_step(motion.theta_m),
+        count=TURN / counts if counts > 0 else 0.0,
+        rpm=way / lasted / RPM if lasted > 0 else None,
+        said_rpm=abs(stated(run.conditions.get("speed_rpm"), 0.0)),
+        ratio=run.ratio,
+    )
+
+
+def smallest_step(x: npt.NDArray[np.float64]) -> float:
+    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
+    one count of a coarse reading, next to nothing of a fine one."""
+    steps = np.abs(np.diff(x, 2))
+    steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
+    return float(np.min(steps, initial=np.inf)) if steps.size else 0.0

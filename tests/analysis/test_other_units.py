@@ -1,0 +1,52 @@
+"""Runs in another unit than they say are judged by no limit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from rig.analysis import analyse
+from rig.analysis.findings.result import Verdict
+from rig.analysis.motion.degrees import DEGREES, Turning
+from rig.runfile.run import Run
+from tests.analysis.synthetic import MadeRun
+
+COUNT = 2 * np.pi / 65_536
+
+
+def changed(run: Run, limits: dict[str, dict[str, float]], **times: float) -> MadeRun:
+    """The run with some channels so many times as large, held to limits."""
+    names = ("t", "theta_m", "theta_l", "tau_m", "tau_l")
+    columns = {name: x * times.get(name, 1.0) for name in names if (x := run.column(name)) is not None}
+    return MadeRun(columns, {**run.manifest, "limits": limits})
+
+
+def test_angles_in_degrees_meet_no_limit(shared: Path) -> None:
+    run = Run.open(shared / "cases" / "open-1" / "slow_ke_1")
+    limits = {"kinematic_error_peak_to_peak": {"upper": 150.0}}
+    assert analyse(changed(run, limits)).verdict is Verdict.FAIL
+    in_degrees = analyse(changed(run, limits, theta_m=DEGREES, theta_l=DEGREES))
+    assert in_degrees.verdict is Verdict.INCONCLUSIVE
+    assert "57.3 times the declared count" in in_degrees.sentence
+    assert not in_degrees.estimates
+
+
+def test_a_torque_in_another_unit_meets_no_limit_of_the_stiffness(shared: Path) -> None:
+    run = Run.open(shared / "cases" / "open-1" / "lock_60_1")
+    limits = {"torsional_stiffness": {"lower": 5000.0}}
+    assert analyse(changed(run, limits)).verdict is Verdict.PASS
+    in_mNm = analyse(changed(run, limits, tau_l=1000.0))
+    assert in_mNm.verdict is Verdict.INCONCLUSIVE
+    assert any("times the 7.16e+03 declared" in said for said in (in_mNm.sentence, *in_mNm.cannot))
+
+
+def test_the_unit_of_an_angle_is_told_by_its_step_by_the_declared_speed_and_by_what_no_motor_reaches() -> None:
+    right = Turning(step=COUNT, count=COUNT, rpm=300.0, said_rpm=300.0, ratio=50.0)
+    assert right.in_degrees is None
+    assert "57.3 times the declared count" in (replace(right, step=COUNT * DEGREES).in_degrees or "")
+    coarse = replace(right, step=0.0)
+    assert "57.3 times the declared speed_rpm" in (replace(coarse, rpm=300.0 * DEGREES).in_degrees or "")
+    assert "expected below 20000 rpm" in (replace(coarse, said_rpm=0.0, rpm=22_918.0).in_degrees or "")
+    assert replace(coarse, rpm=None).in_degrees is None
