@@ -11,7 +11,6 @@ import numpy as np
 
 from rig.analysis.findings.collected import Findings, conclude
 from rig.analysis.findings.result import Result
-from rig.analysis.motion.degrees import turning_of
 from rig.analysis.motion.held import not_held
 from rig.analysis.motion.overview import add_overview
 from rig.analysis.motion.source import Motion, Source, motion_of
@@ -191,8 +190,6 @@ def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Re
         return _nothing(
             run, f"The motor angle moves {turns:.4g} turns in {motion.theta_m.size} rows: not an angle in rad."
         )
-    if regime_of(run.procedure) is not Regime.LOCKED and (unit := turning_of(run, motion).in_degrees):
-        return _nothing(run, f"In this run {unit}; nothing was computed.")
     found.cannot += motion.notes
     speed = None if motion.t is None else motor_speed(motion.t, motion.theta_m)
     add_overview(found, run, motion, speed)

@@ -1,4 +1,4 @@
-"""Runs in another unit than they say are judged by no limit."""
+"""Runs in another unit than they say pass no limit."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def changed(run: Run, limits: dict[str, dict[str, float]], **times: float) -> Ma
 
 def test_angles_in_degrees_meet_no_limit(shared: Path) -> None:
     run = Run.open(shared / "cases" / "open-1" / "slow_ke_1")
-    limits = {"kinematic_error_peak_to_peak": {"upper": 150.0}}
-    assert analyse(changed(run, limits)).verdict is Verdict.FAIL
+    limits = {"kinematic_error_peak_to_peak": {"upper": 200.0}}
+    assert analyse(changed(run, limits)).verdict is Verdict.PASS
     in_degrees = analyse(changed(run, limits, theta_m=DEGREES, theta_l=DEGREES))
-    assert in_degrees.verdict is Verdict.INCONCLUSIVE
+    assert (in_degrees.verdict, in_degrees.rejected) == (Verdict.FAIL, True)
     assert "57.3 times the declared count" in in_degrees.sentence
-    assert not in_degrees.estimates
+    assert "kinematic_error_peak_to_peak" not in {e.name for e in in_degrees.estimates}
 
 
 def test_a_torque_in_another_unit_meets_no_limit_of_the_stiffness(shared: Path) -> None:

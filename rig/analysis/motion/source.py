@@ -97,6 +97,17 @@ def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
     return theta
 
 
+def _left_out(columns: Mapping[str, Array | None], kept: int) -> str:
+    """How many rows are not used, and which channel has no value in most of them."""
+    holes = {name: np.flatnonzero(~np.isfinite(c)) for name, c in columns.items() if c is not None}
+    name = max(holes, key=lambda n: holes[n].size)
+    size, missing = next(c.size for c in columns.values() if c is not None), holes[name]
+    said = f"{size - kept} of {size} rows left out: "
+    if missing.size:
+        return f"{said}{name} has no value in {missing.size} of them (row {missing[0]} to {missing[-1]})."
+    return f"{said}an angle was stale or frozen, or the guard had tripped."
+
+
 def motion_of(run: Source) -> Motion | None:
     """The trusted rows of `run`; None when it has no motor angle at all."""
     notes: list[str] = []
@@ -106,10 +117,7 @@ def motion_of(run: Source) -> Motion | None:
     t, flags = run.column("t"), run.column("flags")
     rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
     if rows is not None:
-        notes.append(
-            f"{theta_m.size - rows.size} of {theta_m.size} rows left out: an angle was missing, stale or frozen, or "
-            "the guard had tripped."
-        )
+        notes.append(_left_out({"theta_m": theta_m, "theta_l": theta_l, "t": t}, rows.size))
         theta_m, theta_l = picked(theta_m, rows), None if theta_l is None else picked(theta_l, rows)
         t = None if t is None else picked(t, rows)
     t = _usable(t, notes)

@@ -11,10 +11,10 @@ from rig.analysis.kinematic_error import words
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.kinematic_error.ratio import disagreement, doubt, turns_per_turn
 from rig.analysis.motion.declared import declared
+from rig.analysis.motion.degrees import turning_of
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.speed import Speed
 from rig.analysis.motion.strokes import Stroke, find_strokes
-from rig.analysis.orders.revolutions import ROWS_PER_TERM
 from rig.analysis.sensors.latch_skew_words import add_skew_error
 from rig.analysis.smoothness import words as smooth
 from rig.analysis.smoothness.measure import Smoothness
@@ -42,6 +42,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         return
     reference = motion.pick(run.column("theta_ref"))
     wrong = wrong_unit(motion, strokes, reference, run.conditions)
+    if not wrong and (unit := turning_of(run, motion).in_degrees):
+        wrong = f"The unit of the angles looks wrong: {unit}."
     if wrong:
         found.checks.append(Check("unit", False, wrong))
         found.sentence = "No kinematic error was computed."
@@ -106,7 +108,7 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     ke = measure(run, motion, main, slow)
     if ke is None:
         found.cannot.append("The rows are too few per motor turn for a single order.")
-        found.sentence = _too_few_rows(run, motion, main)
+        found.sentence = "The motor turned too fast for the row rate."
         found.inconclusive = found.sentence
         return main
     words.add_profile(found, ke, slow)
@@ -125,21 +127,6 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
             f"The run holds {len(worthy)} speeds; the figures are those of {ke.speed_rpm:.4g} rpm, a table has all."
         )
     return main
-
-
-def _too_few_rows(run: Source, motion: Motion, strokes: list[Stroke]) -> str:
-    """Why a revolution has too few rows: those of a gap are missing in some, or there are as few in all."""
-    usual = float(np.median(np.concatenate([np.diff(s.edges) for s in strokes])))
-    columns = {name: c for name in ("theta_m", "theta_l", "t") if (c := run.column(name)) is not None}
-    holes = {name: int(np.count_nonzero(~np.isfinite(c))) for name, c in columns.items()}
-    name = max(holes, key=lambda n: holes[n], default="")
-    if usual < ROWS_PER_TERM or not holes.get(name):
-        return "The motor turned too fast for the row rate."
-    rows = np.flatnonzero(~np.isfinite(columns[name]))
-    return (
-        f"A gap is too long: {name} has no value in {rows.size} of {columns[name].size} rows (row {rows[0]} to "
-        f"{rows[-1]}), and of a motor turn there too few are left for a single order."
-    )
 
 
 def _speed_row(ke: KinematicError) -> dict[str, float | str]:

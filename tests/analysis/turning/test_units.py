@@ -47,11 +47,14 @@ def test_milliseconds_taken_for_seconds_are_named_as_such() -> None:
     assert "1/1000: is t in ms? Expected s." in result.sentence
 
 
-def test_a_gap_is_named_with_its_channel_and_rows() -> None:
+def test_a_gap_is_named_with_its_channel_and_rows_and_the_figure_is_that_of_the_rest() -> None:
     made = slow_run(1)
     theta_l = made.columns["theta_l"].copy()
     theta_l[5000:60000] = np.nan
     result = analyse(replace(made, columns={**made.columns, "theta_l": theta_l}))
-    assert result.verdict is Verdict.INCONCLUSIVE
-    assert f"theta_l has no value in 55000 of {theta_l.size} rows (row 5000 to 59999)" in result.sentence
-    assert "too fast" not in result.sentence
+    said = " ".join(result.cannot)
+    assert f"55000 of {theta_l.size} rows left out: theta_l has no value in 55000 of them (row 5000 to 59999)" in said
+    assert "gap of 55 s at t = 5.0 s" in said
+    (found,) = (e for e in result.estimates if e.name == "kinematic_error_peak_to_peak")
+    (whole,) = (e for e in analyse(made).estimates if e.name == "kinematic_error_peak_to_peak")
+    assert found.value == pytest.approx(whole.value, abs=0.5)  # arcsec

@@ -150,7 +150,7 @@ def _closed(folder: Path) -> list[Said]:
 def _record(run: Run, start: float) -> Recording | Said:
     """What the tracer reads of `run`, or why it cannot use it."""
     made = _read(run, start)
-    return left_out(run.name, why) if isinstance(made, Recording) and (why := _unfit(made)) else made
+    return made if isinstance(made, Said) or not (why := _unfit(made)) else left_out(run.name, why)
 
 
 def _read(run: Run, start: float) -> Recording | Said:
