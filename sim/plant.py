@@ -96,6 +96,11 @@ class Plant:
         self.state[kernel.FILTERED] = self.state[kernel.TAU_L]
         self.advance(0.0, 0.0)
 
+    def lock(self) -> None:
+        """Hold the output fast where it is."""
+        self.state[kernel.OMEGA_L] = 0.0
+        self.locked = True
+
     def advance(self, dt: float, tau: float, xi_m: float = 0.0, xi_l: float = 0.0) -> None:
         """Let `dt` s pass with `tau` N·m asked of the drive; `xi` are the normal deviates of friction's wander.
 

@@ -19,6 +19,7 @@ from sim.plant import Plant, Truth
 NEVER = math.inf
 RELAX = 0.001  # s of wall time, for other processes to catch up
 WANDER_SHARE = 0.05  # of its correlation time: friction is held constant for this long at most
+CREEPING = 1e-4  # rad/s, 20 arcsec/s: nobody sees it, and after a halt the load comes to rest through it
 MOST_LOAD = 1000.0  # N·m, more than a gear of this size survives
 MOST_DEPTH = 10.0  # mm, farther the wave generator is out of the gear
 
@@ -100,11 +101,11 @@ class World(Clock):
         self.plant.tau_ext = tau_ext
 
     def lock_output(self) -> None:
-        """Clamp the output where it is. Raises UsageError while it turns."""
+        """Clamp the output where it is; a hand stops one that only creeps. Raises UsageError while it turns."""
         omega_l = self.truth().omega_l
-        if omega_l != 0.0:
+        if abs(omega_l) > CREEPING:
             raise UsageError(f"the output turns at {omega_l:.3g} rad/s, it can be locked at rest only")
-        self.plant.locked = True
+        self.plant.lock()
 
     def unlock_output(self) -> None:
         """Let the output turn again; a wound-up spring will move it."""

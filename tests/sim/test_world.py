@@ -13,7 +13,7 @@ from sim import kernel
 from sim.noise import normal
 from sim.parameters import TwinParameters
 from sim.plant import PlantFailure
-from sim.world import World
+from sim.world import CREEPING, World
 
 
 def test_time_stands_still_until_someone_waits(twin: TwinParameters) -> None:
@@ -111,6 +111,16 @@ def test_a_dead_weight_and_a_locked_output_act_on_the_load(twin: TwinParameters)
     world.unlock_output()
     world.wait_until(0.55)
     assert world.truth().theta_l > held.theta_l
+
+
+def test_an_output_that_only_creeps_is_held_where_it_is(twin: TwinParameters) -> None:
+    world = World(twin, 1)
+    world.load_torque(20.0)
+    while world.truth().omega_l == 0.0:
+        world.wait_until(world.now() + 1e-6)
+    assert 0.0 < world.truth().omega_l < CREEPING
+    world.lock_output()
+    assert world.truth().omega_l == 0.0
 
 
 def test_a_turning_output_cannot_be_locked(twin: TwinParameters) -> None:

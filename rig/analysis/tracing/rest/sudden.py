@@ -38,6 +38,8 @@ def _moment(r: Rest, sense: Array) -> float:
     ends = max(int(ENDS * len(z)), 2)
     at = np.union1d(np.arange(ends, len(z) - ends, max(len(z) // MOMENTS, 1)), np.flatnonzero(np.diff(r.run[order])))
     at = at[(at >= ends) & (at < len(z) - ends)]
+    if not at.size:
+        return float("inf")
     along, across, own = (_after(step * e, at), _after(step[:, None] * z, at), _after(step**2, at))
     taken = solved(normal, np.column_stack([z.T @ e, across.T]))
     left, size = along - across @ taken[:, 0], own - np.sum(across * taken[:, 1:].T, 1)
