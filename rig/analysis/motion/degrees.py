@@ -17,6 +17,7 @@ STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts 
 SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
 UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
 FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
+ROWS: Final = 200_000  # looked at, those first: a unit is the same all along, and a run may have a day of rows
 ROUNDED: Final = 1e-12  # relative: what double precision leaves of two equal angles
 
 
@@ -59,10 +60,11 @@ def turning_of(run: Source, motion: Motion) -> Turning:
     """Of a run as it was read."""
     encoders = run.manifest.get("encoders")
     counts = stated(encoders.get("motor_counts_per_rev"), 0.0) if isinstance(encoders, dict) else 0.0
-    way = float(np.sum(np.abs(np.diff(motion.theta_m))))
-    lasted = 0.0 if motion.t is None else float(motion.t[-1] - motion.t[0])
+    theta_m, t = motion.theta_m[:ROWS], None if motion.t is None else motion.t[:ROWS]
+    way = float(np.sum(np.abs(np.diff(theta_m))))
+    lasted = 0.0 if t is None else float(t[-1] - t[0])
     return Turning(
-        step=smallest_step(motion.theta_m),
+        step=smallest_step(theta_m),
         count=TURN / counts if counts > 0 else 0.0,
         rpm=way / lasted / RPM if lasted > 0 else None,
         said_rpm=abs(stated(run.conditions.get("speed_rpm"), 0.0)),

@@ -98,14 +98,15 @@ def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
 
 
 def _left_out(columns: Mapping[str, Array | None], kept: int) -> str:
-    """How many rows are not used, and which channel has no value in most of them."""
-    holes = {name: np.flatnonzero(~np.isfinite(c)) for name, c in columns.items() if c is not None}
-    name = max(holes, key=lambda n: holes[n].size)
-    size, missing = next(c.size for c in columns.values() if c is not None), holes[name]
-    said = f"{size - kept} of {size} rows left out: "
-    if missing.size:
-        return f"{said}{name} has no value in {missing.size} of them (row {missing[0]} to {missing[-1]})."
-    return f"{said}an angle was stale or frozen, or the guard had tripped."
+    """How many rows are not used, which channel has no value in most of them, and what else there may be."""
+    holes = {name: ~np.isfinite(c) for name, c in columns.items() if c is not None}
+    name = max(holes, key=lambda n: np.count_nonzero(holes[n]))
+    missing, size = holes[name], holes[name].size
+    count, first, last = np.count_nonzero(missing), int(missing.argmax()), size - 1 - int(missing[::-1].argmax())
+    reasons = [f"{name} has no value in {count} of them (row {first} to {last})"] if count else []
+    if count < size - kept:
+        reasons.append("an angle was missing, stale or frozen, or the guard had tripped")
+    return f"{size - kept} of {size} rows left out: {'; else '.join(reasons)}."
 
 
 def motion_of(run: Source) -> Motion | None:

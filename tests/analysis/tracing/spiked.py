@@ -22,7 +22,14 @@ STIFFNESS = 7200.0  # N·m/rad, of the open campaigns
 def spiked(
     to: Path, campaign: Path, law: Callable[[Columns, float], Columns], only: Collection[str] | None = None
 ) -> Trace:
-    """A campaign, or some runs of it, traced with columns changed by `law`, which gets a run's columns and when it
+    """A campaign, or some runs of it, traced with columns changed by `law`: see `change`."""
+    return trace(change(to, campaign, law, only))
+
+
+def change(
+    to: Path, campaign: Path, law: Callable[[Columns, float], Columns], only: Collection[str] | None = None
+) -> Path:
+    """A campaign, or some runs of it, at `to`, with columns changed by `law`, which gets a run's columns and when it
     began [s]."""
     for run in sorted(p for p in campaign.iterdir() if p.is_dir() and (only is None or p.name in only)):
         began = started(run)
@@ -31,7 +38,7 @@ def spiked(
         shutil.copytree(run, to / run.name)
         changed = columns | law(columns, began)
         pq.write_table(pa.table(changed), to / run.name / "samples.parquet")
-    return trace(to)
+    return to
 
 
 def started(run: Path) -> float:

@@ -44,11 +44,8 @@ def made(of: str, size: float = 3.0, seed: int = 1) -> Rest:
     return Rest(e, run, at, 1 / 125, np.zeros((24000, 0)), np.zeros((0, 0)))
 
 
-FLOORS = {(i, "A"): 1.0 for i in range(3)}
-
-
 def share_of(of: str) -> dict[str, float]:
-    found = shares(made(of), FLOORS, "A")["share.A"]
+    found = shares(made(of), "A")["share.A"]
     return dict(zip([*COORDINATES, *map(" ".join, PAIRS)], found, strict=True))
 
 
@@ -70,9 +67,7 @@ def test_friction_along_the_motor_angle_shows_beside_the_direction_alone() -> No
     way = np.where(np.arange(24000) // 1000 % 2, 1.0, -1.0)
     e = 3 * np.sqrt(2) * way * np.cos(base.at["motor_angle"]) + rng.normal(0, 1, 24000)
     there_and_back = replace(base, e=e, at=base.at | {"direction": way})
-    found = dict(
-        zip([*COORDINATES, *map(" ".join, PAIRS)], shares(there_and_back, FLOORS, "A")["share.A"], strict=True)
-    )
+    found = dict(zip([*COORDINATES, *map(" ".join, PAIRS)], shares(there_and_back, "A")["share.A"], strict=True))
     assert found["motor_angle direction"] > 0.8
     assert max(found["motor_angle"], found["direction"]) < 0.1
 
@@ -84,19 +79,18 @@ def test_a_loop_in_the_torque_shows_as_memory_though_the_torque_is_noisy() -> No
     way = np.sign(np.cos(2 * np.pi * np.arange(24000) / 6000))
     e = 3 * way + rng.normal(0, 1, 24000)
     loop = replace(base, e=e, at=base.at | {"load": torque + rng.normal(0, 0.1, 24000)})
-    found = dict(zip(COORDINATES, shares(loop, FLOORS, "A")["share.A"], strict=False))
+    found = dict(zip(COORDINATES, shares(loop, "A")["share.A"], strict=False))
     assert found["memory"] > 0.8  # around a reversal, and in levels passed in a few rows, it cannot be told
     assert found["load"] < 0.1
 
 
 def test_noise_alone_is_predicted_by_no_angle() -> None:
-    gained = score_of_orders(made("nothing"), folds(made("nothing")), FLOORS, "A", "load_angle", 8)
+    gained = score_of_orders(made("nothing"), folds(made("nothing")), "load_angle", 8)
     assert gained == pytest.approx(0.0, abs=0.01)
 
 
 def test_the_shaft_torque_cannot_be_predicted_by_its_own_reading() -> None:
-    floors = {(i, "L"): 1.0 for i in range(3)}
-    found = shares(made("motor angle scaled by load"), floors, "L")["share.L"]
+    found = shares(made("motor angle scaled by load"), "L")["share.L"]
     own = [np.isnan(v) for v in found]
     names = [*COORDINATES, *map(" ".join, PAIRS)]
     assert [name for name, nan in zip(names, own, strict=True) if nan] == ["load", "memory", "motor_angle load"]

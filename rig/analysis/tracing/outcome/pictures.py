@@ -82,7 +82,7 @@ def where(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array], 
         out[f"{stem}.x"] = middles
         out[f"{stem}.before"], out[f"{stem}.after"] = (rms(e, index, middles.size) for e in (first.e, last.e))
     if np.mean(first.e**2) > 1 + EXCESS and (whole := rest(p.eq, before, p.held_out.floors, channel)) is not None:
-        out |= shares(whole, p.held_out.floors, channel)
+        out |= shares(whole, channel)
     return out
 
 

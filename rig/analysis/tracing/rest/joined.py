@@ -37,9 +37,9 @@ class Rest:
     `z` (n, p) are the baseline's columns over the floor, but for those that may only be small; `known` (p, p) is what
     the other channels, and a little what all of this one, know of its coefficients, for each row. `own_zeros`: whether
     every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known. `every`: one
-    of how many rows each is. `worth` (n,) is how many floors that is in each row
-    what is one of them in most: what has one size in all runs is a small part of the floor of a lock test. `offset`
-    (n,) is the share of its run's mean that was taken off as the run's own."""
+    of how many rows each is. `worth` (n,) is how many floors that is in each row what is one
+    of them in most: what has one size in all runs is a small part of the floor of a lock test. `offset` (n,) is the
+    share of its run's mean that was taken off as the run's own."""
 
     e: Array
     run: Array

@@ -37,7 +37,7 @@ def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, floa
     """Coordinates of one channel, best first."""
     if (most := rest(eq, e, floors, channel)) is None:
         return []
-    found = shares(most, floors, channel)
+    found = shares(most, channel)
     score = np.nan_to_num(found[f"share.{channel}"])
     alone = dict(zip(COORDINATES, map(float, score), strict=False))
     told = {name: share for name, share in alone.items() if share > SOME}

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.rest.binned import Halves, folds, score
 from rig.analysis.tracing.rest.bins import BINNED
 from rig.analysis.tracing.rest.coordinates import INDICES
@@ -23,14 +21,14 @@ COORDINATES: Final = ("motor_angle", "load_angle", "direction", "load", "memory"
 PAIRS: Final = (("motor_angle", "direction"), ("motor_angle", "load"), ("motor_angle", "speed"), ("speed", "direction"))
 
 
-def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Array]:
+def shares(r: Rest, channel: str) -> dict[str, Array]:
     """`share.*` of one channel: bin means of one half of the rows against the other half."""
     excess = float(np.mean(r.e**2)) - 1.0
     h = Halves(r, folds(r))
     fold = h.fold
     alone = [score(h, levels(r, name)) for name in COORDINATES]
     for i, (name, orders) in enumerate(ORDERS_OF.items()):
-        alone[i] = max(alone[i], score_of_orders(r, fold, floors, channel, name, orders))
+        alone[i] = max(alone[i], score_of_orders(r, fold, name, orders))
     both = [score(h, crossed(r, *pair)) for pair in PAIRS]
     own = [channel == "L" and bool({"load", "memory"} & {*names}) for names in (*((c,) for c in COORDINATES), *PAIRS)]
     out = {f"share.{channel}": np.where(own, np.nan, np.clip(np.array(alone + both) / excess, 0.0, 1.0))}
@@ -40,7 +38,7 @@ def shares(r: Rest, floors: Mapping[Key, float], channel: str) -> dict[str, Arra
     return out
 
 
-def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: str, name: str, orders: int) -> float:
+def score_of_orders(r: Rest, fold: Array, name: str, orders: int) -> float:
     """As `score`, of the first `orders` harmonics of an angle, one size in all runs, each run with its own offset.
 
     What offsets alone explain is taken off. Slow runs see a sixth of an output turn: bins would not join up there.
@@ -49,10 +47,9 @@ def score_of_orders(r: Rest, fold: Array, floors: Mapping[Key, float], channel: 
     if not np.isfinite(x).all():
         return 0.0
     runs, run = np.unique(r.run, return_inverse=True)
-    floor = np.array([floors[int(i), channel] for i in runs])[run]
     own = np.eye(runs.size)[run]
     angles = np.multiply.outer(x, np.arange(1, orders + 1))
-    waves = np.hstack([np.cos(angles), np.sin(angles)]) * (floor.mean() / floor)[:, None]
+    waves = np.hstack([np.cos(angles), np.sin(angles)]) * r.worth[:, None]
     gain = 0.0
     for test in (0, 1):
         train, seen = fold != test, fold == test

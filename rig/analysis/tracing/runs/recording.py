@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from rig.analysis.motion.degrees import smallest_step
+from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
@@ -27,7 +28,6 @@ from rig.model.effect import MEASURED, Array, Known, Signals
 from rig.runfile.run import Run
 
 UNTIMED = 1000.0  # Hz, taken for the rate of rows without a time: taken for less, ω̇ of a 16-bit encoder is all noise
-GAP = 3.5  # usual distances between rows: of a host that logs when it gets to it, two rows may be lost and bridged
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
 DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
 SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
@@ -209,7 +209,7 @@ def _joined(t: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tu
     """Rows lo..hi without a gap or a new encoder reference between them."""
     cuts = set(breaks)
     if steady:
-        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > GAP * dt)}
+        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > LONG * dt)}
     edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
     return [(lo, hi) for lo, hi in itertools.pairwise(edges) if hi - lo > 50]
 
