@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rig.core.numbers import number
+from rig.core.rows import stretches
 from rig.report.numbers import plain
 
 if TYPE_CHECKING:
@@ -42,11 +43,17 @@ def _beyond(run: Run, one: Declared, bench: Mapping[str, Any]) -> str:
     most, torque = _value(bench, one), run.column(one.channel)
     if torque is None or not most > 0.0:
         return ""
-    size = np.abs(torque[np.isfinite(torque)])
-    if not np.count_nonzero(size > BEYOND * most) > SHARE * size.size:
+    rows = beyond = 0
+    largest = 0.0  # N·m
+    for some in stretches(torque.size):
+        size = np.abs(torque[some])
+        size = size[np.isfinite(size)]
+        rows, beyond = rows + size.size, beyond + int(np.count_nonzero(size > BEYOND * most))
+        largest = max(largest, float(size.max(initial=0.0)))
+    if not beyond > SHARE * rows:
         return ""
     return (
-        f"{one.channel} reaches {plain(float(size.max()))} N·m, {one.words} is {most:g} N·m ({one.section}.{one.key} "
+        f"{one.channel} reaches {plain(largest)} N·m, {one.words} is {most:g} N·m ({one.section}.{one.key} "
         "of the bench beside it): another unit than N·m?"
     )
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from rig.evaluation.ranges import beyond_ranges
 from rig.evaluation.run import analyse_folder
 from tests.commands.made_run import made_run, rows
 
@@ -54,3 +59,15 @@ def test_nothing_is_said_of_torques_in_range_or_of_a_bench_that_says_none(
     if bench:
         (folder / "bench.toml").write_text(bench)
     assert "within_range" not in [check.name for check in analyse_folder(folder, folder)[0].checks]
+
+
+def test_the_torque_of_a_long_run_is_looked_at_in_little_memory() -> None:
+    torque = np.full(3_000_000, 1e3)
+    torque[:10] = np.nan
+    run: Any = SimpleNamespace(column=lambda name: torque if name == "tau_l" else None)
+    tracemalloc.start()
+    try:
+        assert "tau_l reaches 1000 N·m" in beyond_ranges(run, {"torque_sensor": {"range": 50.0}})
+        assert tracemalloc.get_traced_memory()[1] < 3e6  # bytes; a copy of the column has 24e6
+    finally:
+        tracemalloc.stop()

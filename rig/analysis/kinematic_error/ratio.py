@@ -17,12 +17,17 @@ LOOKED_AT = 20_000  # rows: a slope needs no more
 
 def turns_per_turn(motion: Motion, torsion: Array | None = None) -> float:
     """Turns of the motor to one of the load, as both encoders say, the load angle less its share of `torsion`
-    τ_l/K [rad], (n,), where that is given; nan without a load angle."""
+    τ_l/K [rad] of the rows that are looked at, where that is given; nan without a load angle."""
     if motion.theta_l is None:
         return float("nan")
-    some = slice(None, None, max(motion.theta_m.size // LOOKED_AT, 1))
-    load = motion.theta_l[some] if torsion is None else motion.theta_l[some] + torsion[some]
+    some = _looked_at(motion)
+    load = motion.theta_l[some] if torsion is None else motion.theta_l[some] + torsion
     return float(measured_ratio(motion.theta_m[some], load))
+
+
+def _looked_at(motion: Motion) -> slice:
+    """Rows that a slope is read from."""
+    return slice(None, None, max(motion.theta_m.size // LOOKED_AT, 1))
 
 
 def disagreement(motion: Motion, turns: float | None = None) -> str:
@@ -48,14 +53,15 @@ def doubt(motion: Motion, tau_l: Array | None, K: float | None) -> str:
     """
     if motion.theta_l is None:
         return ""
-    known = tau_l is not None and K is not None and bool(np.isfinite(tau_l).all())
-    torsion = tau_l / K if known and tau_l is not None and K is not None else None
+    torsion = None if tau_l is None or K is None else tau_l[_looked_at(motion)] / K
+    if torsion is not None and not np.isfinite(torsion).all():
+        torsion = None
     turns, travel = turns_per_turn(motion), float(np.ptp(motion.theta_l))
     shown = [turns] if torsion is None else [turns, turns_per_turn(motion, torsion)]
     off = min(abs(motion.ratio / found - 1.0) for found in shown)
     if off < NEAR or off * travel < ERROR:
         return ""
-    wound = "wind-up taken off" if known else "unless a load that changes with the angle winds the gear up"
+    wound = "wind-up taken off" if torsion is not None else "unless a load that changes with the angle winds the gear up"
     return (
         f"The encoders turn {turns:.5g} to 1, declared {motion.ratio:g}: θ̃ grows by {off * travel / DEG:.2g}° over the "
         f"{travel / DEG:.3g}° of the output, expected below {ERROR / DEG:.2g}° ({wound}). Another ratio, or another "
