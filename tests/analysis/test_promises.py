@@ -66,7 +66,7 @@ def test_the_time_of_a_long_run_is_looked_at_in_little_memory() -> None:
     tracemalloc.start()
     try:
         assert time_untold({"loop": {"rate": 1000.0}, "duration": 3000.0}, t) == ""
-        assert tracemalloc.get_traced_memory()[1] < 3e6  # bytes, modules that are loaded for it included; a copy has 24e6
+        assert tracemalloc.get_traced_memory()[1] < 3e6  # bytes, modules it loads included; a copy has 24e6
     finally:
         tracemalloc.stop()
 

@@ -61,7 +61,7 @@ def doubt(motion: Motion, tau_l: Array | None, K: float | None) -> str:
     off = min(abs(motion.ratio / found - 1.0) for found in shown)
     if off < NEAR or off * travel < ERROR:
         return ""
-    wound = "wind-up taken off" if torsion is not None else "unless a load that changes with the angle winds the gear up"
+    wound = "unless a load that changes with the angle winds the gear up" if torsion is None else "wind-up taken off"
     return (
         f"The encoders turn {turns:.5g} to 1, declared {motion.ratio:g}: θ̃ grows by {off * travel / DEG:.2g}° over the "
         f"{travel / DEG:.3g}° of the output, expected below {ERROR / DEG:.2g}° ({wound}). Another ratio, or another "
