@@ -132,7 +132,7 @@ def motion_of(run: Source) -> Motion | None:
 
 def _usable(t: Array | None, notes: list[str]) -> Array | None:
     """The time column [s] where it can be one, else None and a note."""
-    if t is not None and not _increases(t):
+    if t is not None and not increases(t):
         notes.append("The time column does not increase everywhere; it was not used.")
         return None
     if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
@@ -184,5 +184,6 @@ def _trusted(columns: list[Array], flags: Array | None) -> tuple[Rows | None, tu
     return rows, tuple(breaks)
 
 
-def _increases(t: Array) -> bool:
+def increases(t: Array) -> bool:
+    """Whether each of `t`, (n,), is later than the one before; false where one is missing."""
     return all(np.all(np.diff(t[max(some.start - 1, 0) : some.stop]) > 0) for some in stretches(t.size))

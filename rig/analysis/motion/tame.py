@@ -8,14 +8,18 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.source import Source
+from rig.analysis.motion.lone import lone
+from rig.analysis.motion.source import Source, increases
+from rig.core.channels import CHANNEL
 from rig.core.numbers import number
-from rig.core.rows import stretches
+from rig.core.rows import room, stretches
+from rig.core.units import TURN
 from rig.runfile.misfits import notes, usable
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
 RATIOS = (1e-3, 1e5)  # no gear is outside
+READ = ("theta_m", "theta_l", "tau_m", "tau_l")  # what a sensor reads, and may read wrong once
 TABLES = ("gear", "encoders", "conditions", "declared", "limits", "files")
 
 
@@ -70,8 +74,30 @@ class Tame:
             self.notes.append(f"{count} values of {name} are infinite or absurdly large: taken as missing.")
             values = values.copy()
             values[np.concatenate(absurd)] = np.nan
+        if name in READ:
+            values = self._without_lone(name, values)
         any_left = any(np.isfinite(values[some]).any() for some in stretches(values.size))
         return values if any_left or not values.size else None
+
+    def _without_lone(self, name: str, values: Array) -> Array:
+        """Single readings far off their neighbours are missing, and said."""
+        t = self.column("t")
+        t = t if t is not None and increases(t) else None
+        rows, off = lone(values, t, TURN if name.startswith("theta") else np.inf)
+        if not rows.size:
+            return values
+        worst = int(np.argmax(np.abs(off)))
+        at = f"row {rows[worst]}" if t is None else f"t = {t[rows[worst]]:.3f} s"
+        one = rows.size == 1
+        self.notes.append(
+            f"{rows.size} reading{'' if one else 's'} of {name} stand{'s' if one else ''} alone, "
+            f"{'' if one else 'the farthest '}{abs(off[worst]):.3g} {CHANNEL[name].unit} off its neighbours at {at}: "
+            "taken as missing."
+        )
+        out = room(values.size)
+        out[:] = values
+        out[rows] = np.nan
+        return out
 
     def _tables(self, run: Source) -> dict[str, Any]:
         self.notes += notes(run.misfits)
