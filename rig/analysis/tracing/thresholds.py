@@ -64,6 +64,7 @@ SEVERAL: Final = 3  # fitted runs, from which on one size in all of them says so
 STRETCHES: Final = 8  # of each run, which stand for several where there are fewer: half a minute of a log of four
 ASTRAY: Final = 0.05  # relative, of what columns lean on: a twentieth of an effect's size
 NEARLY: Final = 0.85  # of the most evidence in the bank: shapes there are a step apart
+LAWS: Final = 0.5  # of the most evidence of its effect in the bank: a law to be tried before another effect is
 CLOSEST: Final = 3  # laws with nearly the most evidence, each refined before one is chosen
 ALIKE: Final = 0.8  # of the evidence of the effect that stands: a look-alike that may be what it is
 OUTDONE: Final = (

@@ -56,7 +56,7 @@ def test_an_effect_keeps_those_of_its_laws_that_explain_nearly_as_much() -> None
         Scored(t, e, 2 * e, 1.0) for t, e in ((SUPPORT, 802.0), (MODE, 717.0), (SAME_MODE, 700.0), (DRIVEN_MODE, 663.0))
     ]
     support, mode = search._best_of_each(
-        [*ranked, Scored(Term(TorsionalMode(), (MOTOR, 50.0, 0.04, 0.0)), 300.0, 1.0, 1.0)]
+        [*ranked, Scored(Term(TorsionalMode(), (MOTOR, 50.0, 0.04, 0.0)), 300.0, 1.0, 1.0)], 0.85
     )
     assert (support.term, support.laws) == (SUPPORT, ())
     assert (mode.term, mode.laws) == (MODE, (DRIVEN_MODE,))

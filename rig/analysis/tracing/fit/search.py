@@ -129,7 +129,7 @@ def search(
         u = {c: np.vstack([of_baseline[c], m]) for c, m in u.items()} if of_baseline else u
         of_baseline = {c: m[:first] for c, m in u.items()}
         ranked = fixed.ranked(s, u)
-        ranking = ranking or _best_of_each(ranked)
+        ranking = ranking or _best_of_each(ranked, NEARLY)
         worth = [
             r for r in ranked if r.evidence > fixed.least(r, ranking) and r.size > SMALLEST and r.term not in barren
         ]
@@ -154,11 +154,12 @@ def _carries(d: Design) -> bool:
 
 
 def ranking_beside(
-    d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach
+    d: Design, bank: Bank, runs: Sequence[int], keys: Sequence[Key], covered: Reach, nearly: float
 ) -> tuple[Scored, ...]:
-    """The best shape of every effect, by what it explains beside what the design has."""
+    """The best shape of every effect, by what it explains beside what the design has, and its laws that explain
+    `nearly` as much, a share of it."""
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, frozenset())
-    return _best_of_each(fixed.ranked(fit(d), cross(bank, d, keys, 0)))
+    return _best_of_each(fixed.ranked(fit(d), cross(bank, d, keys, 0)), nearly)
 
 
 def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], covered: Reach) -> tuple[Scored, Solution]:
@@ -253,12 +254,12 @@ def _same(a: Term, b: Term) -> bool:
     return expand or all(abs(a.shape[i] - b.shape[i]) < 1e-9 for i in fixed)
 
 
-def _best_of_each(ranked: Sequence[Scored]) -> tuple[Scored, ...]:
-    """The best shape of each effect, with those of its other laws that have nearly as much evidence."""
+def _best_of_each(ranked: Sequence[Scored], nearly: float) -> tuple[Scored, ...]:
+    """The best shape of each effect, with those of its other laws that have `nearly` as much evidence."""
     best: dict[str, list[Scored]] = {}
     for r in ranked:
         mine = best.setdefault(r.term.name, [])
-        near = not mine or r.evidence > NEARLY * mine[0].evidence
+        near = not mine or r.evidence > nearly * mine[0].evidence
         if near and len(mine) < CLOSEST and all(_chosen(r.term) != _chosen(other.term) for other in mine):
             mine.append(r)
     return tuple(replace(first, laws=tuple(r.term for r in others)) for first, *others in best.values())

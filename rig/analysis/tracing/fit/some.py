@@ -98,10 +98,10 @@ def search_some(
     return replace(found, solution=again, rough=not whole)
 
 
-def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach) -> tuple[Scored, ...]:
+def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach, nearly: float) -> tuple[Scored, ...]:
     """As `ranking_beside` the design, on `some` of its rows."""
     few, _ = _few(d, runs)
-    return ranking_beside(few, bank, runs, tuple(few.y), covered)
+    return ranking_beside(few, bank, runs, tuple(few.y), covered, nearly)
 
 
 def _few(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:

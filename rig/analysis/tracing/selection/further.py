@@ -22,7 +22,7 @@ from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.selection.selected import Selected, select
-from rig.analysis.tracing.thresholds import ALIKE, KNOWN, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
+from rig.analysis.tracing.thresholds import ALIKE, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach
 
 
@@ -85,13 +85,15 @@ def _stands_in(
 
 def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
     """Where much is left: the candidates with most evidence at first, and those with most beside what stands, each
-    alone beside it. Many small ones that the search put beside the true effect can drive it out, or have it in a shape
-    that is its own no more. One of them counts when it explains everything, or all there is where it acts."""
+    alone beside it, in all its laws. Many small ones that the search put beside the true effect can drive it out, or
+    have it in a shape that is its own no more. One of them counts when it explains everything, or all there is where it
+    acts."""
     if selected.p.own.line is not None or not selected.loud:
         return selected
     d = selected.solution.design
     stay = {term.name for term in d.terms}
-    for term in _most_of(found.ranking, stay) + _most_of(ranking_of_some(d, bank, runs, covered), stay):
+    beside = ranking_of_some(d, bank, runs, covered, LAWS)
+    for term in _in_all_laws(_most_of(found.ranking, stay) + _most_of(beside, stay), beside):
         s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
@@ -102,6 +104,13 @@ def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[
 
 def _most_of(ranking: Sequence[Scored], stay: Collection[str]) -> list[Term]:
     return [r.term for r in ranking if r.term.name not in stay][:TRIED]
+
+
+def _in_all_laws(terms: Sequence[Term], ranking: Sequence[Scored]) -> list[Term]:
+    """Each of `terms` once, followed by the other laws of its effect that the `ranking` has: of two that explain nearly
+    as much of fitted runs one may foretell unseen ones, and a look-alike is no answer before it was asked."""
+    laws = {r.term.name: (r.term, *r.laws) for r in ranking}
+    return list(dict.fromkeys(law for term in terms for law in (term, *laws.get(term.name, ()))))
 
 
 def try_each_instead(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:

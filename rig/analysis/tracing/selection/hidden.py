@@ -16,6 +16,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
+from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
@@ -32,7 +33,13 @@ from rig.model.effect import Array
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:
     """What unseen runs leave is no more than their floor, but there is something all the same; None where not. What
     foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
-    return _in_the_floor(p, s, after, floors) or _in_one_run(p, s) or _in_lock_tests(p, s, after) or _in_a_burst(p, s)
+    return (
+        _in_the_floor(p, s, after, floors)
+        or _at_one_speed(p, s, after, floors)
+        or _in_one_run(p, s)
+        or _in_lock_tests(p, s, after)
+        or _in_a_burst(p, s)
+    )
 
 
 def _in_the_floor(
@@ -63,6 +70,23 @@ def _in_the_floor(
         f"({min(home.share, 1.0):.0%} of {of_what}); it is in the floor, and no effect of the library explains it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
+    return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _at_one_speed(
+    p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Conclusion | None:
+    """No run has more left than its floor, but all runs at one speed have the same; None where they have not."""
+    left = {key: s.residual(key) for key in s.keys}
+    home = friction_by_speed(p.eq, {**left, **after}, {**floors, **p.held_out.floors})
+    if home is None:
+        return None
+    sentence = (
+        f"Friction in {CHANNEL[home.channel].name} is another one at some speeds, the same in all runs at them "
+        f"({home.share:.0%} of what runs differ by): less than the floor of one run, and no effect of the library "
+        "explains it."
+    )
+    verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, None, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.equations import Equations
@@ -14,6 +15,7 @@ from rig.analysis.tracing.fit.search import Found, polished, reduced
 from rig.analysis.tracing.floor.noise import Measured, measure, quieter
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import (
@@ -57,10 +59,10 @@ class Selected:
         """RMS over floor of the worst channel on unseen runs."""
         return self.p.held_out.worst(self.p.held_out.residuals(self.solution, self.held))[0]
 
-    @property
+    @cached_property
     def loud(self) -> bool:
-        """Whether more is left on the held-out runs than may be."""
-        return is_loud(self.p.held_out, self.solution, self.held)
+        """Whether more is left on the held-out runs than may be, or the same in all runs at one speed."""
+        return is_loud(self.p.held_out, self.solution, self.held) or _by_speed(self.p, self.solution, self.held)
 
 
 def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
@@ -148,9 +150,15 @@ def _is_plain_to_see(score: HeldOutScore) -> bool:
 
 
 def is_calm(p: Prepared) -> bool:
-    """Whether the baseline is at the floor on the held-out runs."""
-    most, one = p.held_out.worst(p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out)))
-    return most < QUIET and one < MISSING
+    """Whether the baseline is at the floor on the held-out runs, and no speed has a friction of its own."""
+    held = unseen(p.baseline, p.held_out)
+    most, one = p.held_out.worst(p.held_out.residuals(p.baseline, held))
+    return most < QUIET and one < MISSING and not _by_speed(p, p.baseline, held)
+
+
+def _by_speed(p: Prepared, s: Solution, held: Design) -> bool:
+    left = {key: s.residual(key) for key in s.keys} | p.held_out.residuals(s, held)
+    return friction_by_speed(p.eq, left, {**p.floors, **p.held_out.floors}) is not None
 
 
 Kept = tuple[Solution, Design, list[HeldOutScore]]
