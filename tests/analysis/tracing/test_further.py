@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
 from rig.analysis.tracing.selection import further
 from rig.analysis.tracing.selection.score import HeldOutScore
+
+
+class Law(NamedTuple):
+    """A term: an effect by name, in one of its laws."""
+
+    name: str
+    law: int
 
 
 def selected(name: str, unsteady: float, left: float) -> Any:
@@ -112,3 +119,10 @@ def test_what_is_all_there_is_in_a_channel_of_its_own_is_named_beside_a_rest(mon
     assert not stands(replace(runout, share=0.85), {"gravity_unbalance"})
     assert not stands(replace(runout, left=1.5), {"gravity_unbalance"})
     assert not stands(runout, {"gravity_unbalance", "output_once_per_rev"})  # nothing is new
+
+
+def test_an_effect_is_asked_in_all_its_laws_before_the_next_one_is() -> None:
+    mode, driven, support = (Law(name, n) for name, n in (("mode", 0), ("mode", 6), ("support", 0)))
+    terms: Any = [mode, support, mode]
+    ranking: Any = [SimpleNamespace(term=mode, laws=(driven,)), SimpleNamespace(term=support, laws=())]
+    assert further._in_all_laws(terms, ranking) == [mode, driven, support]

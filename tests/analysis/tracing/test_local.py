@@ -105,6 +105,22 @@ def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
     assert found.rows[1][0] == pytest.approx(1500, abs=4)
 
 
+@pytest.mark.parametrize(("shown", "left"), [(True, []), (False, [0, 1])])
+def test_in_a_lock_test_jumps_are_what_they_are_where_the_torque_tells(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch, shown: bool, left: list[int]
+) -> None:
+    """A torque sensor's zero that jumps seems to wind the gear up; run 1 is a lock test, without a balance of the load."""
+    e = {(i, "A"): 4e-6 * rng.standard_normal(4000) + 3e-5 * (np.arange(4000) > 2500) for i in range(2)}
+    e[0, "L"] = np.zeros(4000)
+    monkeypatch.setattr(steps, "_onward", lambda eq, key: np.ones(4000, dtype=bool))
+    monkeypatch.setattr(steps, "_of_the_torque", lambda eq, e, key, *of: shown and key[0] == 0)
+    monkeypatch.setattr(steps, "_lasts", lambda *of: True)
+    monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
+    monkeypatch.setattr(steps, "_in_other_parts", lambda *of: {})
+    eq: Any = None
+    assert sorted(steps.find_steps(eq, e).rows) == left
+
+
 def test_the_jump_of_a_run_is_in_its_other_parts_too(rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch) -> None:
     """Alternate turns are held out; the load encoder loses three counts in the middle of one of them."""
     t, lost = 0.008 * np.arange(1200), 15e-6

@@ -111,4 +111,4 @@ def _between(left: Array, level: Index) -> float | None:
     largest = max(abs(float(group.mean() - values.mean())) for group in several)
     if fdtrc(len(several) - 1, free, ratio) > BY_CHANCE or largest < LARGE:
         return None
-    return 1.0 - within / total
+    return float(1.0 - within / total)
