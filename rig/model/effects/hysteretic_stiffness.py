@@ -12,7 +12,7 @@ from rig.model.memory import play, presliding
 
 
 class HystereticStiffness(Effect):
-    """A loop in one of three laws, told by `law`.
+    """A loop in one of four laws, told by `law`.
 
     0: φ gains Σ c_i·P_{r_i}[T], play operators of the torque: a Prandtl-Ishlinskii loop      [kuhnen2003]
     1: φ loses (T_f/K)·z, dz/dφ = (1 − z·sgn φ̇)/x_0: friction T_f in parallel to the spring, which takes its share first
@@ -20,6 +20,8 @@ class HystereticStiffness(Effect):
 
     2: the same friction in proportion to the load, φ loses (μ/K)·|T|·z: teeth are pressed together by what they carry,
     and the loop is a wedge that closes at no torque      [wolf2018]
+
+    3: the plays of law 0, each wider under load, φ gains Σ (c_i + d_i·|T|)·P_{r_i}[T]: a loop between 0 and 2
 
     All are rate-independent. T_h scales the half widths r_i, and is K·x_0.
     """
@@ -40,26 +42,27 @@ class HystereticStiffness(Effect):
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
     UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
     SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
-    PLAYS, FRICTION, WEDGE = 0.0, 1.0, 2.0
+    PLAYS, FRICTION, WEDGE, SWELLING = 0.0, 1.0, 2.0, 3.0
     AT: Final = 20.0  # N·m, where the loss of a wedge is told
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Loops the campaign's torque can go round."""
         widths = [w for w in self.WIDTHS if w < 0.7 * reach.torque]
-        plays = [(w, self.PLAYS) for w in widths]
-        wedges = [(w, self.WEDGE) for w in widths]
-        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges)
+        plays, wedges, swelling = ([(w, law) for w in widths] for law in (self.PLAYS, self.WEDGE, self.SWELLING))
+        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges, *swelling)
 
     def has_state(self) -> bool:
         """A loop."""
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One operator a half width, or the friction's state."""
+        """One operator a half width, each once more by the load where it swells; or the friction's state."""
         width, law = shape
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
-        if law == self.PLAYS:
-            return {Port.WIND_UP: np.stack([play(torque, width * share) for share in self.SPREAD], 1)}
+        if law in (self.PLAYS, self.SWELLING):
+            plays = np.stack([play(torque, width * share) for share in self.SPREAD], 1)
+            by_load = plays * (np.abs(torque) / self.AT)[:, None]
+            return {Port.WIND_UP: plays if law == self.PLAYS else np.hstack([plays, by_load])}
         state = presliding(self._wound(signals), width / signals.gear.K)
         return {Port.WIND_UP: (state * np.abs(torque) if law == self.WEDGE else state)[:, None]}
 
@@ -71,33 +74,35 @@ class HystereticStiffness(Effect):
         return np.asarray(play(np.ascontiguousarray(phi), self.UNMOVED))
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Wind-up between the branches after a large swing, at zero torque or, of a wedge, at AT; and the scale of the
-        half widths."""
-        gap, width = np.zeros((2, fit.covariance.shape[0]))
-        weights = self._gap(fit.shape)
-        gap[: weights.size] = weights
-        width[weights.size] = 1.0
-        value = float(weights @ fit.coefficients[: weights.size])
-        return (
-            parameter(
-                "loss_at_20_Nm" if fit.shape[1] == self.WEDGE else "hysteresis_loss", value, fit.half_width(gap), "rad"
-            ),
-            parameter("T_h", fit.shape[0], fit.half_width(width), "N·m"),
-        )
+        """Wind-up between the branches after a large swing, at zero torque, at AT or at both; and the scale of the half
+        widths."""
+        size = fit.coefficients.size
+        width = np.zeros(fit.covariance.shape[0])
+        width[size] = 1.0
+        out = []
+        for name, weights in self._gaps(fit.shape).items():
+            gap = np.zeros_like(width)
+            gap[:size] = weights
+            out.append(parameter(name, float(weights @ fit.coefficients), fit.half_width(gap), "rad"))
+        return (*out, parameter("T_h", fit.shape[0], fit.half_width(width), "N·m"))
 
     def plausible(self, fit: Fit) -> bool:
-        """A loop loses energy: the branch on the way down lies behind."""
-        weights = self._gap(fit.shape)
-        return bool(weights @ fit.coefficients[: weights.size] > 0)
+        """A loop loses energy: the branch on the way down lies behind, at any load."""
+        return all(bool(weights @ fit.coefficients > 0) for weights in self._gaps(fit.shape).values())
 
-    def _gap(self, shape: Shape) -> Array:
-        """What each coefficient adds to the wind-up between the branches, (k,)."""
+    def _gaps(self, shape: Shape) -> Mapping[str, Array]:
+        """What each coefficient adds to the wind-up between the branches, (k,), where that is told."""
         width, law = shape
+        if law == self.WEDGE:
+            return {"loss_at_20_Nm": np.array([-2.0 * self.AT])}
+        if law == self.FRICTION:
+            return {"hysteresis_loss": np.array([-2.0])}
+        plays = 2.0 * width * np.array(self.SPREAD)
         if law == self.PLAYS:
-            return 2.0 * width * np.array(self.SPREAD)
-        return np.array([-2.0 * (self.AT if law == self.WEDGE else 1.0)])
+            return {"hysteresis_loss": plays}
+        return {"hysteresis_loss": np.hstack([plays, 0.0 * plays]), "loss_at_20_Nm": np.hstack([plays, plays])}
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of T_h; the law is chosen, not fitted."""
         widths = [w for w, _ in self.shapes(reach)]
-        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.WEDGE)) if widths else ()
+        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.SWELLING)) if widths else ()

@@ -109,7 +109,7 @@ def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
 def test_in_a_lock_test_jumps_are_what_they_are_where_the_torque_tells(
     rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch, shown: bool, left: list[int]
 ) -> None:
-    """A torque sensor's zero that jumps seems to wind the gear up; run 1 is a lock test, without a balance of the load."""
+    """A torque sensor whose zero jumps seems to wind the gear up; run 1 is a lock test, with no balance of the load."""
     e = {(i, "A"): 4e-6 * rng.standard_normal(4000) + 3e-5 * (np.arange(4000) > 2500) for i in range(2)}
     e[0, "L"] = np.zeros(4000)
     monkeypatch.setattr(steps, "_onward", lambda eq, key: np.ones(4000, dtype=bool))

@@ -171,7 +171,12 @@ def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], cover
             close.setdefault((r.term.name, *_chosen(r.term)), r)
     first = list(close.values())[:CLOSEST]
     made = [(r, refine(d, r.term, runs, covered)[1]) for r in first]
-    return max(made, key=lambda one: one[1].gain - EVIDENCE * (one[1].x.size + len(one[0].term.shape)))
+    return max(made, key=lambda one: _worth(one[1]))
+
+
+def _worth(s: Solution) -> float:
+    """What a fit explains less what so many coefficients and shapes do by chance: laws of one effect differ in them."""
+    return s.gain - EVIDENCE * (s.x.size + sum(len(term.shape) for term in s.design.terms))
 
 
 def possible(s: Solution, term: Term, coefficients: Array) -> bool:
@@ -228,9 +233,9 @@ def relawed(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
         others = [Term(term.effect, shape) for shape in term.effect.shapes(covered)]
         others = [other for other in others if _chosen(other) not in fixed]
         if others:
-            best = max(others, key=lambda other: fit(extended(bare, other, runs)).gain)
+            best = max(others, key=lambda other: _worth(fit(extended(bare, other, runs))))
             other = refine(bare, best, runs, covered)[1]
-            s = other if other.gain > s.gain else s
+            s = other if _worth(other) > _worth(s) else s
     return s
 
 
