@@ -19,6 +19,8 @@ class TorqueRipple(Effect):
     A large current turns the motor's field, and φ with it, or saturates its iron: r·cos(k·θ_m + φ) gains a part in
     proportion to τ_m then      [krause2013]
 
+    What the rotor's shape makes of the current keeps its phase when the current turns round: |τ_m|·r·cos(k·θ_m + φ).
+
     Cogging is there without current; where the torque hardly changes over the runs the two cannot be told apart.
     """
 
@@ -27,32 +29,41 @@ class TorqueRipple(Effect):
     glosses: ClassVar[Mapping[str, str]] = {
         **waved("order_{n}", "the motor torque's ripple over the torque, {n} times a motor turn", "{n}·θ_m"),
         **waved("order_{n}_by_torque", "what the ripple of order {n} gains per N·m of motor torque", "{n}·θ_m"),
+        **waved(
+            "order_{n}_by_size", "the ripple over the motor torque's size, whichever its way, {n} times", "{n}·θ_m"
+        ),
     }
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     MOST: Final = 2.0  # rad/(N·m), of the motor's torque
     REACTS: Final = (*range(1, 13), 18, 24, 30, 36)  # orders large enough for the current to change them
+    WITH_IT, REACTING, BY_SIZE = 0.0, 1.0, 2.0  # `reaction`: in proportion to τ_m, a part of it to τ_m², or to |τ_m|
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Those of a servo motor."""
-        reacts = [(float(k), 1.0) for k in self.REACTS]
-        return (*((float(k), 0.0) for k in MOTOR_ORDERS), *reacts)
+        reacts = [(float(k), law) for law in (self.REACTING, self.BY_SIZE) for k in self.REACTS]
+        return (*((float(k), self.WITH_IT) for k in MOTOR_ORDERS), *reacts)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """τ_m times cosine and sine, and τ_m² times them."""
-        x, kept = shape[0] * signals.theta_m, signals.kept(shape[0], signals.omega_m) * signals.tau_m
-        waves = wave(x, kept)
-        return {Port.MOTOR_TORQUE: np.hstack([waves, waves * signals.tau_m[:, None]]) if shape[1] else waves}
+        """τ_m or its size times cosine and sine; τ_m² times them."""
+        order, law = shape
+        torque = np.abs(signals.tau_m) if law == self.BY_SIZE else signals.tau_m
+        waves = wave(order * signals.theta_m, signals.kept(order, signals.omega_m) * torque)
+        reacting = law == self.REACTING
+        return {Port.MOTOR_TORQUE: np.hstack([waves, waves * signals.tau_m[:, None]]) if reacting else waves}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Relative amplitude and phase; of what grows with the torque too."""
-        name = f"order_{fit.shape[0]:g}"
-        more = harmonic(fit, f"{name}_by_torque", "1/(N·m)", first=2) if fit.shape[1] else ()
+        order, law = fit.shape
+        name = f"order_{order:g}"
+        if law == self.BY_SIZE:
+            return harmonic(fit, f"{name}_by_size", "1")
+        more = harmonic(fit, f"{name}_by_torque", "1/(N·m)", first=2) if law == self.REACTING else ()
         return (*harmonic(fit, name, "1"), *more)
 
     def plausible(self, fit: Fit) -> bool:
         """No field is turned by more than MOST: what has hardly a ripple without torque is something else."""
-        if not fit.shape[1]:
+        if fit.shape[1] != self.REACTING:
             return True
         return bool(np.hypot(*fit.coefficients[2:]) < self.MOST * np.hypot(*fit.coefficients[:2]))
