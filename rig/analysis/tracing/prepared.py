@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
+from rig.analysis.tracing.fit.channels import CHANNELS, ORDERS
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations, spoiling
 from rig.analysis.tracing.fit.leaning import carrying
 from rig.analysis.tracing.fit.learnt import change, learnt
@@ -20,6 +22,8 @@ from rig.analysis.tracing.runs.scale import off_scale
 from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks
 from rig.core.errors import UsageError
+
+FEWEST: Final = 250  # rows, eight for each number of a kinematic error
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
         raise UsageError(
             f"{campaign.name}: no run to fit, or none to test with, has two angles or an angle and a torque"
         )
+    _refuse_too_short(eq, parts.fitted, campaign.name)
     refuse_odd_torques(campaign.runs, campaign.name)
     if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
         said = f" ({'; '.join(campaign.notes)[:300]})" if campaign.notes else ""
@@ -70,6 +75,18 @@ def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
     if columns := own.columns():
         s = fit(design(replace(eq, own=columns), (), parts.fitted))
     return built(campaign, parts, eq, measure(s, parts.fitted), own)
+
+
+def _refuse_too_short(eq: Equations, fitted: Sequence[int], name: str) -> None:
+    """Raises UsageError where the fitted runs have hardly more rows than the baseline has coefficients."""
+    rows = max(sum(eq.rows[key].y.size for key in eq.of(fitted) if key[1] == c) for c in CHANNELS)
+    if rows < FEWEST:
+        apart = eq.runs[fitted[0]].smoother.dt * eq.runs[fitted[0]].smoother.step  # s
+        raise UsageError(
+            f"{name}: what can be fitted lasts {rows * apart:.2g} s, {rows} rows at {1 / apart:.0f} Hz, expected at "
+            f"least {FEWEST}: a kinematic error of {ORDERS} orders has {2 * ORDERS} numbers, and the floor is read "
+            "from what is left of them"
+        )
 
 
 def _settled(eq: Equations, s: Solution, runs: Sequence[int]) -> tuple[Equations, Solution]:

@@ -3,8 +3,11 @@ named, what is put in is given back where the run can tell it, and no other name
 
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
 
+from rig.analysis.tracing.trace import trace
+from rig.core.errors import UsageError
 from tests.studies.lara8 import friction, imported, runout, spiked, steps, traced
 
 ARM = {"gravity_unbalance"}  # the arm's weight, which the baseline has no term for
@@ -20,6 +23,16 @@ def test_the_weight_is_named_and_what_is_left_goes_with_the_angle_of_the_joint(s
     assert set(verdict["effects"]) == ARM
     low, high = d["baseline"]["after_refit"]["K"]["ci95"]
     assert low < 37_000 < high  # N·m/rad, the slope of torsion over torque
+
+
+def test_a_log_of_two_seconds_is_refused_with_what_is_missing(tmp_path: Path) -> None:
+    campaign = imported(tmp_path)
+    samples = next(campaign.glob("**/samples.parquet"))
+    samples.parent.chmod(0o755)
+    samples.chmod(0o644)
+    pq.write_table(pq.read_table(samples).slice(0, 500), samples)
+    with pytest.raises(UsageError, match=r"lasts 1\.\d s, 1\d\d rows at \d+ Hz, expected at least 250"):
+        trace(campaign)
 
 
 @pytest.mark.long

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.rest import unknown
-from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, straightened
+from rig.analysis.tracing.rest.binned import Beside, Halves, folds, own_excess, straightened
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.past import since_turned
+from rig.analysis.tracing.rest.shares import rising
 from rig.analysis.tracing.rest.sudden import turned_since
 from rig.analysis.tracing.rest.unknown import homes
 from rig.model.memory import play
@@ -321,3 +322,13 @@ def test_within_a_seventh_of_a_turn_no_order_is_told_that_does_not_come_round_on
     found = best_order(Halves(bent, folds(bent)), "load_angle", "A", SENSES[0])
     assert found is not None
     assert (found.order or 0.0) > 7.0
+
+
+def test_where_no_run_could_be_fitted_none_has_a_zero() -> None:
+    r = Rest(np.ones(5), np.zeros(5), {}, 0.01, np.zeros((5, 0)), np.zeros((0, 0)))
+    assert Beside(np.empty(0), np.empty(0), np.empty(0)).of(r).tolist() == [0.0] * 5
+
+
+def test_a_torque_rises_nowhere_in_a_log_too_short_to_say() -> None:
+    assert rising(np.arange(30.0)).tolist() == [0.0] * 30
+    assert (rising(np.arange(200.0))[60:140] > 0).all()

@@ -33,9 +33,10 @@ class Beside:
 
     def of(self, r: Rest) -> Array:
         """What it foretells of every row, (n,); a run that was not fitted has no zero."""
-        place = np.searchsorted(self.runs, r.run).clip(max=self.runs.size - 1)
-        known = self.runs[place] == r.run
-        return np.asarray(np.where(known, self.zeros[place], 0.0) + r.z @ self.shift)
+        zeros = np.append(self.zeros, 0.0)  # the last of no run
+        place = np.searchsorted(self.runs, r.run).clip(max=max(self.runs.size - 1, 0))
+        known = np.append(self.runs, -1)[place] == r.run
+        return np.asarray(np.where(known, zeros[place], 0.0) + r.z @ self.shift)
 
 
 @dataclass(frozen=True)

@@ -81,5 +81,7 @@ def levels(r: Rest, name: str) -> Index:
 
 
 def rising(load: Array) -> Array:
-    """How much the torque is higher in the rows after than in those before, (n,), N·m."""
+    """How much the torque is higher in the rows after than in those before, (n,), N·m; 0 of a log shorter than that."""
+    if load.size < 2 * SPAN:
+        return np.zeros(load.size)
     return np.convolve(load, np.repeat([1.0, -1.0], SPAN) / SPAN, mode="same")
