@@ -6,15 +6,16 @@ import numpy as np
 
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
-from rig.analysis.findings.result import Array, Estimate, Part
+from rig.analysis.findings.result import Array, Check, Estimate, Part
 from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.kinematic_error.profile import SMALL, Profile, chosen_terms, truncation
-from rig.analysis.orders.revolutions import GRID
+from rig.analysis.orders.revolutions import GRID, TERMS
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
 SHOWN_ORDERS = (1, 2, 4, 6, 8, 10)  # figures of their own when resolved; all orders stand in the table
 CURVES = 400  # revolutions drawn at most
+TRIFLE = 0.01  # of the peak to peak: with so much left, orders that no figure has move it by a few times as much
 
 
 def add_profile(found: Findings, ke: KinematicError, pure: bool) -> None:
@@ -202,6 +203,22 @@ def _value(figure: tuple[float, float], unit: str) -> tuple[float, str, float]:
     return figure[0], unit, figure[1]
 
 
+def cut_short(found: Findings, ke: KinematicError) -> str:
+    """Why the peak to peak is no whole one where the rows are too few per turn for all orders; "" where it is, or what
+    is left of the rows is a trifle."""
+    p = ke.profile
+    if p.terms >= TERMS:
+        return ""
+    said = f"The rows are too few per turn for {TERMS} orders: the series ends at order {p.terms}."
+    found.cannot.append(said)
+    whole, (rms, _) = p.peak_to_peak()[0], p.residual_rms
+    if rms < TRIFLE * whole:
+        return ""
+    said += f" Beside {whole:.4g} arcsec peak to peak it leaves {rms:.3g} arcsec rms: take more rows per turn."
+    found.checks.append(Check("orders", False, said))
+    return said
+
+
 def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, output: str, pure: bool) -> None:
     """What this run cannot tell, and why. `output`: the manifest's gear.output."""
     p, tell = ke.profile, found.cannot.append
@@ -221,8 +238,6 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, out
             f"The output turned {ke.trend.covered_deg:.1f}°: errors once per output turn look like a trend; a "
             "full turn shows them. (Even then, load-encoder eccentricity and runout of the output look alike.)"
         )
-    if p.terms < 15:
-        tell(f"The rows are too few per turn for 15 orders: the series ends at order {p.terms}.")
     if p.dof < 1:
         tell("One revolution does not repeat: there is no scatter to make intervals from.")
     if p.rho > 0:

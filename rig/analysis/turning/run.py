@@ -117,6 +117,8 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     output = str(run.manifest.get("gear", {}).get("output", ""))
     words.add_limits_of_the_run(found, ke, motion.ratio, output, slow)
     found.sentence = headline(found, ke, slow)
+    if short := words.cut_short(found, ke):
+        found.inconclusive, found.sentence = short, f"{short} {found.sentence}"
     add_skew_error(found, run, ke.speed_rpm)
     if slow and not np.isfinite(ke.profile.peak_to_peak()[1][0]):
         found.inconclusive = "Too few revolutions for an interval."

@@ -231,3 +231,17 @@ def test_two_speeds_are_not_mixed_and_the_slower_one_is_the_kinematic_error() ->
     result = analyse(replace(slow, columns=columns, manifest={**slow.manifest, "procedure": "kinematic_error"}))
     assert abs(figures(result)["mean_speed"].value - 9.6) < 0.05
     assert [round(float(r["speed_rpm"]), 1) for r in result.tables["speeds"]] == [9.6, 28.8]
+
+
+@pytest.mark.parametrize(("every", "verdict"), [(100, Verdict.PASS), (200, Verdict.INCONCLUSIVE)])
+def test_a_series_that_is_cut_short_by_the_row_rate_meets_no_limit(made: MadeRun, every: int, verdict: Verdict) -> None:
+    """At 10 Hz and 9.6 rpm all orders are in the series; at 5 Hz it ends at order 7, the peak to peak too small."""
+    columns = {name: column[::every] for name, column in made.columns.items()}
+    limits = {"kinematic_error_peak_to_peak": 1000.0}
+    few = analyse(replace(made, columns=columns, manifest={**made.manifest, "limits": limits}))
+    assert few.verdict is verdict
+    told = [check.sentence for check in few.checks if check.name == "orders"]
+    assert [s.startswith("The rows are too few per turn for 15 orders: the series ends at order 7.") for s in told] == [
+        True
+    ] * (verdict is Verdict.INCONCLUSIVE)
+    assert all(s in few.sentence for s in told)
