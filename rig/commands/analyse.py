@@ -81,7 +81,7 @@ def print_result(result: Result, target: Path, folder: Path, simulated: bool) ->
     """Verdict, figures with unit and interval, and where the report is, on stdout; a defect of ours on stderr too."""
     from rig.report.text.result import lines
 
-    print("\n".join(lines(result, folder.name, simulated)))
+    print("\n".join(lines(result, folder.resolve().name, simulated)))
     if result.defect:
         print(f"hdrig: {folder}: {result.sentence}", file=sys.stderr)
     print(f"report {target / 'report.html'}")

@@ -24,7 +24,7 @@ def verify_one(folder: Path) -> Exit:
 
     findings = verify(folder)
     broken = any(finding.level == "error" for finding in findings)
-    say(f"{folder.name}: {'BROKEN' if broken else 'sound'}")
+    say(f"{folder.resolve().name}: {'BROKEN' if broken else 'sound'}")
     for finding in findings:
         say(f"  {finding.level:7s} {finding.sentence}")
     return Exit.INCOMPLETE if broken else Exit.PASS

@@ -6,6 +6,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import trace
 from rig.core.errors import UsageError
 from tests.studies.lara8 import friction, imported, runout, spiked, steps, traced
@@ -33,6 +34,12 @@ def test_a_log_of_two_seconds_is_refused_with_what_is_missing(tmp_path: Path) ->
     pq.write_table(pq.read_table(samples).slice(0, 500), samples)
     with pytest.raises(UsageError, match=r"lasts 1\.\d s, 1\d\d rows at \d+ Hz, expected at least 250"):
         trace(campaign)
+
+
+def test_a_campaign_that_is_called_here_has_its_folders_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    campaign = imported(tmp_path)
+    monkeypatch.chdir(campaign)
+    assert read_campaign(Path()).name == campaign.name
 
 
 @pytest.mark.long

@@ -73,19 +73,19 @@ def folders_of_runs(folder: Path) -> list[Path]:
 
 def read_campaign(folder: Path) -> Campaign:
     """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
-    places = folders_of_runs(folder)
+    places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
     opened, out = _open(links_last(places))
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
     nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
-    refuse_other_gears(folder.name, opened)
+    refuse_other_gears(name, opened)
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
         found = list(pool.map(_record, opened, begun))
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
-    refuse_odd_angles(runs, folder.name)
+    refuse_odd_angles(runs, name)
     for sort in (_odd, _lacking, _same_gear, _odd_torques, _odd_balances):
         runs, odd = sort(runs)
         out += odd
@@ -101,9 +101,7 @@ def read_campaign(folder: Path) -> Campaign:
         runs = [replace(run, look=replace(run.look, inertia=True)) for run in runs]
     left = {place.name for place in places} | {said.run for said in nameless}
     left -= {run.name for run in runs}
-    return Campaign(
-        folder.name, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left))
-    )
+    return Campaign(name, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left)))
 
 
 def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
