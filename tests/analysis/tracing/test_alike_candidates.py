@@ -28,7 +28,7 @@ def tried(monkeypatch: pytest.MonkeyPatch) -> list[Term]:
 
     def refined(d: Any, term: Term, runs: Any, covered: Any) -> Any:
         seen.append(term)
-        return d, SimpleNamespace(gain=AS_REFINED[term], x=np.zeros(70))
+        return d, SimpleNamespace(gain=AS_REFINED[term], x=np.zeros(70), design=SimpleNamespace(terms=(term,)))
 
     monkeypatch.setattr(search, "refine", refined)
     return seen
@@ -60,3 +60,13 @@ def test_an_effect_keeps_those_of_its_laws_that_explain_nearly_as_much() -> None
     )
     assert (support.term, support.laws) == (SUPPORT, ())
     assert (mode.term, mode.laws) == (MODE, (DRIVEN_MODE,))
+
+
+def test_a_law_of_more_coefficients_has_to_pay_for_them() -> None:
+    """Plays by the load have six more than plays: at 12 nats each they must explain 72 more."""
+
+    def worth(gain: float, size: int) -> float:
+        s: Any = SimpleNamespace(gain=gain, x=np.zeros(size), design=SimpleNamespace(terms=(MODE,)))
+        return search._worth(s)
+
+    assert worth(1070.0, 76) < worth(1000.0, 70) < worth(1074.0, 76)
