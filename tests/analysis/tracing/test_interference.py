@@ -64,6 +64,17 @@ def test_what_wanders_about_the_gear_s_own_resonance_is_no_line_and_what_stands_
     assert look(residuals(lambda w: 0.1 * np.sin(2 * np.pi * 14.0 * T + w))) is not None
 
 
+def test_orders_that_come_near_a_resonance_are_no_line_that_wanders() -> None:
+    """Of an inertia on a spring at 26 Hz each run shows the order that is nearest: 26.7, 26.1 and 25.9 Hz."""
+
+    def nearest(speed: float) -> Array:
+        turns = speed / (2 * np.pi)
+        return np.asarray(0.1 * np.sin(np.round(26.0 / turns) * speed * T))
+
+    assert look(residuals(nearest)) is None
+    assert look(residuals(lambda w: 0.1 * np.sin(2 * np.pi * (25.0 + 0.31 * w**0.5) * T))) is not None
+
+
 def test_a_wandering_line_is_found_and_taken_away() -> None:
     wander = 2 * np.pi * (8.0 * T + 8.0 * 0.2 / (2 * np.pi * 0.01) * np.sin(2 * np.pi * 0.01 * T))
     e = residuals(lambda w: 0.1 * np.sin(wander + w))

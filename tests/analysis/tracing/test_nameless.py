@@ -67,6 +67,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     everything = laws()
     assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
+    assert everything - laws(torque=20.0) == {"sensor_curve"}
     assert everything - laws(weights=1) == {"oval_pulley"}
     drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
     assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
@@ -92,6 +93,11 @@ def sensor_ripple(c: Columns, began: float) -> Columns:
     return {"tau_l": c["tau_l"] * (1 + 0.02 * np.cos(2 * c["theta_m"] + 0.3))}
 
 
+def sensor_curve(c: Columns, began: float) -> Columns:
+    share = (c["tau_l"] / 40.0) ** 2
+    return {"tau_l": c["tau_l"] * (1 - 0.01 * share / (1 + share))}
+
+
 DIFFER = {two_gains: 2.0, two_constants: 8.0}  # %, between one way and the other
 
 
@@ -106,6 +112,16 @@ def test_readings_of_two_gains_are_told_and_not_named(
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law_said in found.law if (match := re.search(r"larger by (\S+) ± (\S+) %", law_said))]
     assert float(much[1]) == pytest.approx(DIFFER[law], abs=1.5 * float(much[2]))
+
+
+@pytest.mark.slow
+def test_a_torque_sensor_that_compresses_is_told_and_no_spring_is_named(shared: Path, tmp_path: Path) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", sensor_curve)
+    told = CONFOUNDERS["sensor_curve"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"at 50 N·m it reads too much by −(\S+) ±", law))]
+    assert float(much[1]) == pytest.approx(0.01 * 50 * 1.5625 / 2.5625, rel=0.15)
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
 from rig.analysis.tracing.workers import each
+from rig.core.units import TURN
 from rig.model.effect import Array
 from rig.model.linear import held_frequency
 
@@ -27,6 +28,8 @@ LEAP = 0.1  # relative: half a window on, a line that wanders by a fifth in a mi
 AROUND = 3.0  # times a frequency, and a third of it: its neighbourhood
 FEWEST = 3  # windows of a run, each half over the next
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
+WHOLE_ORDERS = 0.7  # of the runs in which a line that wanders is a whole order of the motor: chance makes a tenth
+WHOLE_BY = 0.05  # of a turn: as near to one as a window reads a frequency at 75 rpm
 RINGING = 1.5  # times the gear's own resonance, and as much below: what wanders there is the gear, of a wrong inertia
 SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
 
@@ -93,7 +96,7 @@ def _in_channel(
     if apart > LINE_WIDE or speed.max() < LINE_FREE * apart * speed.min():
         return None
     usual = float(np.median(hz))
-    if apart > STEADY and abs(np.log(usual / _resonance(eq))) < np.log(RINGING):
+    if apart > STEADY and (_are_orders(hz, speed) or abs(np.log(usual / _resonance(eq))) < np.log(RINGING)):
         return None
     lines = {k: _line(eq, k, r, usual) for k, r in {**e, **unseen}.items() if k[1] == channel}
     loud = [(float(lines[k] @ lines[k]), float(e[k] @ e[k])) for k in keys]
@@ -101,6 +104,13 @@ def _in_channel(
     if share < LOUD_LINE:
         return None
     return Interference(channel, usual, apart, share, {k: x[:, None] for k, x in lines.items()})
+
+
+def _are_orders(hz: Array, speed: Array) -> bool:
+    """Whether the frequency (k,) is a whole order of the motor at `speed` [rad/s], (k,), another one in each run: those
+    that come near a resonance stand out, and go with it."""
+    order = hz / (speed / TURN)
+    return bool(np.mean(np.abs(order - np.round(order)) < WHOLE_BY) > WHOLE_ORDERS)
 
 
 def _resonance(eq: Equations) -> float:

@@ -134,6 +134,33 @@ class SensorJump(OfTheTorqueSensor):
         return sum_of(fit, "from one side to the other by", 2, "N·m")
 
 
+class SensorCurve(OfTheTorqueSensor):
+    """The torque sensor is not linear: it reads c_2·T·|T| + c_3·T³ too much, one way as the other      [taghirad1999]
+
+    In a lock test the gear seems to stiffen or to soften; the motor that holds it, and where it turns the load, know of
+    nothing.
+    """
+
+    name: ClassVar[str] = "sensor_curve"
+    in_short: ClassVar[str] = "the torque sensor is not linear"
+    source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l", "tau_m"}
+    AT: Final = 50.0  # N·m, for columns of one size
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where there is torque enough to bend a curve."""
+        return when(reach.torque > self.AT / 2)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """Two columns in the reading, for what it is off at AT."""
+        share = torque_of(signals) / self.AT
+        return {Port.READS_TAU_L: np.stack([share * np.abs(share), share**3], 1)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """At AT, both together."""
+        return sum_of(fit, f"at {self.AT:g} N·m it reads too much by", 1, "N·m")
+
+
 class Droop(Nameless):
     """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
 

@@ -17,6 +17,7 @@ from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
     ConstantDrift,
     Droop,
+    SensorCurve,
     SensorGainDrift,
     SensorJump,
     SensorRipple,
@@ -114,6 +115,14 @@ CONFOUNDERS: Final = {
         "The torque sensor jumps where the torque turns round, and no load and no motor goes with it; a gap in the "
         "gear explains less, and no effect of the library explains it.",
         mimics=frozenset({"nonlinear_stiffness", "lost_motion"}),
+    ),
+    "sensor_curve": Confounder(
+        SensorCurve(),
+        "load",
+        "The torque sensor is not linear: under load it reads too much or too little, and neither motor nor load goes "
+        "with it; a spring that is not linear explains less, and no effect of the library explains it.",
+        mimics=frozenset({"nonlinear_stiffness"}),
+        searched=False,
     ),
     "two_gains": Confounder(
         TwoGains(),
