@@ -1,4 +1,4 @@
-"""Single readings that stand far off those beside them: a bit that flipped, a frame read twice. No gear does that."""
+"""Single readings that stand far off those beside them: a bit that flipped, a frame that broke. No gear does that."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from rig.core.rows import stretches
 Index = npt.NDArray[np.int64]
 
 SIGMA: Final = 1.4826  # of normal noise, over its median size
+SMOOTH: Final = 0.01  # of the way from row to row, σ at least: made-up motion without noise has bends all the same
+A_ROW: Final = 1.5  # of that way: what is off by a row or less is at a reversal, or a row read twice
 FAR: Final = 30.0  # σ of what a reading is off the line between its neighbours: noise has 6 in a year of rows
 WIDEST: Final = 3  # rows; what lasts longer has a course, and may be the rig's own
 OUTSTANDING: Final = 8.0  # times as far off as any reading beside it: a step and a corner take those along
@@ -28,7 +30,7 @@ def lone(x: Array, t: Array | None, period: float = np.inf) -> tuple[Index, Arra
 
     Behind them the channel goes on as before, which tells them from a step. What is off by whole `period`s is wrapped.
     """
-    far = FAR * _sigma(x, t)
+    far = _far(x, t)
     rows = [some.start + np.flatnonzero(np.abs(_off(x, t, some)) > far) for some in stretches(x.size)]
     found = np.concatenate([NONE, *rows])
     most = max(int(RARE * x.size), FEWEST)
@@ -51,24 +53,27 @@ def _off(x: Array, t: Array | None, some: slice) -> Array:
     return out
 
 
-def _sigma(x: Array, t: Array | None) -> float:
-    """Of what a usual reading is off its neighbours; of a sensor that mostly rests its smallest step."""
+def _far(x: Array, t: Array | None) -> float:
+    """What a reading must be off its neighbours by: far beyond what a usual one is, and more than a row's way."""
     places, rows = LOOKED_AT
     starts = np.unique(np.linspace(0, max(x.size - rows, 0), places).astype(np.int64)).tolist()
     some = [slice(at, min(at + rows, x.size)) for at in starts]
     off = np.abs(np.concatenate([_off(x, t, one) for one in some]))
     off = off[np.isfinite(off)]
-    if off.size and (usual := float(np.median(off))) > 0.0:
-        return SIGMA * usual
     steps = np.abs(np.concatenate([np.diff(x[one]) for one in some]))
-    return float(np.min(steps[steps > 0.0], initial=np.inf))
+    steps = steps[np.isfinite(steps)]
+    way = float(np.median(steps)) if steps.size else 0.0
+    sigma = max(SIGMA * float(np.median(off)) if off.size else 0.0, SMOOTH * way)
+    if sigma > 0.0:
+        return max(FAR * sigma, A_ROW * way)
+    return FAR * float(np.min(steps[steps > 0.0], initial=np.inf))  # of a sensor that mostly rests: its smallest step
 
 
 def _alone(x: Array, t: Array | None, first: int, last: int, far: float, period: float) -> tuple[Index, Array]:
     """Those of the rows about `first` to `last` that stand alone, and how far; none where the channel does not go on as
-    before, and at its ends."""
-    rows = np.arange(first - BESIDE, last + BESIDE + 1)
-    if rows[0] < 0 or rows[-1] >= x.size or last - first > WIDEST + 1 or not np.isfinite(x[rows]).all():
+    before. At its ends the rows of one side tell."""
+    rows = np.arange(max(first - BESIDE, 0), min(last + BESIDE + 1, x.size))
+    if last - first > WIDEST + 1 or rows.size < BESIDE + 2 or not np.isfinite(x[rows]).all():
         return NONE, np.empty(0)
     clock = (rows if t is None else t[rows]) - (rows[0] if t is None else t[rows[0]])
     beside = (rows < first - 1) | (rows > last + 1)

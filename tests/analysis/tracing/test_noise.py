@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
-from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.noise import Measured, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.floor.outlying import outlying
+from rig.analysis.tracing.floor.repeats import effective
 from rig.analysis.tracing.thresholds import LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated
@@ -129,3 +130,14 @@ def test_a_floor_leaves_out_what_is_told_apart() -> None:
     of = Measured(noise, by_run, {}, {}, dict.fromkeys(by_run, 500.0), frozenset({(4, "M"), (5, "M")}))
     assert floor(of, 6) == pytest.approx(1.2e-3)  # at another speed
     assert floor(of, 5) == pytest.approx(9.8e-3)  # of its own
+
+
+def test_made_up_numbers_and_a_coarse_encoder_have_a_floor_all_the_same() -> None:
+    """Without noise every turn is the one before: a floor of nothing ended a trace in a division by it."""
+    run = SimpleNamespace(step_m=0.005, step_l=0.0, ratio=50.0)
+    y = {"A": 1e-4 * np.sin(np.arange(1000.0)), "M": 0.3 + 0.1 * np.sin(np.arange(1000.0))}
+    eq: Any = SimpleNamespace(runs=[run], rows={(0, c): SimpleNamespace(y=x) for c, x in y.items()})
+    assert finest(eq, "A") == pytest.approx(1e-4 / 12**0.5 / 4, rel=1e-3)  # of a count of 0.1 mrad at the output
+    assert finest(eq, "M") == pytest.approx(0.1e-5 / 2**0.5, rel=0.01)
+    assert finest(eq, "L") > 0.0
+    assert effective(np.zeros(20)) == 1.0

@@ -18,6 +18,8 @@ from rig.analysis.tracing.floor.repeats import Scatter, effective, repeats, scat
 from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
 
+FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
+OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
 
@@ -40,8 +42,17 @@ def guess(eq: Equations) -> Noise:
     for channel in WHOLE:
         rough = [np.diff(r.y, 4) for (_, c), r in eq.rows.items() if c == channel]
         spread = float(np.median(np.abs(np.concatenate(rough)))) if rough else 1.0
-        sigma[channel] = max(spread / 0.6745 / np.sqrt(70) * 2, 1e-12)  # twice: the low-pass took half of it
+        sigma[channel] = max(spread / 0.6745 / np.sqrt(70) * 2, finest(eq, channel))  # twice: half is the low-pass's
     return _at_reversals(Noise(sigma, dict.fromkeys(CHANNELS, 4.0), dict.fromkeys(CHANNELS, np.inf)))
+
+
+def finest(eq: Equations, channel: str) -> float:
+    """The least floor that is believed: made-up numbers, and few repeats of a coarse encoder, have none at all."""
+    mine = {i: r.y for (i, c), r in eq.rows.items() if c == channel}
+    swing = float(np.sqrt(np.mean(np.concatenate([y - y.mean() for y in mine.values()]) ** 2))) if mine else 0.0
+    counts = [float(np.hypot(eq.runs[i].step_m / eq.runs[i].ratio, eq.runs[i].step_l)) for i in mine]
+    rounding = OF_A_COUNT * min(counts) if channel == "A" and counts else 0.0
+    return max(FINEST * swing, rounding, 1e-12)
 
 
 def measure(solution: Solution, among: Sequence[int]) -> Measured:
@@ -68,10 +79,12 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         how[channel] = words + _said(eq, far)
         usual = [s for s in found if s not in far]
         n = np.array([s.rows for s in usual])
-        sigma[channel] = float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n)))
-        kappa[channel] = effective(np.average([s.rho / s.rho[0] for s in usual], axis=0, weights=n))
+        least = finest(eq, channel)
+        sigma[channel] = max(float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n))), least)
+        kappa[channel] = effective(np.average([s.rho / max(s.rho[0], least**2) for s in usual], axis=0, weights=n))
         apart |= {(i, channel) for s in far for i in s.pair}
-        by_run |= {(i, channel): s.rms for s in [*_alone(eq, e, channel, among, found), *found] for i in s.pair}
+        compared = [*_alone(eq, e, channel, among, found), *found]
+        by_run |= {(i, channel): max(s.rms, least) for s in compared for i in s.pair}
         free |= {(i, channel): s.freedom for s in found for i in s.pair}
         by_run |= _never_compared(eq, e, channel, among, found)
         local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])

@@ -171,6 +171,6 @@ def freedom(d: Array) -> float:
 
 def effective(rho: Array) -> float:
     """Rows per independent row: 1 + 2·Σρ up to where it vanishes."""
-    rho = rho / rho[0]
+    rho = rho / max(float(rho[0]), 1e-300)
     gone = np.flatnonzero(rho < UNCORRELATED)
     return float(max(1.0, 1 + 2 * rho[1 : int(gone[0]) if gone.size else rho.size].sum()))

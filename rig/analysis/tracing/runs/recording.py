@@ -30,7 +30,9 @@ from rig.runfile.run import Run
 UNTIMED = 1000.0  # Hz, taken for the rate of rows without a time: taken for less, ω̇ of a 16-bit encoder is all noise
 FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
 DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
-SPARSEST = 0.2  # s between rows: order 15 of a slow run (9.6 rpm) still has two of them a period
+SPARSEST = (
+    0.201  # s between rows, 5 Hz as a clock has them: order 15 of a slow run (9.6 rpm) still has two of them a period
+)
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -54,6 +56,7 @@ class Recording(Once):
     noise: Mapping[str, float]  # RMS of white noise at the working rate, by channel
     notes: tuple[str, ...] = ()
     step_m: float = 0.0  # rad, the smallest change of the motor angle in the file; 0 where there is none
+    step_l: float = 0.0  # the same of the load angle
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
     look: Look = field(default_factory=Look)  # what of it is looked at
@@ -165,6 +168,7 @@ def record(whole_run: Run, start: float) -> Recording:
         noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
         notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
+        step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
         load_stated=states(run.conditions, "tau_ext"),
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
@@ -202,7 +206,7 @@ def _refuse_sparse(rows: int, dt: float) -> None:
     if rows < FEWEST:
         raise UsageError(f"it has {rows} rows, expected at least {FEWEST}")
     if not DENSEST <= dt <= SPARSEST:  # NaN too
-        raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:g} s")
+        raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:.1g} s")
 
 
 def _joined(t: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tuple[int, int]]:
