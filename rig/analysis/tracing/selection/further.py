@@ -85,15 +85,16 @@ def _stands_in(
 
 def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
     """Where much is left: the candidates with most evidence at first, and those with most beside what stands, each
-    alone beside it, in all its laws. Many small ones that the search put beside the true effect can drive it out, or
-    have it in a shape that is its own no more. One of them counts when it explains everything, or all there is where it
-    acts."""
+    alone beside it; the one effect that explained all there was of fitted runs in its other laws too. Many small ones
+    that the search put beside the true effect can drive it out, or have it in a shape that is its own no more. One of
+    them counts when it explains everything, or all there is where it acts."""
     if selected.p.own.line is not None or not selected.loud:
         return selected
     d = selected.solution.design
     stay = {term.name for term in d.terms}
     beside = ranking_of_some(d, bank, runs, covered, LAWS)
-    for term in _in_all_laws(_most_of(found.ranking, stay) + _most_of(beside, stay), beside):
+    only = [r for r in beside if found.names == (r.term.name,)]
+    for term in _in_all_laws(_most_of(found.ranking, stay) + _most_of(beside, stay), only):
         s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
@@ -108,7 +109,8 @@ def _most_of(ranking: Sequence[Scored], stay: Collection[str]) -> list[Term]:
 
 def _in_all_laws(terms: Sequence[Term], ranking: Sequence[Scored]) -> list[Term]:
     """Each of `terms` once, followed by the other laws of its effect that the `ranking` has: of two that explain nearly
-    as much of fitted runs one may foretell unseen ones, and a look-alike is no answer before it was asked."""
+    as much of fitted runs one may foretell unseen ones, and a look-alike is no answer before it was asked. Of an effect
+    among others they are as many ways to fill in for what is none of them."""
     laws = {r.term.name: (r.term, *r.laws) for r in ranking}
     return list(dict.fromkeys(law for term in terms for law in (term, *laws.get(term.name, ()))))
 

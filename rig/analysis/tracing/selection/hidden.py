@@ -84,7 +84,7 @@ def _at_one_speed(
     sentence = (
         f"Friction in {CHANNEL[home.channel].name} is another one at some speeds, the same in all runs at them "
         f"({home.share:.0%} of what runs differ by): less than the floor of one run, and no effect of the library "
-        "explains it."
+        "could be named for it."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, None, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
