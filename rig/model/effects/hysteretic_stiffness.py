@@ -96,10 +96,10 @@ class HystereticStiffness(Effect):
         if law == self.WEDGE:
             return {"loss_at_20_Nm": np.array([-2.0 * self.AT])}
         if law == self.FRICTION:
-            return {"hysteresis_loss": np.array([-2.0])}
+            return dict.fromkeys(("hysteresis_loss", "loss_at_20_Nm"), np.array([-2.0]))
         plays = 2.0 * width * np.array(self.SPREAD)
         if law == self.PLAYS:
-            return {"hysteresis_loss": plays}
+            return dict.fromkeys(("hysteresis_loss", "loss_at_20_Nm"), plays)
         return {"hysteresis_loss": np.hstack([plays, 0.0 * plays]), "loss_at_20_Nm": np.hstack([plays, plays])}
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:

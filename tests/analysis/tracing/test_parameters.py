@@ -12,6 +12,9 @@ from rig.analysis.tracing.fit import parameters
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.fit.equations import Bare, Equations, Noise
 from rig.analysis.tracing.fit.model import Design, Part, fit, normal
+from rig.analysis.tracing.fit.parameters import Told, joined
+from rig.model.effect import Fit
+from rig.model.effects import CATALOGUE
 
 K, B_SP = 7160.0, 7.0
 HZ = (13.3, 6.7)
@@ -63,3 +66,28 @@ def test_a_sensor_that_would_be_early_has_no_delay_and_an_interval_as_wide_as_th
     assert (lag.value, lag.ci95[0]) == (0.0, 0.0)
     alone = 1.96 * 0.05 / np.sqrt(np.sum(waves(1) ** 2))  # of rows of that noise
     assert 0.3 * alone < lag.ci95[1] < 3 * alone
+
+
+def test_two_loops_make_one_loss_with_the_interval_of_their_sum() -> None:
+    loop, shape = CATALOGUE["hysteretic_stiffness"], (4.0, 1.0)  # friction beside the spring: one coefficient
+    each, known = 1e-5, SimpleNamespace(K=K)
+    c = each**2 * np.array([[1.0, -0.99], [-0.99, 1.0]])  # either is known badly, their sum well
+    terms = []
+    for i, size in enumerate((-4e-5, -6e-5)):
+        by = np.zeros((3, 2))
+        by[0, i] = 1.0
+        terms.append(Told(loop, Fit(np.array([size]), shape, by @ c @ by.T, known, 50.0), by))  # type: ignore[arg-type]
+    alone, both = ({p.name: p for p in joined(some, c)}["hysteresis_loss"] for some in (terms[:1], terms))
+    assert both.value == pytest.approx(2 * (4e-5 + 6e-5))
+    half = 1.96 * 2 * each
+    assert alone.ci95[1] - alone.value == pytest.approx(half, rel=1e-3)
+    assert both.ci95[1] - both.value == pytest.approx(half * np.sqrt(0.02), rel=1e-3)
+
+
+def test_a_loss_under_load_holds_that_of_a_loop_as_wide_everywhere() -> None:
+    loop, known = CATALOGUE["hysteretic_stiffness"], SimpleNamespace(K=K)
+    plain = Told(loop, Fit(np.array([-4e-5]), (4.0, 1.0), np.zeros((3, 3)), known, 50.0), np.zeros((3, 2)))  # type: ignore[arg-type]
+    wedge = Told(loop, Fit(np.array([-1e-6]), (4.0, 2.0), np.zeros((3, 3)), known, 50.0), np.zeros((3, 2)))  # type: ignore[arg-type]
+    told = {p.name: p.value for p in joined((plain, wedge), np.zeros((2, 2)))}
+    assert told["hysteresis_loss"] == pytest.approx(8e-5)
+    assert told["loss_at_20_Nm"] == pytest.approx(8e-5 + 2 * 20 * 1e-6)

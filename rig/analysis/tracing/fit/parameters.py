@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, prio
 from rig.analysis.tracing.fit.refine import nudged
 from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
-from rig.model.effect import Array, Fit, Parameter, parameter
+from rig.model.effect import Array, Effect, Fit, Parameter, parameter
 
 PLAIN = {
     "J_m": "kg·m²",
@@ -29,6 +29,7 @@ PLAIN = {
 
 ROUNDS = 4  # each leaves a fiftieth of what the one before left
 NO_LAG = 1e-9  # s
+STEP = 1e-4  # relative, of a coefficient or shape: figures are smooth in them
 LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms would tell
 
 
@@ -113,12 +114,11 @@ def effects(
     c = _widened(s, slopes[:fitted], runs, spread)
     if fitted < len(slopes):
         c = _beside(c, _widened(s, slopes, runs, spread))
-    out: dict[str, tuple[Parameter, ...]] = {}
+    told: dict[str, list[Told]] = {}
     for i, term in enumerate(s.design.terms):
-        out[term.name] = joined(
-            out.get(term.name, ()), term.effect.parameters(of_term(s, c, i, slopes)), term.effect.adds
-        )
-    return out
+        by = _spread(s, len(c), i, slopes)
+        told.setdefault(term.name, []).append(Told(term.effect, of_term(s, c, i, slopes), by))
+    return {name: joined(terms, c) for name, terms in told.items()}
 
 
 def _is_usual(term: Term, j: int) -> bool:
@@ -145,33 +145,73 @@ def _beside(c: Array, whole: Array) -> Array:
     return out
 
 
-def joined(
-    before: Sequence[Parameter], more: Sequence[Parameter], adds: frozenset[str] = frozenset()
-) -> tuple[Parameter, ...]:
-    """Figures of two terms of one effect: what `adds` is summed, half widths in full, for they are not independent;
-    of the others that have the same name the second is numbered."""
-    out = {p.name: p for p in before}
-    for p in more:
-        known = out.get(p.name)
-        if known is None:
-            out[p.name] = p
-        elif p.name in adds:
-            half = (known.ci95[1] - known.ci95[0] + p.ci95[1] - p.ci95[0]) / 2
-            out[p.name] = parameter(p.name, known.value + p.value, half, p.unit)
-        else:
-            name = f"{p.name}_{sum(n.startswith(p.name) for n in out) + 1}"
-            out[name] = replace(p, name=name)
+@dataclass(frozen=True)
+class Told:
+    """One term of an effect, what the fit says of it, and `by`: its coefficients and shape by all that is fitted."""
+
+    effect: Effect
+    fit: Fit
+    by: Array  # (k + s, p)
+
+
+def joined(terms: Sequence[Told], c: Array) -> tuple[Parameter, ...]:
+    """Figures of all terms of one effect, of which `c` (p, p) is the covariance: what it `adds` is one sum, with the
+    interval of that sum, for two terms of one effect are seldom independent; of the others that have the same name the
+    second is numbered."""
+    out: dict[str, Parameter] = {}
+    for term in terms:
+        for p in term.effect.parameters(term.fit):
+            if p.name not in out:
+                out[p.name] = p
+            elif p.name not in term.effect.adds:
+                name = f"{p.name}_{sum(n.startswith(p.name) for n in out) + 1}"
+                out[name] = replace(p, name=name)
+    if len(terms) > 1:
+        out |= {name: _sum(name, out[name].unit, terms, c) for name in out if name in terms[0].effect.adds}
     return tuple(out.values())
+
+
+def _sum(name: str, unit: str, terms: Sequence[Told], c: Array) -> Parameter:
+    """A figure summed over terms, of those that have it."""
+    along, total = np.zeros(len(c)), 0.0
+    for term in terms:
+        total += _figure(term, name, term.fit)
+        along += _gradient(term, name) @ term.by
+    return parameter(name, total, Z95 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
+
+
+def _figure(term: Told, name: str, fit: Fit) -> float:
+    return next((p.value for p in term.effect.parameters(fit) if p.name == name), 0.0)
+
+
+def _gradient(term: Told, name: str) -> Array:
+    """Of a figure by coefficients and shape (k + s,), by central differences of what the effect makes of them."""
+    fit = term.fit
+    at = np.concatenate([fit.coefficients, fit.shape])
+    k, out = fit.coefficients.size, np.zeros(at.size)
+    loose = np.concatenate([np.ones(k, bool), np.array(term.effect.loose or (False,) * len(fit.shape), bool)])
+    for j in np.flatnonzero(loose):
+        step = STEP * (abs(at[j]) or float(np.abs(at[:k]).max()))
+        ends = [at + sign * step * (np.arange(at.size) == j) for sign in (1.0, -1.0)]
+        there = [replace(fit, coefficients=x[:k], shape=tuple(x[k:])) for x in ends]
+        out[j] = (_figure(term, name, there[0]) - _figure(term, name, there[1])) / (2 * step)
+    return out
 
 
 def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = ()) -> Fit:
     """The part of coefficients and covariance that belongs to one term."""
+    by, first = _spread(s, len(c), i, slopes), s.design.eq.runs[0]
+    place = s.design.place(i)
+    return Fit(s.x[place], s.design.terms[i].shape, by @ c @ by.T, first.pieces[0].gear, first.ratio)
+
+
+def _spread(s: Solution, size: int, i: int, slopes: Sequence[tuple[int, int]]) -> Array:
+    """Coefficients and shape of a term by all that is fitted, (k + s, `size`)."""
     term, place = s.design.terms[i], s.design.place(i)
-    k, size = place.stop - place.start, place.stop - place.start + len(term.shape)
-    spread = np.zeros((size, c.shape[0]))
-    spread[np.arange(k), np.arange(place.start, place.stop)] = 1.0
+    k = place.stop - place.start
+    by = np.zeros((k + len(term.shape), size))
+    by[np.arange(k), np.arange(place.start, place.stop)] = 1.0
     for at, (owner, j) in enumerate(slopes):
         if owner == i:  # the column is the change with the logarithm
-            spread[k + j, s.design.size + at] = term.shape[j]
-    first = s.design.eq.runs[0]
-    return Fit(s.x[place], term.shape, spread @ c @ spread.T, first.pieces[0].gear, first.ratio)
+            by[k + j, s.design.size + at] = term.shape[j]
+    return by
