@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.motion.source import Motion, Source
 from rig.core.numbers import stated
 from rig.core.units import RPM, TURN
@@ -18,7 +18,6 @@ SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a f
 UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
 FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
 ROWS: Final = 200_000  # looked at, those first: a unit is the same all along, and a run may have a day of rows
-ROUNDED: Final = 1e-12  # relative: what double precision leaves of two equal angles
 
 
 @dataclass(frozen=True)
@@ -70,11 +69,3 @@ def turning_of(run: Source, motion: Motion) -> Turning:
         said_rpm=abs(stated(run.conditions.get("speed_rpm"), 0.0)),
         ratio=run.ratio,
     )
-
-
-def smallest_step(x: npt.NDArray[np.float64]) -> float:
-    """Smallest change of the way from one row to the next that is no rounding of the numbers, 0 where there is none:
-    one count of a coarse reading, next to nothing of a fine one."""
-    steps = np.abs(np.diff(x, 2))
-    steps = steps[steps > ROUNDED * np.nanmax(np.abs(x), initial=0.0)]
-    return float(np.min(steps, initial=np.inf)) if steps.size else 0.0

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.angle import is_wrapped, joined, unwrap
 from rig.analysis.motion.gaps import find_gaps, that_matter
+from rig.analysis.motion.repeated import FAR, Repeated, repeated
 from rig.core.channels import UNTRUSTED, Flag
 from rig.core.rows import picked, room, stretches
 from rig.core.units import ARCSEC, RPM, TURN
@@ -116,6 +117,7 @@ def motion_of(run: Source) -> Motion | None:
     if theta_m is None:
         return None
     t, flags = run.column("t"), run.column("flags")
+    theta_m, theta_l = _taken_anew(theta_m, theta_l, float(run.ratio), t, notes)
     rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
     if rows is not None:
         notes.append(_left_out({"theta_m": theta_m, "theta_l": theta_l, "t": t}, rows.size))
@@ -128,6 +130,27 @@ def motion_of(run: Source) -> Motion | None:
     notes += gaps.words
     breaks = tuple(sorted({*breaks, *gaps.before.tolist()}))
     return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+
+
+def _taken_anew(
+    theta_m: Array, theta_l: Array | None, ratio: float, t: Array | None, notes: list[str]
+) -> tuple[Array, Array | None]:
+    """Both angles [rad], (n,), missing where they repeat the reading before though the shaft moved."""
+    other = (None, None) if theta_l is None else (theta_l, theta_m)
+    found = repeated(theta_m, other[0], FAR / ratio)
+    of_load = repeated(theta_l, other[1], FAR) if theta_l is not None else found
+    theta_m = _without(theta_m, found, "theta_m", t, notes)
+    return theta_m, None if theta_l is None else _without(theta_l, of_load, "theta_l", t, notes)
+
+
+def _without(x: Array, found: Repeated, name: str, t: Array | None, notes: list[str]) -> Array:
+    if not found.rows.size:
+        return x
+    notes.append(found.words(name, t))
+    out = room(x.size)
+    out[:] = x
+    out[found.rows] = np.nan
+    return out
 
 
 def _usable(t: Array | None, notes: list[str]) -> Array | None:

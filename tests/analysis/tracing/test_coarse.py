@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.motion.degrees import smallest_step
+from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, noise_of, quiet, rough
 from rig.analysis.tracing.thresholds import BANDWIDTH
 

@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from rig.analysis.motion.degrees import smallest_step
 from rig.analysis.motion.gaps import LONG
+from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rig.analysis.motion.degrees import smallest_step
+from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.tracing.thresholds import BANDWIDTH
 from rig.model.effect import Array
 

@@ -1,0 +1,130 @@
+"""Readings of an angle that were not taken anew: the row says again what the one before it said, and the shaft moved.
+
+An encoder that hangs, a bus that keeps the last frame, a sensor slower than the rows. Such a reading is late, and looks
+like kinematic error. A coarse encoder that has not yet come to its next count goes on by one count, not by many; where
+a motor sticks and slips the gear's other side rests as well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.smallest_step import smallest_step
+from rig.core.rows import stretches
+from rig.core.units import TURN
+
+Index = npt.NDArray[np.int64]
+
+FAR: Final = TURN / 6  # rad of the motor: no gear winds up so far, 150 N·m on the paper's
+COUNTS: Final = 3.0  # smallest steps from one new reading to the next: a coarse encoder goes by one or two
+OFTEN: Final = 2.0  # times as many repeats as readings a count up or down: of noise there are half as many
+GOES_ON: Final = 0.5  # of its way in a usual row: where it rests, the shaft does
+RARE: Final = 1e-3  # of the rows that move so: fewer repeats are chance, and move no figure
+FEWEST: Final = 20  # repeats at any rate
+BESIDE: Final = 10  # rows on either side, at least, from which the way of a row is taken
+CHANGES: Final = 4.0  # new readings on either side of it
+ROWS: Final = 200_000  # from which the smallest step is taken
+NONE: Final[Index] = np.empty(0, np.int64)
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """Rows of one angle, (n,), that say nothing new; where it stood longest, from row `first` to row `last`."""
+
+    rows: Index
+    first: int
+    last: int
+    of: int  # n
+
+    def words(self, name: str, t: Array | None) -> str:
+        """One note for people; `t` s, (n,), or None."""
+        timed = t is not None and self.first < self.last and np.isfinite(t[[self.first, self.last]]).all()
+        if self.first == self.last:
+            what = f"{self.rows.size} of {self.of} readings of {name} repeat the one before though the shaft turned"
+        elif timed and t is not None:
+            lasted, many = t[self.last] - t[self.first], self.rows.size
+            when = f"stood for {lasted:.3g} s at t = {t[self.first]:.3f} s"
+            what = f"{name} {when} though the shaft turned ({many} rows in all)"
+        else:
+            when = f"stood from row {self.first} to {self.last}"
+            what = f"{name} {when} though the shaft turned ({self.rows.size} rows in all)"
+        return f"{what}: taken as missing."
+
+
+def repeated(x: Array, other: Array | None, far: float) -> Repeated:
+    """Rows of an angle `x`, (n,) rad, that repeat the reading before while the shaft moves.
+
+    Where `other`, (n,) rad, the angle of the gear's other side, goes on by more than `far` meanwhile, however few rows
+    that are; and everywhere where repeats come too often for a coarse reading. Without that angle nothing tells.
+    """
+    starts = _starts(x)
+    if other is None:
+        return Repeated(NONE, 0, 0, x.size)
+    stood, first, last = _stood(x, other, far, starts)
+    return Repeated(np.union1d(stood, _often(x, other, starts.size)), first, last, x.size)
+
+
+def _starts(x: Array) -> Index:
+    """Rows with another value than the one before, the first among them."""
+    changed = [
+        some.start + np.flatnonzero(np.diff(x[some], prepend=x[some.start - 1] if some.start else np.nan) != 0)
+        for some in stretches(x.size)
+    ]
+    return np.concatenate([NONE, *changed])
+
+
+def _stood(x: Array, other: Array, far: float, starts: Index) -> tuple[Index, int, int]:
+    """Rows in which `x` stood though the other side turned; the first and last row where it stood longest."""
+    ends = np.append(starts[1:], x.size) - 1
+    long = np.flatnonzero(ends > starts)
+    went = np.abs(other[ends[long]] - other[starts[long]])
+    long = long[went > far]
+    if not long.size:
+        return NONE, 0, 0
+    most = long[int(np.argmax(ends[long] - starts[long]))]
+    rows = np.concatenate([np.arange(starts[i] + 1, ends[i] + 1) for i in long])
+    return rows, int(starts[most]), int(ends[most])
+
+
+def _often(x: Array, other: Array, changes: int) -> Index:
+    """Repeats among rows that move by several steps from one new reading to the next, where they are no chance and the
+    other side goes on in them as it does in the rest."""
+    count = smallest_step(x[:ROWS])
+    beside = int(max(BESIDE, CHANGES * x.size / max(changes, 1)))
+    if not count:
+        return NONE
+    found, moving, near, went = [NONE], 0, 0, np.zeros(2)
+    for some in stretches(x.size):
+        lo, hi = max(some.start, beside + 1), min(some.stop, x.size - beside)
+        if hi <= lo:
+            continue
+        fast, step, way = _fast(x[lo - beside - 1 : hi + beside], beside, COUNTS * count)
+        along = np.sign(way) * np.diff(other[lo - 1 : hi])
+        again = fast & (step == 0)
+        found.append(lo + np.flatnonzero(again))
+        moving += int(np.count_nonzero(fast))
+        near += int(np.count_nonzero(fast & (step > 0) & (step < 1.5 * count)))
+        went += np.nansum(along[again]), np.nansum(along[fast])
+    rows = np.concatenate(found)
+    if rows.size <= max(FEWEST, RARE * moving, OFTEN * near):
+        return NONE
+    return rows if went[0] / rows.size > GOES_ON * went[1] / moving else NONE
+
+
+def _fast(x: Array, beside: int, far: float) -> tuple[npt.NDArray[np.bool_], Array, Array]:
+    """Of the rows of `x`, (n + 2·beside + 1,), but for `beside` + 1 before and `beside` behind: which move on both
+    sides by more than `far` from one new reading to the next, how far each is from the row before, and the
+    way across both sides, each (n,)."""
+    step = np.abs(np.diff(x))
+    news = np.cumsum(np.append(0, step != 0))
+    n = x.size - 2 * beside - 1
+    at = [slice(first, first + n) for first in (1, beside + 1, 2 * beside + 1)]  # before, here, behind
+    sides = [(x[b] - x[a], news[b] - news[a]) for a, b in pairwise(at)]
+    moves = [np.abs(way) > far * np.maximum(changes, 1) for way, changes in sides]
+    return moves[0] & moves[1], step[beside : beside + n], sides[0][0] + sides[1][0]
