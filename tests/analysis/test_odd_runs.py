@@ -94,3 +94,11 @@ def test_a_hyphen_before_a_number_is_a_minus_and_no_other_is() -> None:
     from rig.analysis.findings.collected import true_minus
 
     assert true_minus("-5 to -3.2, 1e-5, 2026-11-20, open-1 (-1)") == "−5 to −3.2, 1e-5, 2026-11-20, open-1 (−1)"
+
+
+@pytest.mark.parametrize(("procedure", "absent"), [("constant_speed", True), ("coast_down", False)])
+def test_a_torque_that_is_zero_in_every_row_was_not_measured(procedure: str, absent: bool) -> None:
+    columns = dict(at_speed(seconds=4.0, tau_l=np.zeros(4000), tau_m=np.zeros(4000)).columns)
+    said = told(columns, {}, procedure).cannot
+    assert any("tau_l is exactly 0 in all 4000 rows" in note for note in said)
+    assert any("tau_m is exactly 0 in all" in note for note in said) == absent, "a motor runs down without a torque"

@@ -20,6 +20,9 @@ LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
 RATIOS = (1e-3, 1e5)  # no gear is outside
 READ = ("theta_m", "theta_l", "tau_m", "tau_l")  # what a sensor reads, and may read wrong once
+TORQUES = ("tau_m", "tau_l")
+TURNED = 0.05  # rad of the motor: it needed a torque for that, a lock test of 10 N·m turns as far
+COASTS = "coast_down"  # the procedure in which a motor turns without torque
 TABLES = ("gear", "encoders", "conditions", "declared", "limits", "files")
 
 
@@ -76,8 +79,23 @@ class Tame:
             values[np.concatenate(absurd)] = np.nan
         if name in READ:
             values = self._without_lone(name, values)
+        if name in TORQUES and self._reads_nothing(name, values):
+            self.notes.append(
+                f"{name} is exactly 0 in all {values.size} rows: nobody measured it, so it counts as absent."
+            )
+            return None
         any_left = any(np.isfinite(values[some]).any() for some in stretches(values.size))
         return values if any_left or not values.size else None
+
+    def _reads_nothing(self, name: str, values: Array) -> bool:
+        """Whether a torque is zero in every row, as of a sensor that is not there: one that is has noise, and a motor
+        that turns meets friction, but for one that runs down or rests without a torque."""
+        if not values.size or any(np.any(values[some]) for some in stretches(values.size)):
+            return False
+        if name == "tau_l":
+            return True
+        theta_m = None if self.procedure == COASTS else self.column("theta_m")
+        return theta_m is not None and float(np.nanmax(theta_m) - np.nanmin(theta_m)) > TURNED
 
     def _without_lone(self, name: str, values: Array) -> Array:
         """Single readings far off their neighbours are missing, and said."""

@@ -11,6 +11,7 @@ from rig.core.errors import UsageError
 from rig.runfile.importing.strict import Section, nearest
 from rig.runfile.importing.units import known, unit_of
 
+NEEDED = ("t", "theta_m", "theta_l")  # a hole in one of these cannot be kept as null: the rows would lose their order
 QUANTITY = {
     "t": "time", "theta_m": "angle", "theta_l": "angle", "theta_ref": "angle", "omega_m": "speed", "tau_m": "torque",
     "tau_l": "torque", "tau_ask": "torque", "tau_applied": "torque", "counts_m": "counts", "counts_l": "counts",
@@ -41,6 +42,7 @@ class ChannelMap:
     counts_per_turn: int = 0
     modulus: float = 0.0  # in `unit`; 0 = unwrapped already
     drop_duplicates: bool = False
+    drop_holes: bool = False  # rows without a value here are left out; else they are refused
 
     @property
     def plain(self) -> bool:
@@ -62,6 +64,8 @@ def read_channel(name: str, raw: Section) -> ChannelMap:
         keys["drop_duplicates"] = raw.text("duplicates", "refuse", choices=("refuse", "drop")) == "drop"
     elif quantity != "counts" or name not in QUANTITY:
         keys |= {"sign": raw.sign("sign"), "zero": raw.number("zero", 0.0), "offset": raw.number("offset", 0.0)}
+    if name in NEEDED:
+        keys["drop_holes"] = raw.text("holes", "refuse", choices=("refuse", "drop")) == "drop"
     if quantity in ("angle", "counts"):
         keys |= _wheel(raw, unit, counting=quantity == "counts")
     raw.done()

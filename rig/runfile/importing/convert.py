@@ -13,14 +13,13 @@ from rig.core.channels import CHANNEL
 from rig.core.errors import UsageError
 from rig.core.units import TURN
 from rig.runfile.importing import refuse, timing
-from rig.runfile.importing.channel import QUANTITY, ChannelMap
+from rig.runfile.importing.channel import NEEDED, QUANTITY, ChannelMap
 from rig.runfile.importing.mapping import Mapping
 from rig.runfile.importing.table import Table
 from rig.runfile.importing.units import SI, UNITS, known
 from rig.runfile.importing.unwrap import unwrap
 
 Array = npt.NDArray[Any]
-NEEDED = ("t", "theta_m", "theta_l")  # a hole in one of these cannot be kept as null: the rows would lose their order
 COUNTS = {"theta_m": "counts_m", "theta_l": "counts_l"}
 
 
@@ -52,9 +51,10 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
 
     Raises UsageError, with row and number, where a column cannot be meant.
     """
-    rows = refuse.same_length(table.columns, file)
+    refuse.same_length(table.columns, file)
+    table = _without_holes(table, mapping, file)
     result = Converted({}, list(table.notes), simulated=table.simulated)
-    keep = np.ones(rows, dtype=bool)
+    keep = np.ones(refuse.same_length(table.columns, file), dtype=bool)
     if clock := mapping.channels.get("t"):
         keep = _time(result, table, clock, file, mapping.csv.decimal)
     skip = np.diff(result.channels["t"].values) > timing.GAP * result.time["period_median"] if clock else None
@@ -68,6 +68,26 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
     if result.utc is None and table.started is not None and table.started.tzinfo is not None:
         result.utc = table.started + timedelta(seconds=result.time.get("first", 0.0))
     return result
+
+
+def _without_holes(table: Table, mapping: Mapping, file: str) -> Table:
+    """The rows in which every channel that says so has a value, and a note of the others."""
+    notes = list(table.notes)
+    keep = np.ones(refuse.same_length(table.columns, file), dtype=bool)
+    for name, channel in mapping.channels.items():
+        raws = [table.columns[term.column] for term in channel.terms] if channel.drop_holes else []
+        hole = np.zeros(keep.size, dtype=bool)
+        for raw in raws:
+            hole |= np.isnat(raw) if raw.dtype.kind == "M" else ~np.isfinite(raw) if raw.dtype.kind == "f" else False
+        if count := int(np.count_nonzero(hole)):
+            row = int(hole.argmax()) + 1
+            notes.append(
+                f"{count} of {hole.size} rows left out: {name} has no value there, first in row {row} of the file"
+            )
+        keep &= ~hole
+    if keep.all():
+        return table
+    return table._replace(columns={n: c[keep] for n, c in table.columns.items()}, notes=tuple(notes))
 
 
 def with_file_units(mapping: Mapping, stated: dict[str, str], file: str) -> Mapping:

@@ -14,6 +14,7 @@
 | … sign, scale, zero, offset | value = sign·scale·(column − zero) + offset, in `unit` |
 | … counts_per_turn, modulus or bits | angles: counts of a turn; where a counter starts again |
 | [channels.t] column, unit, scale, duplicates | no sign and offset: t starts at 0; duplicates "refuse" or "drop" |
+| [channels.t, theta_m, theta_l] holes | rows without a value there: "refuse" or "drop" |
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.core.errors import UsageError
 from rig.core.units import TURN
-from rig.runfile.importing.channel import ChannelMap
+from rig.runfile.importing.channel import NEEDED, ChannelMap
 from rig.runfile.importing.units import UNITS, known
 from rig.runfile.importing.unwrap import wrapped_at
 
@@ -86,8 +86,12 @@ def holes(values: Array, bad: Array, name: str, column: str, file: str) -> None:
     mixed = "" if np.isinf(values[bad]).all() or not np.isinf(values[bad]).any() else " or infinite"
     raise UsageError(
         f"{file}: {int(bad.sum())} of {len(bad)} values of {name} (column '{column}') are {what}{mixed}, "
-        f"first in row {row + 1}; expected a number in every row"
+        f"first in row {row + 1}; expected a number in every row{_advised(name)}"
     )
+
+
+def _advised(name: str) -> str:
+    return f', or set channels.{name}.holes = "drop" to leave such rows out' if name in NEEDED else ""
 
 
 def whole_counts(raw: Array, column: str, name: str, file: str) -> Array:

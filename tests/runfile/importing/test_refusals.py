@@ -55,6 +55,12 @@ def test_a_hole_in_a_needed_channel(foreign: Foreign, column: str, channel: str,
     data[column][[6, 7, 30]] = hole
     said = foreign.refused(foreign.file(data, "run.parquet"))
     assert said.startswith(f"run.parquet: 3 of 400 values of {channel} (column '{column}') are {word}, first in row 7")
+    assert f'or set channels.{channel}.holes = "drop"' in said
+    keys = MAPPING.replace(f"[channels.{channel}]", f'[channels.{channel}]\nholes = "drop"')
+    run = foreign.imported(foreign.file(data, "run.parquet"), keys)
+    note = f"3 of 400 rows left out: {channel} has no value there, first in row 7 of the file"
+    assert note in run.manifest["notes"]
+    assert np.allclose(run.need("theta_l"), np.delete(truth()["theta_l"], [6, 7, 30]), rtol=0, atol=1e-12)
 
 
 def test_infinity_is_not_a_measurement_even_in_an_optional_channel(foreign: Foreign) -> None:
