@@ -10,6 +10,7 @@ from rig.analysis.findings.result import Check, Estimate
 from rig.analysis.kinematic_error import words
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.kinematic_error.ratio import disagreement, doubt, turns_per_turn
+from rig.analysis.kinematic_error.slips import slipped
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.degrees import turning_of
 from rig.analysis.motion.source import Motion, Source
@@ -119,6 +120,9 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     found.sentence = headline(found, ke, slow)
     if short := words.cut_short(found, ke):
         found.inconclusive, found.sentence = short, f"{short} {found.sentence}"
+    if slip := slipped(motion, main, ke.strokes):
+        found.checks.append(Check("slips", False, slip))
+        found.inconclusive, found.sentence = slip, f"{slip} {found.sentence}"
     add_skew_error(found, run, ke.speed_rpm)
     if slow and not np.isfinite(ke.profile.peak_to_peak()[1][0]):
         found.inconclusive = "Too few revolutions for an interval."

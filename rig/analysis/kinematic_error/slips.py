@@ -1,0 +1,119 @@
+"""Steps of θ̃ that stay: counts an encoder lost, or a hub or coupling that slipped. No gear does that.
+
+Every revolution is held against the mean of those of its direction: what comes again every turn drops out, and a step
+is where the mean of the next sixteenth of a turn differs from that of the last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.findings.result import Array
+from rig.analysis.motion.source import Motion
+from rig.analysis.motion.strokes import Stroke
+from rig.analysis.orders.revolutions import GRID, StrokeResult
+from rig.core.units import TURN
+
+WINDOW: Final = GRID // 16  # points of either side
+LASTING: Final = 6 * WINDOW  # points of either side that must be apart as well, where there are so many
+FAR: Final = 10.0  # σ of what neighbouring windows differ by: wander of a load and of friction included
+LEAST: Final = 3.0  # arcsec: less is no slip that anybody looks for in one run
+BESIDE: Final = 0.2  # of the largest: what the trend and the mean turn make of it is less
+STAYS: Final = 0.5  # of the step, which the longer stretches must be apart by: the trend that was taken off leans on it
+TOLD: Final = 3  # slips told one by one
+SIGMA: Final = 1.4826  # of normal noise, over its median size
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A step of `size` arcsec ± `half` at the row `row` of the motion."""
+
+    row: int
+    size: float
+    half: float
+
+    def words(self, motion: Motion) -> str:
+        """ "by 40.2 ± 1.1 arcsec at t = 33.30 s"."""
+        at = f"row {self.row}" if motion.t is None else f"t = {motion.t[self.row]:.2f} s"
+        return f"by {self.size:.1f} ± {self.half:.1f} arcsec at {at}".replace("-", "−")
+
+
+def slipped(motion: Motion, strokes: Sequence[Stroke], results: Sequence[StrokeResult]) -> str:
+    """Where θ̃ steps and stays, "" where it does not: the zero of an angle is another one from there on, so no limit is
+    met or missed."""
+    slips = find_slips(motion, strokes, results)
+    if not slips:
+        return ""
+    told = " and ".join(slip.words(motion) for slip in slips[:TOLD])
+    more = f" and {len(slips) - TOLD} more times" if len(slips) > TOLD else ""
+    return f"θ̃ steps {told}{more} and stays there: an encoder lost counts, or a hub or coupling slipped."
+
+
+def find_slips(motion: Motion, strokes: Sequence[Stroke], results: Sequence[StrokeResult]) -> list[Slip]:
+    """Steps within strokes, in order of time; none where a direction has a single revolution."""
+    rests = [_rest(float(motion.theta_m[s.edges[0]]), r, results) for s, r in zip(strokes, results, strict=True)]
+    apart = [None if rest is None else _apart(rest, WINDOW) for rest in rests]
+    known = [a for a in apart if a is not None and a.size]
+    if not known:
+        return []
+    sigma = SIGMA * float(np.median(np.abs(np.concatenate(known))))
+    least = max(FAR * sigma, LEAST, BESIDE * max(float(np.abs(a).max()) for a in known))
+    found = []
+    for stroke, rest, a in zip(strokes, rests, apart, strict=True):
+        if rest is not None and a is not None:
+            found += [Slip(_row(stroke, at), size, 2 * sigma) for at, size in _steps(rest, a, least)]
+    return sorted(found, key=lambda slip: slip.row)
+
+
+def _rest(start: float, result: StrokeResult, all_of_them: Sequence[StrokeResult]) -> Array | None:
+    """θ̃ along the stroke less what comes again every turn, (R·GRID,) arcsec, as it was gone through from `start` rad of
+    the motor on."""
+    same = np.concatenate([r.curves for r in all_of_them if r.direction == result.direction])
+    if len(same) < 2:
+        return None
+    first = int(start / TURN % 1.0 * GRID)
+    rest = np.roll(result.curves - np.mean(same, axis=0), -first, axis=1)
+    rest *= len(same) / (len(same) - 1)  # a step is in the mean as well
+    return np.asarray((rest if result.direction > 0 else np.roll(rest, -1, axis=1)[:, ::-1]).ravel())
+
+
+def _apart(rest: Array, window: int) -> Array:
+    """By how much the `window` points after each place differ in the mean from those before, (n − 2·window + 1,)."""
+    if rest.size < 2 * window:
+        return np.empty(0)
+    total = np.concatenate([[0.0], np.cumsum(rest)])
+    mean = (total[window:] - total[:-window]) / window
+    return np.asarray(mean[window:] - mean[:-window])
+
+
+def _steps(rest: Array, apart: Array, least: float) -> list[tuple[int, float]]:
+    """Places in `rest` and sizes of its steps, largest first, each well away from the others."""
+    left, found = np.abs(apart), []
+    while left.size and left.max() > least:
+        at = int(np.argmax(left))
+        left[max(at - 2 * WINDOW, 0) : at + 2 * WINDOW] = 0.0
+        size, place = float(apart[at]), at + WINDOW
+        before, after = rest[max(place - LASTING, 0) : place], rest[place : place + LASTING]
+        if float(np.median(after) - np.median(before)) / size > STAYS:
+            found.append((place, _sized(before, after)))
+    return found
+
+
+def _sized(before: Array, after: Array) -> float:
+    """The step between two stretches that lie on one slope otherwise."""
+    x = np.arange(before.size + after.size) / LASTING
+    columns = np.stack([np.ones(x.size), x, x >= before.size / LASTING], 1)
+    return float(np.linalg.lstsq(columns, np.concatenate([before, after]), rcond=None)[0][2])
+
+
+def _row(stroke: Stroke, place: int) -> int:
+    """The row of a place along a stroke's revolutions."""
+    turn, rest = divmod(place, GRID)
+    if turn >= stroke.revolutions:
+        return int(stroke.edges[-1])
+    first, last = int(stroke.edges[turn]), int(stroke.edges[turn + 1])
+    return first + (last - first) * rest // GRID

@@ -1,0 +1,49 @@
+"""A step of θ̃ that stays is told with its size and instant; what comes and goes, wanders or repeats is none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rig.analysis import Verdict, analyse
+from rig.core.units import ARCSEC
+from tests.analysis.synthetic import MadeRun, slow_run
+
+
+def made(shift: np.ndarray | float = 0.0) -> MadeRun:
+    """A slow run of two cycles whose load angle is `shift` arcsec off."""
+    run = slow_run(1)
+    names = [n for n in ("t", "theta_m", "theta_l", "theta_ref", "tau_m", "tau_l", "flags") if run.has(n)]
+    columns = {n: np.array(run.column(n)) for n in names}
+    columns["theta_l"] += shift * ARCSEC
+    return MadeRun(columns, dict(run.manifest) | {"limits": {"kinematic_error_peak_to_peak": 1e4}})
+
+
+def clock() -> np.ndarray:
+    t = slow_run(1).column("t")
+    assert t is not None
+    return np.asarray(t)
+
+
+@pytest.mark.parametrize(("at", "size"), [(33.3, 40.0), (61.0, -12.0), (40.0, 400.0)])
+def test_lost_counts_are_told_and_settle_no_limit(at: float, size: float) -> None:
+    found = analyse(made(np.where(clock() > at, -size, 0.0)))
+    (check,) = [c for c in found.checks if c.name == "slips"]
+    words = check.sentence.replace("−", "-").split()
+    assert float(words[3]) == pytest.approx(size, rel=0.05, abs=1.5)
+    assert float(words[words.index("=") + 1]) == pytest.approx(at, abs=0.3)
+    assert found.verdict is Verdict.INCONCLUSIVE
+    assert "θ̃ steps by" in found.sentence
+
+
+@pytest.mark.parametrize(
+    "shift",
+    [
+        0.0,
+        40.0 * np.exp(-(((clock() - 33.3) / 0.3) ** 2)),  # comes and goes
+        40.0 * clock() / 100.0,  # drifts
+        20.0 * np.sin(clock() / 3.0),  # wanders
+    ],
+)
+def test_what_comes_and_goes_drifts_or_wanders_is_no_slip(shift: np.ndarray | float) -> None:
+    assert not [c for c in analyse(made(shift)).checks if c.name == "slips"]
