@@ -23,6 +23,7 @@ from rig.analysis.tracing.outcome.mean_drift import mean_drifts
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.outcome.unlike import unlike_declared
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
@@ -88,6 +89,7 @@ def report(
         after=with_free(errors(p.eq, p.held_out, final), simulated, 1),
         next_run=conclusion.next_run,
         notes=(
+            *unlike_declared(refitted, fitted_runs),
             *beside_the_numbers(named),
             *(p.own.notes[name] for name in named if name in p.own.notes),
             *([one_way] if one_way else []),
