@@ -77,3 +77,9 @@ def test_a_motor_that_sticks_and_slips_is_read_anew() -> None:
     stuck = 0.05 * np.floor(T / 0.1)  # 0.05 rad ten times a second
     assert repeated(stuck, stuck / 50.0, FAR).rows.size == 0
     assert repeated(stuck / 50.0, stuck, FAR).rows.size == 0
+
+
+def test_a_motor_that_sticks_beside_a_locked_output_is_read_anew() -> None:
+    stuck = 0.05 * np.floor(T / 0.1)
+    held = 1.5e-6 * np.random.default_rng(4).standard_normal(T.size)
+    assert all(repeated(stuck, held * scale, FAR / 50).rows.size == 0 for scale in (1.0, -1.0))

@@ -67,7 +67,7 @@ def repeated(x: Array, other: Array | None, far: float) -> Repeated:
     if other is None:
         return Repeated(NONE, 0, 0, x.size)
     stood, first, last = _stood(x, other, far, starts)
-    return Repeated(np.union1d(stood, _often(x, other, starts.size)), first, last, x.size)
+    return Repeated(np.union1d(stood, _often(x, other, far, starts.size)), first, last, x.size)
 
 
 def _starts(x: Array) -> Index:
@@ -92,7 +92,7 @@ def _stood(x: Array, other: Array, far: float, starts: Index) -> tuple[Index, in
     return rows, int(starts[most]), int(ends[most])
 
 
-def _often(x: Array, other: Array, changes: int) -> Index:
+def _often(x: Array, other: Array, far: float, changes: int) -> Index:
     """Repeats among rows that move by several steps from one new reading to the next, where they are no chance and the
     other side goes on in them as it does in the rest."""
     count = smallest_step(x[:ROWS])
@@ -112,8 +112,8 @@ def _often(x: Array, other: Array, changes: int) -> Index:
         near += int(np.count_nonzero(fast & (step > 0) & (step < 1.5 * count)))
         went += np.nansum(along[again]), np.nansum(along[fast])
     rows = np.concatenate(found)
-    if rows.size <= max(FEWEST, RARE * moving, OFTEN * near):
-        return NONE
+    if rows.size <= max(FEWEST, RARE * moving, OFTEN * near) or went[1] < far:
+        return NONE  # beside a held output, whose noise goes nowhere, a motor sticks
     return rows if went[0] / rows.size > GOES_ON * went[1] / moving else NONE
 
 
