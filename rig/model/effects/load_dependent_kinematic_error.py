@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar, Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from rig.model.waves import powers
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
 EACH = 2.0  # added to it where the large orders shrink each by its own share
+UNTOLD = 1e-3  # of a lag, half its interval: nothing that is told is told so well
 NONE = 1e-12  # rad: a wave so small is none
 ORDERS = (1, 2, 4)  # the large ones of a strain-wave gear, two lobes and what they lack; the others go together
 
@@ -82,8 +84,13 @@ class LoadDependentKinematicError(Effect):
             _left(fit, "A_inf", shares[largest]),
             *each,
             parameter("T_c", fit.shape[1], fit.half_width(unit[k + 1]), "N·m"),
-            parameter("lag", fit.shape[2], fit.half_width(unit[k + 2]), "s"),
+            self._lag(fit.shape[2], fit.half_width(unit[k + 2])),
         )
+
+    def _lag(self, lag: float, half: float) -> Parameter:
+        """One too short for the rows to tell may be any from none to the shortest they do tell."""
+        told = parameter("lag", lag, half, "s")
+        return told if half > UNTOLD * lag else replace(told, ci95=(0.0, max(lag, self.LAG)))
 
     def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
         """What goes away under load: the baseline's series has what stays."""

@@ -473,3 +473,14 @@ def test_crosstalk_that_is_felt_twice_a_turn_alone_is_not_nothing(twice: float, 
     effect = TorqueSensorCrosstalk()
     fit = Fit(np.array([0.0, 0.001, twice, 0.0]), (1.0, 2.0), 1e-4 * np.eye(6), KNOWN, 50.0)
     assert effect.may_be_nothing(effect.parameters(fit)) is nothing
+
+
+def test_a_lag_too_short_for_the_rows_may_be_none() -> None:
+    effect = LoadDependentKinematicError()
+    for sure, least in ((0.0, 0.0), (1e-5, 1.8e-4 - 1.97e-5)):
+        spread = np.zeros((5, 5))
+        spread[3, 3] = sure**2
+        fit = Fit(np.array([0.5]), (0.0, 3.0, 1.8e-4, 1.0), spread, KNOWN, 50.0)
+        (lag,) = (p for p in effect.parameters(fit) if p.name == "lag")
+        assert lag.ci95[0] == pytest.approx(least, abs=1e-6)
+        assert lag.ci95[1] > lag.value
