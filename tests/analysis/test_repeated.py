@@ -83,3 +83,8 @@ def test_a_motor_that_sticks_beside_a_locked_output_is_read_anew() -> None:
     stuck = 0.05 * np.floor(T / 0.1)
     held = 1.5e-6 * np.random.default_rng(4).standard_normal(T.size)
     assert all(repeated(stuck, held * scale, FAR / 50).rows.size == 0 for scale in (1.0, -1.0))
+
+
+def test_a_wrapped_motor_that_rests_where_it_wraps_has_not_turned() -> None:
+    noise = 1e-4 * np.random.default_rng(5).standard_normal(T.size)
+    assert repeated(np.full(T.size, 0.3), np.mod(noise, TURN), FAR).rows.size == 0

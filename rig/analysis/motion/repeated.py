@@ -44,17 +44,16 @@ class Repeated:
 
     def words(self, name: str, t: Array | None) -> str:
         """One note for people; `t` s, (n,), or None."""
-        timed = t is not None and self.first < self.last and np.isfinite(t[[self.first, self.last]]).all()
         if self.first == self.last:
             what = f"{self.rows.size} of {self.of} readings of {name} repeat the one before though the shaft turned"
-        elif timed and t is not None:
-            lasted, many = t[self.last] - t[self.first], self.rows.size
-            when = f"stood for {lasted:.3g} s at t = {t[self.first]:.3f} s"
-            what = f"{name} {when} though the shaft turned ({many} rows in all)"
         else:
-            when = f"stood from row {self.first} to {self.last}"
-            what = f"{name} {when} though the shaft turned ({self.rows.size} rows in all)"
+            what = f"{name} stood {self._when(t)} though the shaft turned ({self.rows.size} rows in all)"
         return f"{what}: taken as missing."
+
+    def _when(self, t: Array | None) -> str:
+        if t is None or not np.isfinite(t[[self.first, self.last]]).all():
+            return f"from row {self.first} to {self.last}"
+        return f"for {t[self.last] - t[self.first]:.3g} s at t = {t[self.first]:.3f} s"
 
 
 def repeated(x: Array, other: Array | None, far: float) -> Repeated:
@@ -83,8 +82,10 @@ def _stood(x: Array, other: Array, far: float, starts: Index) -> tuple[Index, in
     """Rows in which `x` stood though the other side turned; the first and last row where it stood longest."""
     ends = np.append(starts[1:], x.size) - 1
     long = np.flatnonzero(ends > starts)
-    went = np.abs(other[ends[long]] - other[starts[long]])
-    long = long[went > far]
+    went = other[ends[long]] - other[starts[long]]
+    if np.nanmax(other) - np.nanmin(other) <= TURN:  # it may be wrapped, and rest where it goes from a turn to none
+        went = (went + TURN / 2) % TURN - TURN / 2
+    long = long[np.abs(went) > far]
     if not long.size:
         return NONE, 0, 0
     most = long[int(np.argmax(ends[long] - starts[long]))]
