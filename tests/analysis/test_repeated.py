@@ -87,4 +87,5 @@ def test_a_motor_that_sticks_beside_a_locked_output_is_read_anew() -> None:
 
 def test_a_wrapped_motor_that_rests_where_it_wraps_has_not_turned() -> None:
     noise = 1e-4 * np.random.default_rng(5).standard_normal(T.size)
+    noise[0], noise[-1] = -1e-4, 1e-4
     assert repeated(np.full(T.size, 0.3), np.mod(noise, TURN), FAR).rows.size == 0
