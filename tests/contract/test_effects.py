@@ -12,7 +12,7 @@ from rig.analysis.tracing.fit.equations import Term, acting
 from rig.analysis.tracing.floor.steps import Steps
 from rig.analysis.tracing.floor.vibration import Line, Vibration
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
-from rig.model.effect import Effect, Fit, Known, Port, Reach, Signals
+from rig.model.effect import MEASURED, Effect, Fit, Known, Port, Reach, Signals
 from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY, missed_counts
 from rig.model.fourier import FourierSeries
 from rig.model.gloss import gloss
@@ -23,7 +23,7 @@ N, DT = 50.0, 0.001
 KNOWN = Known(7000.0, 5.0, 1.5e-3, 0.8, FourierSeries((1e-5, 2e-4, 0.0), (0.0, 1e-4, 1e-5)))
 REACH = Reach(
     ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, band=72.0, load_turns=1.0,
-    counts_m=65536, counts_l=1_296_000,
+    counts_m=65536, counts_l=1_296_000, has=MEASURED | {"temperature"},
 )  # fmt: skip
 WITHIN = dataclasses.replace(REACH, duration=3.0)  # instants that fall into `motion`
 FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}
@@ -44,7 +44,7 @@ def motion(sign: float = 1.0, n: int = 4000) -> Signals:
         t=t, dt=DT, ratio=N, theta_m=theta, theta_l=theta / N, omega_m=omega, alpha_m=alpha, omega_l=omega / N,
         alpha_l=alpha / N, jerk_l=np.gradient(alpha, DT) / N, torque=torque, torque_rate=np.gradient(torque, DT),
         tau_m=0.3 * np.sign(omega) + torque / N, tau_l=torque, tau_ext=nothing,
-        way=np.sign(omega), temperature=nothing * np.nan, gear=KNOWN,
+        way=np.sign(omega), temperature=25.0 + 4.0 * np.sin(0.7 * t), gear=KNOWN,
     )  # fmt: skip
 
 

@@ -9,15 +9,18 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-CLOCK, HEAT, SOAK = 0.0, 1.0, 2.0  # of the law: by the time of day, by heat of its own, by heat that soaks in
+# of the law: by the time of day, by heat of its own, by heat that soaks in, by a temperature that was logged
+CLOCK, HEAT, SOAK, LOGGED = 0.0, 1.0, 2.0, 3.0
 
 
 class ThermalFrictionDrift(Effect):
-    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in one of three laws:
+    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in one of four laws:
 
     0: c = exp(−t/t_w), t since the campaign began      [wolf2018]
     1: c = exp(−β·H(t)), H the heat of its own friction, which leaks with t_w: fast runs warm it, pauses cool it
     2: c = exp(−√(t/t_w)), heat that soaks into a thick body: fast at first, for long after
+    3: c = −s·(1 − exp(−(Θ − 20 °C)/s)), Θ a logged temperature: what the friction loses per kelvin at 20 °C, less and
+       less as it gets warm, by e over s; s takes the place of t_w
 
     What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on.
     """
@@ -29,6 +32,8 @@ class ThermalFrictionDrift(Effect):
         "B_cold": "B_1, viscous friction of the cold drive that warming takes away",
         "t_w": "time constant of the warm-up, or of the heat that leaks",
         "beta": "β, by how much a joule of frictional heat takes it away",
+        "tau_per_K": "constant friction that a kelvin takes away, at 20 °C",
+        "B_per_K": "viscous friction that a kelvin takes away, at 20 °C",
     }
     source: ClassVar[str] = "wolf2018"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
@@ -37,23 +42,34 @@ class ThermalFrictionDrift(Effect):
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
     LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
     AT: Final = 10.0  # rad/s
+    SCALE: Final = 40.0  # K over which an oil's viscosity falls by e at room temperature
+    SCALES: Final = (12.0, 400.0)  # K
+    REFERENCE: Final = 20.0  # °C
     BETA: Final = 1e-3  # 1/J: 0.03/K of a lubricant in a gear box of 30 J/K
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Time constants the campaign is long enough for."""
         clocks = [(t, CLOCK, self.BETA) for t in self.TIMES if t < 2 * reach.duration]
         soaks = [(t, SOAK, self.BETA) for t in self.LEAKS if t < 2 * reach.duration]
-        return (*clocks, *soaks, *((t, HEAT, self.BETA) for t in self.LEAKS if t < 2 * reach.duration))
+        heats = [(t, HEAT, self.BETA) for t in self.LEAKS if t < 2 * reach.duration]
+        logged = [(self.SCALE, LOGGED, self.BETA)] if "temperature" in reach.has else []
+        return (*clocks, *soaks, *heats, *logged)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """The law is chosen; β from a big cold gear box to a small one that gets hot."""
-        return (self.TIMES[0] / 3, self.TIMES[-1] * 3), (CLOCK, SOAK), (self.BETA / 50, self.BETA * 20)
+        times = (self.TIMES[0] / 3, self.TIMES[-1] * 3)
+        return (min(*self.SCALES, *times), max(times)), (CLOCK, LOGGED), (self.BETA / 50, self.BETA * 20)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Constant and viscous part."""
         t_w, law, beta = shape
         if law == HEAT:
             cold = np.exp(-beta * signals.heat(t_w))
+        elif law == LOGGED:
+            scale = float(np.clip(t_w, *self.SCALES))
+            cold = -scale * -np.expm1(
+                -(np.nan_to_num(signals.temperature, nan=self.REFERENCE) - self.REFERENCE) / scale
+            )
         else:
             cold = np.exp(-((np.maximum(signals.t, 0.0) / t_w) ** (0.5 if law == SOAK else 1.0)))
         return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
@@ -70,6 +86,11 @@ class ThermalFrictionDrift(Effect):
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, and its time constant."""
         constant, viscous, time, _, per_joule = np.eye(5)
+        if fit.shape[1] == LOGGED:
+            return (
+                parameter("tau_per_K", fit.coefficients[0], fit.half_width(constant), "N·m/K"),
+                parameter("B_per_K", fit.coefficients[1], fit.half_width(viscous), "N·m·s/(rad·K)"),
+            )
         cold = (
             parameter("tau_cold", fit.coefficients[0], fit.half_width(constant), "N·m"),
             parameter("B_cold", fit.coefficients[1], fit.half_width(viscous), "N·m·s/rad"),

@@ -29,7 +29,7 @@ from rig.model.effects.presliding_friction import PreslidingFriction
 from rig.model.effects.quadratic_drag import QuadraticDrag
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.support_compliance import ON_GROUND, ON_HOUSING, SupportCompliance
-from rig.model.effects.thermal_friction_drift import CLOCK, HEAT, SOAK, ThermalFrictionDrift
+from rig.model.effects.thermal_friction_drift import CLOCK, HEAT, LOGGED, SOAK, ThermalFrictionDrift
 from rig.model.effects.tooth_mesh_error import ToothMeshError
 from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
@@ -484,3 +484,25 @@ def test_a_lag_too_short_for_the_rows_may_be_none() -> None:
         (lag,) = (p for p in effect.parameters(fit) if p.name == "lag")
         assert lag.ci95[0] == pytest.approx(least, abs=1e-6)
         assert lag.ci95[1] > lag.value
+
+
+def test_friction_that_goes_with_a_logged_temperature_falls_by_e_over_its_scale() -> None:
+    s = motion()
+    scale, law = 40.0, ThermalFrictionDrift()
+    (column,) = law.columns(s, (scale, LOGGED, law.BETA)).values()
+    slope = np.gradient(column[:, 0] * s.way, s.temperature)[10:-10]
+    at = s.temperature[10:-10]
+    turning = np.abs(np.gradient(s.temperature))[10:-10] > 1e-4
+    assert slope[turning] == pytest.approx(-np.exp(-(at[turning] - 20.0) / scale), rel=1e-3)
+    unknown = dataclasses.replace(s, temperature=s.temperature * np.nan)
+    (nothing,) = law.columns(unknown, (scale, LOGGED, law.BETA)).values()
+    assert not nothing.any()
+
+
+def test_only_a_campaign_with_a_temperature_is_asked_for_one() -> None:
+    law = ThermalFrictionDrift()
+    asked = {has: any(shape[1] == LOGGED for shape in law.shapes(dataclasses.replace(REACH, has=has))) for has in HAS}
+    assert list(asked.values()) == [True, False]
+
+
+HAS = (frozenset({"t", "theta_m", "temperature"}), frozenset({"t", "theta_m"}))

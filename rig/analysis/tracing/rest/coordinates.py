@@ -112,9 +112,11 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
         lambda r: both(turned(r.at["motor_angle"], BINS), INDICES["time"](r)),
         lambda r: both(_levels(r.at["load"]), INDICES["time"](r)),
         lambda r: both(_levels(np.abs(r.at["speed"])), INDICES["time"](r)),
+        lambda r: both(INDICES["direction"](r), INDICES["time"](r)),
     ),
     "temperature": (
         lambda r: both(_levels(r.at["load"]), INDICES["temperature"](r)),
+        lambda r: both(INDICES["direction"](r), INDICES["temperature"](r)),
         lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
         lambda r: both(turned(r.at["load_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
     ),
