@@ -14,7 +14,7 @@ from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.past import since_turned
 from rig.analysis.tracing.rest.shares import rising
 from rig.analysis.tracing.rest.sudden import turned_since
-from rig.analysis.tracing.rest.unknown import homes
+from rig.analysis.tracing.rest.unknown import _of_the_output, homes
 from rig.model.memory import play
 
 DT = 1 / 125
@@ -332,3 +332,17 @@ def test_where_no_run_could_be_fitted_none_has_a_zero() -> None:
 def test_a_torque_rises_nowhere_in_a_log_too_short_to_say() -> None:
     assert rising(np.arange(30.0)).tolist() == [0.0] * 30
     assert (rising(np.arange(200.0))[60:140] > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("channel", "sensed", "expected"),
+    [("A", True, "load_angle"), ("M", False, "load_angle"), ("M", True, "motor_angle")],
+)
+def test_what_a_torque_sensor_before_the_output_does_not_see_is_the_motors(
+    channel: str, sensed: bool, expected: str
+) -> None:
+    motor = np.linspace(0.0, 900.0, 4000)
+    at = {"motor_angle": motor, "load_angle": motor / 50.0}
+    r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)), sensed=sensed)
+    found = _of_the_output(Home("motor_angle", channel, 1.0, order=0.4), r)
+    assert found.coordinate == expected

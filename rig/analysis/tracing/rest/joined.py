@@ -39,7 +39,8 @@ class Rest:
     every run has a zero of its own, as angles and a torque sensor do. `timed`: whether seconds are known. `every`: one
     of how many rows each is. `worth` (n,) is how many floors that is in each row what is one
     of them in most: what has one size in all runs is a small part of the floor of a lock test. `offset` (n,) is the
-    share of its run's mean that was taken off as the run's own."""
+    share of its run's mean that was taken off as the run's own. `sensed`: whether a torque sensor stands between gear
+    and load, which sees what acts on the output."""
 
     e: Array
     run: Array
@@ -52,6 +53,7 @@ class Rest:
     every: int = 1
     worth: Array = field(default_factory=lambda: np.ones(1))
     offset: Array = field(default_factory=lambda: np.zeros(1))
+    sensed: bool = True
 
     @cached_property
     def whole(self) -> Whole:
@@ -108,7 +110,8 @@ def rest(
     worth = np.concatenate([np.full(e[k].size, usual / floors[k]) for k in keys])
     offset = np.concatenate([np.full(e[k].size, eq.share_of_mean(k, e[k].size)) for k in keys])
     between = smooth.dt * smooth.step
-    return Rest(left, run, at, between, z, known, channel != "M", eq.timed, worth=worth, offset=offset)
+    sensed = all("tau_l" in eq.runs[i].has for i, _ in keys)
+    return Rest(left, run, at, between, z, known, channel != "M", eq.timed, worth=worth, offset=offset, sensed=sensed)
 
 
 def loudness(e: Mapping[Key, Array], floors: Mapping[Key, float]) -> dict[str, float]:

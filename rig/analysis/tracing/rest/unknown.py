@@ -118,7 +118,10 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
 
 def _of_the_output(found: Home, r: Rest) -> Home:
     """An order of the motor that is none of its own, but a whole one of the output's turn, and no lobe of the wave
-    generator seen from the flexspline: the teeth of something on the output."""
+    generator seen from the flexspline: the teeth of something on the output. What a torque sensor before the output
+    does not see is on the motor: a belt goes round less than once a turn."""
+    if found.channel == "M" and r.sensed:
+        return found
     load, motor = r.at["load_angle"], r.at["motor_angle"]
     known = np.isfinite(load) & np.isfinite(motor)
     if found.coordinate != "motor_angle" or not found.order or not known.any() or np.ptp(load[known]) == 0:
