@@ -10,7 +10,9 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.verdict import _confounded as confounded
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import _share as share
 from rig.analysis.tracing.selection.verdict import _share_of_all as share_of_all
@@ -80,3 +82,10 @@ def test_what_explains_one_channel_beside_far_more_in_others_takes_little_of_all
     assert share(1.2, 1.0) > 0.9
     assert share_of_all(p, before, one) == pytest.approx(0.44 / (0.44 + 0.5876 + 1.56))
     assert share_of_all(p, before, dict.fromkeys(keys, 1.0)) == pytest.approx(1.0)
+
+
+def test_a_torque_in_one_way_only_is_no_weight_beside_a_friction() -> None:
+    named = confounded(CONFOUNDERS["sector_drag"], ("cogging_torque", "gravity_unbalance"))
+    assert named.verdict.effects == ("cogging_torque",)
+    other = confounded(CONFOUNDERS["oval_pulley"], ("gravity_unbalance",))
+    assert other.verdict.effects == ("gravity_unbalance",)

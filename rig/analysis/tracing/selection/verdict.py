@@ -26,6 +26,9 @@ from rig.model.effect import Array
 from rig.model.effects import LIBRARY
 
 SAME_ORDER: Final = 0.05  # of a turn
+# a torque along the output's turn in one way only, as of a cable that tightens, is half of it a weight and half of it
+# friction along that turn
+ONE_WAY: Final[Mapping[str, frozenset[str]]] = {"sector_drag": frozenset({"gravity_unbalance"})}
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
@@ -101,7 +104,9 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
 
 
 def _confounded(confounder: Confounder, names: tuple[str, ...]) -> Conclusion:
-    """A law that is no effect of the library is in the model, which has it by then: no other term is added."""
+    """A law that is no effect of the library is in the model, which has it by then: no other term is added. A name that
+    is half of what the law is the other half of does not stand beside it."""
+    names = tuple(name for name in names if name not in ONE_WAY.get(confounder.effect.name, ()))
     verdict = Verdict(Status.UNKNOWN, names, (), confounder.coordinate, None, None, confounder.sentence)
     return Conclusion(verdict, None, (confounder.coordinate,), along(confounder.coordinate))
 
