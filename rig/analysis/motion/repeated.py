@@ -22,6 +22,7 @@ from rig.core.units import TURN
 Index = npt.NDArray[np.int64]
 
 FAR: Final = TURN / 6  # rad of the motor: no gear winds up so far, 150 N·m on the paper's
+DEAD: Final = 0.5  # of the rows: an angle that stood for most of a run is refused by what it says of the gear's ratio
 COUNTS: Final = 3.0  # smallest steps from one new reading to the next: a coarse encoder goes by one or two
 OFTEN: Final = 2.0  # times as many repeats as readings a count up or down: of noise there are half as many
 GOES_ON: Final = 0.5  # of its way in a usual row: where it rests, the shaft does
@@ -62,9 +63,9 @@ def repeated(x: Array, other: Array | None, far: float) -> Repeated:
     Where `other`, (n,) rad, the angle of the gear's other side, goes on by more than `far` meanwhile, however few rows
     that are; and everywhere where repeats come too often for a coarse reading. Without that angle nothing tells.
     """
-    starts = _starts(x)
-    if other is None:
+    if other is None or not np.isfinite(other).any():
         return Repeated(NONE, 0, 0, x.size)
+    starts = _starts(x)
     stood, first, last = _stood(x, other, far, starts)
     return Repeated(np.union1d(stood, _often(x, other, far, starts.size)), first, last, x.size)
 
@@ -90,6 +91,8 @@ def _stood(x: Array, other: Array, far: float, starts: Index) -> tuple[Index, in
         return NONE, 0, 0
     most = long[int(np.argmax(ends[long] - starts[long]))]
     rows = np.concatenate([np.arange(starts[i] + 1, ends[i] + 1) for i in long])
+    if rows.size > DEAD * x.size:
+        return NONE, 0, 0
     return rows, int(starts[most]), int(ends[most])
 
 
