@@ -63,37 +63,50 @@ def repeated(x: Array, other: Array | None, far: float) -> Repeated:
     Where `other`, (n,) rad, the angle of the gear's other side, goes on by more than `far` meanwhile, however few rows
     that are; and everywhere where repeats come too often for a coarse reading. Without that angle nothing tells.
     """
-    if other is None or not np.isfinite(other).any():
+    if other is None or not any(np.isfinite(other[some]).any() for some in stretches(x.size)):
         return Repeated(NONE, 0, 0, x.size)
-    starts = _starts(x)
-    stood, first, last = _stood(x, other, far, starts)
-    return Repeated(np.union1d(stood, _often(x, other, far, starts.size)), first, last, x.size)
+    held, changes = _held(x, other, far)
+    stood, first, last = _stood(held, x.size)
+    return Repeated(np.union1d(stood, _often(x, other, far, changes)), first, last, x.size)
 
 
-def _starts(x: Array) -> Index:
-    """Rows with another value than the one before, the first among them."""
-    changed = [
-        some.start + np.flatnonzero(np.diff(x[some], prepend=x[some.start - 1] if some.start else np.nan) != 0)
-        for some in stretches(x.size)
-    ]
-    return np.concatenate([NONE, *changed])
+def _held(x: Array, other: Array, far: float) -> tuple[list[tuple[int, int]], int]:
+    """First and last row of each stay of `x` through which the other side turned, and how often `x` changed. Gone
+    through in stretches: a run of ten hours has as many changes as rows."""
+    # it may be wrapped, and rest where it goes from a turn to none
+    wrapped = float(np.nanmax(other) - np.nanmin(other)) <= TURN
+    found: list[tuple[int, int]] = []
+    changes, since = 0, 0
+    for some in stretches(x.size):
+        before = x[some.start - 1] if some.start else np.nan
+        starts = some.start + np.flatnonzero(np.diff(x[some], prepend=before) != 0)
+        first, last = np.append(since, starts[:-1]), starts - 1  # of the stays that ended within these rows
+        changes += starts.size
+        if starts.size:
+            found += _turned_through(first, last, other, far, wrapped)
+            since = int(starts[-1])
+    found += _turned_through(np.array([since]), np.array([x.size - 1]), other, far, wrapped)
+    return found, changes
 
 
-def _stood(x: Array, other: Array, far: float, starts: Index) -> tuple[Index, int, int]:
-    """Rows in which `x` stood though the other side turned; the first and last row where it stood longest."""
-    ends = np.append(starts[1:], x.size) - 1
-    long = np.flatnonzero(ends > starts)
-    went = other[ends[long]] - other[starts[long]]
-    if np.nanmax(other) - np.nanmin(other) <= TURN:  # it may be wrapped, and rest where it goes from a turn to none
+def _turned_through(first: Index, last: Index, other: Array, far: float, wrapped: bool) -> list[tuple[int, int]]:
+    """Those stays of several rows, from `first` to `last`, (k,), in which the other side went on by more than `far`."""
+    long = last > first
+    first, last = first[long], last[long]
+    went = other[last] - other[first]
+    if wrapped:
         went = (went + TURN / 2) % TURN - TURN / 2
-    long = long[np.abs(went) > far]
-    if not long.size:
+    there = np.abs(went) > far
+    return list(zip(first[there].tolist(), last[there].tolist(), strict=True))
+
+
+def _stood(held: list[tuple[int, int]], size: int) -> tuple[Index, int, int]:
+    """Rows of those stays but for the first of each, and the first and last row of the longest; none where they are
+    most of a run of `size` rows."""
+    rows = [np.arange(first + 1, last + 1) for first, last in held]
+    if not rows or sum(some.size for some in rows) > DEAD * size:
         return NONE, 0, 0
-    most = long[int(np.argmax(ends[long] - starts[long]))]
-    rows = np.concatenate([np.arange(starts[i] + 1, ends[i] + 1) for i in long])
-    if rows.size > DEAD * x.size:
-        return NONE, 0, 0
-    return rows, int(starts[most]), int(ends[most])
+    return np.concatenate(rows), *max(held, key=lambda stay: stay[1] - stay[0])
 
 
 def _often(x: Array, other: Array, far: float, changes: int) -> Index:
