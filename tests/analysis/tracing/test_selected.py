@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from rig.analysis.tracing.selection import selected
+from rig.model.effect import Parameter
 
 
 def solution(eq: str, *terms: Any) -> Any:
@@ -55,6 +56,35 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     monkeypatch.setattr(selected, "_without", without)
     nothing: Any = None
     assert selected._without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == left
+
+
+@pytest.mark.parametrize(("loud", "speed", "left"), [
+    (True, (-0.2, 1.6), ["play"]), (False, (-0.2, 1.6), ["play", "stribeck"]), (True, (0.2, 1.6), ["play", "stribeck"]),
+])  # fmt: skip
+def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
+    monkeypatch: pytest.MonkeyPatch, loud: bool, speed: tuple[float, float], left: list[str]
+) -> None:
+    """Its size may be as sure as it likes: any law that lifts the same runs has that."""
+    words = {
+        "stribeck": (Parameter("dF", 0.9, (0.8, 1.0), "N·m"), Parameter("w_s", 0.7, speed, "rad/s")),
+        "play": (Parameter("b", 1e-4, (0.9e-4, 1.1e-4), "rad"),),
+    }
+    shapes: dict[str, tuple[str, ...]] = {"stribeck": ("w_s",), "play": ()}
+
+    def with_(names: list[str]) -> Any:
+        effect = {
+            name: SimpleNamespace(
+                may_be_nothing=lambda found: False, shape_names=shapes[name], loose=(True,) * len(shapes[name])
+            )
+            for name in names
+        }
+        terms = [SimpleNamespace(name=name, effect=effect[name]) for name in names]
+        scores = [SimpleNamespace(name=name, overall=9.0 if name == "play" else 5.0) for name in names]
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=names, solution=solution("eq", *terms))
+
+    monkeypatch.setattr(selected, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))
+    nothing: Any = None
+    assert selected._without_insignificant(with_(["play", "stribeck"]), (), nothing).names == left
 
 
 @pytest.mark.parametrize(("unread", "now", "left", "expected"), [

@@ -79,6 +79,14 @@ def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: R
     return [name for name in names if not _is_resolved(s, name, scales(s, name, words), covered)]
 
 
+def unscaled(s: Solution, words: Mapping[str, Sequence[Parameter]]) -> list[str]:
+    """Effects with a scale of which every term's may be zero, whatever else speaks for them: beside a rest that no
+    name explains they may be a part of that rest, as a fall of friction at 0.7 ± 0.9 rad/s is of a sensor's play."""
+    names = dict.fromkeys(term.name for term in s.design.terms)
+    found = {name: scales(s, name, words) for name in names}
+    return [name for name, all_of in found.items() if all_of and all(p.holds_zero for p in all_of)]
+
+
 def run_to_the_end(s: Solution, covered: Reach) -> list[str]:
     """Effects with a term that the fit pushed to the end of its range: it fills in for a law that is not there."""
     return list(dict.fromkeys(t.name for t in s.design.terms if t.effect.beyond(t.shape, covered)))

@@ -23,6 +23,7 @@ from rig.analysis.tracing.selection.elimination import (
     instead_of_the_spring,
     run_to_the_end,
     unresolved,
+    unscaled,
 )
 from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
@@ -110,16 +111,21 @@ def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], cover
 
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
-    """Without names whose size may as well be zero, or is hardly known beside a name that does more, unless something
-    is left to explain that is not with them. Of two that stand in for each other either may be the one that can go:
-    the one that does less is tried first."""
+    """Without names whose size may as well be zero, or is hardly known beside a name that does more, or whose law may
+    be any beside an unknown rest, unless something is left to explain that is not with them. Of two that stand in for
+    each other either may be the one that can go: the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0)
+    vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
     insignificant = [
         score
         for score in selected.scores
         if (words := selected.words.get(score.name))
-        and (effect[score.name].may_be_nothing(words) or (score.overall < most and _is_hardly_known(words[0])))
+        and (
+            score.name in vague
+            or effect[score.name].may_be_nothing(words)
+            or (score.overall < most and _is_hardly_known(words[0]))
+        )
     ]
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
