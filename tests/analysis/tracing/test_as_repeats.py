@@ -28,12 +28,13 @@ def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: 
     a `lone` channel that one run of each condition has."""
     f = [rng.standard_normal(ROWS) for _ in sizes]
     left = [(size - 1.0) * one + rng.standard_normal(ROWS) for one, (_, _, size) in zip(f, sizes, strict=True)]
-    runs = [SimpleNamespace(said=condition, name=name) for condition, name, _ in sizes]
+    runs = [SimpleNamespace(said=condition, name=name, procedure="speed") for condition, name, _ in sizes]
     once = [(i, "A") for i, run in enumerate(runs) if lone and run.name.endswith(".0")]
     return SimpleNamespace(
         y=dict.fromkeys([*((i, "M") for i in range(len(sizes))), *once]),
         residual=lambda key, which: left[key[0]] + (f[key[0]] if which == "without" else 0.0),
         eq=SimpleNamespace(noise=SimpleNamespace(kappa={"M": 1.0, "A": 1.0}), runs=runs),
+        noise={},
     )
 
 

@@ -20,6 +20,19 @@ def test_what_repeats_at_equal_angle_is_no_noise(rng: np.random.Generator) -> No
     assert np.sqrt(np.mean(d**2)) == pytest.approx(0.1, rel=0.05)
 
 
+def test_a_high_order_that_every_turn_repeats_is_no_noise_of_a_fast_run(rng: np.random.Generator) -> None:
+    """Of 19 rows a turn a straight line between two misses all of an order 13, as a housing's resonance leaves it."""
+    a, b = np.linspace(0, 450, 1220), np.linspace(0.3, 452, 1220)
+    wave = [2.0 * np.sin(13 * x) + np.cos(9 * x) + _noise(rng, x.size, 0.1) for x in (a, b)]
+    assert np.sqrt(np.mean(compare(a, wave[0], b, wave[1]) ** 2)) == pytest.approx(0.1, rel=0.1)
+    eq: Any = SimpleNamespace(rows={(0, "A"): SimpleNamespace(theta_m=a)})
+    found = turn_by_turn(eq, {(0, "A"): wave[0]}, (0, "A"))
+    assert found is not None
+    assert found.rms == pytest.approx(0.1, rel=0.1)
+    swells = [(1.0 + x / 450) * np.sin(2 * x) + _noise(rng, x.size, 0.1) for x in (a, b + 225)]
+    assert np.sqrt(np.mean(compare(a, swells[0], b, swells[1]) ** 2)) > 0.2  # what differs between turns is
+
+
 def test_strokes_are_compared_with_strokes_of_their_own_direction(rng: np.random.Generator) -> None:
     there = np.linspace(0, 20, 2000)
     theta = np.concatenate([there, there[::-1], there])

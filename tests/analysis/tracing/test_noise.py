@@ -109,6 +109,23 @@ def test_what_lock_tests_differ_by_is_no_floor_of_runs_that_turn_freely() -> Non
     assert floor_of(of, few, (3, "L")) == pytest.approx(0.2)  # three free ones tell too little by themselves
 
 
+def test_a_procedure_of_which_enough_was_compared_has_a_floor_of_its_own() -> None:
+    """Strokes of a slow run are compared within a turn of few, and their noise is half as large again."""
+    runs = [run_at(12.0 + 5.0 * i, 1.0) for i in range(12)]
+    for run in runs[6:]:
+        run.procedure = "kinematic_error"
+    by_run = {(i, "A"): 0.6 if run.procedure == "speed" else 0.9 for i, run in enumerate(runs)}
+    of = Measured(Noise({"A": 0.8}, {"A": 1.0}, {"A": 1e-3}), by_run, {}, {}, dict.fromkeys(by_run, 500.0))
+    for run in runs:
+        run.counts_m = 0.0
+    rows = {(i, "A"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool)) for i in range(12)}
+    eq: Any = SimpleNamespace(runs=runs, rows=rows)
+    assert floor_of(of, eq, (0, "A")) == pytest.approx(0.6)
+    assert floor_of(of, eq, (6, "A")) == pytest.approx(0.9)
+    few: Any = SimpleNamespace(runs=runs, rows={key: rows[key] for key in [*rows][1:]})
+    assert floor_of(of, few, (1, "A")) == pytest.approx(np.sqrt((5 * 0.36 + 6 * 0.81) / 11))  # five tell too little
+
+
 def pairs_at(rms: tuple[float, ...], freedom: float = 100.0) -> list[int]:
     """Which of pairs of repeats at 12, 20, 30, 40 rad/s with those RMS are outlying."""
     found: Any = [SimpleNamespace(pair=(2 * i, 2 * i + 1), rms=x, freedom=freedom) for i, x in enumerate(rms)]

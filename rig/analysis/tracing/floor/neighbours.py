@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.common_orders import without_common_orders
 from rig.analysis.tracing.floor.repeats import Scatter, autocorrelation, beside_a_row, compare, freedom, strokes
 from rig.analysis.tracing.thresholds import FLOOR_LEAST
 from rig.core.units import TURN
@@ -50,6 +51,7 @@ def against_both(theta: Array, e: Array) -> Array:
 
     What the output or the load does within a motor turn is nearly straight, and goes out.
     """
+    e = without_common_orders(theta, e)
     x = np.maximum.accumulate(np.abs(theta - theta[0])) if theta.size else theta
     inside = (x > TURN) & (x < x[-1:].sum() - TURN)
     inside &= beside_a_row(x - TURN, x) & beside_a_row(x + TURN, x) if x.size > 1 else False

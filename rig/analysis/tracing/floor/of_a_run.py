@@ -28,14 +28,17 @@ def floor_of(measured: Measured, eq: Equations, key: Key) -> float:
 
 def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
     """Of all pairs; of those that turn freely alone where it does and enough were compared: under the torques of a lock
-    test a gain that is never twice the same makes many times what it does elsewhere."""
+    test a gain that is never twice the same makes many times what it does elsewhere. In A, whose noise is the sensors',
+    of those of its procedure alone where they are enough: how much of it is left goes by the speed."""
     run, channel = key
     usual = [i for i, c in measured.by_run if c == channel and (i, c) not in measured.apart]
     free = [i for i in usual if not eq.runs[i].locked and (i, channel) in eq.rows]
     if eq.runs[run].locked or len(free) < 2 * ENOUGH:
         return measured.noise.sigma[channel]
-    rows = [eq.rows[i, channel].y.size for i in free]
-    pooled = float(np.sqrt(np.average([measured.by_run[i, channel] ** 2 for i in free], weights=rows)))
+    same = [i for i in free if eq.runs[i].procedure == eq.runs[run].procedure]
+    among = same if channel == "A" and len(same) >= 2 * ENOUGH else free
+    rows = [eq.rows[i, channel].y.size for i in among]
+    pooled = float(np.sqrt(np.average([measured.by_run[i, channel] ** 2 for i in among], weights=rows)))
     return min(pooled, measured.noise.sigma[channel])
 
 

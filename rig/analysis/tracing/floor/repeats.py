@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.common_orders import without_common_orders
 from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.analysis.tracing.thresholds import FLOOR_LEAST, UNCORRELATED
 from rig.model.effect import Array
@@ -105,6 +106,8 @@ def strokes(theta: Array) -> list[slice]:
 
 def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     """Differences of two residuals at equal motor angle, stroke by stroke, as if of one run; (n,)."""
+    both = without_common_orders(np.concatenate([theta_a, theta_b]), np.concatenate([e_a, e_b]))
+    e_a, e_b = both[: e_a.size], both[e_a.size :]
     parts = []
     for a, b in zip(strokes(theta_a), strokes(theta_b), strict=False):
         sign = np.sign(theta_b[b][-1] - theta_b[b][0])

@@ -18,7 +18,7 @@ from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.floor.repeats import alike
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.selection.done import done
+from rig.analysis.tracing.selection.done import done, noise_in
 from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.analysis.tracing.thresholds import BY_CHANCE, FAINT, FAIR, FREE, OF_ONE_SIZE, PLAIN_AMONG_REPEATS
 
@@ -62,9 +62,11 @@ def as_repeats(s: Solution, rest: Solution, d: Design, at: HeldOut) -> bool:
 
 def _shown(s: Solution, rest: Solution, d: Design, at: HeldOut) -> list[Shown]:
     shown = {c: Shown(d.eq.noise.kappa[c]) for c in CHANNELS if c in d.eq.noise.kappa}
+    noise = noise_in(s, rest)
     for design, floors, unseen in ((d, at.floors, True), (s.design, at.seen, False)):
         for (run, c), _, f, e in done(s, rest, design, floors):
-            own, along = float(f @ f), float(f @ e)
+            square, spoilt = (e.size / floors[run, c] ** 2 * x for x in noise((run, c)))
+            own, along = float(f @ f) - square, float(f @ e) - spoilt
             if own <= FAINT**2 * e.size:
                 continue
             channel = shown[c]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -21,3 +21,22 @@ def done(
         f = d.residual(key, rest.x) / floors[key] - e
         for part, (mine, left) in enumerate(zip(np.array_split(f, parts), np.array_split(e, parts), strict=True)):
             yield key, part, mine, left
+
+
+def noise_in(s: Solution, rest: Solution) -> Callable[[Key], tuple[float, float]]:
+    """What sensor noise makes of an effect in a block: mean square of what it does there, and mean of that times what
+    is left, in the block's own unit squared: those of the few runs it is known of, of the same procedure. `rest` is the
+    fit without the effect."""
+    eq = s.design.eq
+    found: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for key in s.design.noise:
+        left = s.design.noise_left(key, s.x)
+        made = s.design.noise_left(key, rest.x) - left
+        both = float(np.mean(made**2)), float(np.mean(made * left))
+        found.setdefault((eq.runs[key[0]].procedure, key[1]), []).append(both)
+
+    def of(key: Key) -> tuple[float, float]:
+        square, along = np.mean(found.get((eq.runs[key[0]].procedure, key[1]), [(0.0, 0.0)]), axis=0)
+        return float(square), float(along)
+
+    return of

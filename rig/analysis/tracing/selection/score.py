@@ -11,7 +11,7 @@ from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, without
 from rig.analysis.tracing.selection.as_repeats import as_repeats
-from rig.analysis.tracing.selection.done import done
+from rig.analysis.tracing.selection.done import done, noise_in
 from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.analysis.tracing.thresholds import (
     ABOUT,
@@ -189,14 +189,18 @@ def unsteadiness(
     runs show it plainly. `rest` is the fit without the effect. With `parts`, of stretches of each run instead.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
-    like an effect has its size from a compromise between runs; a real one has the same in each.
+    like an effect has its size from a compromise between runs; a real one has the same in each. Sensor noise is in
+    both, and is taken off: one reading's noise in f and in e says nothing of a size.
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     shown = set()
+    noise = noise_in(s, rest)
     for key, part, f, e in done(s, rest, d, floors, parts):
-        own = float(f @ f)
+        square, along = (e.size / floors[key] ** 2 * x for x in noise(key))
+        own = float(f @ f) - square
         if own > FAINT**2 * e.size:
-            spread[key[1]] += float(f @ e) ** 2 / own - d.eq.noise.kappa[key[1]]
+            chance = d.eq.noise.kappa[key[1]] * float(f @ f)
+            spread[key[1]] += ((float(f @ e) - along) ** 2 - chance) / own
             work[key[1]] += own
         if own > SMALLEST**2 * e.size:
             shown.add((key[0], part))
