@@ -21,6 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints every file made."""
+    from rig.runfile.doubt import refuse_changed
     from rig.runfile.export import export
     from rig.runfile.run import Run
 
@@ -32,7 +33,9 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--to {args.to} is one file, and these are {len(folders)} runs: expected a folder")
 
     def export_one(folder: Path) -> Exit:
-        print(export(Run.open(folder), args.kind, args.to))
+        recorded = Run.open(folder)
+        refuse_changed(folder, recorded.manifest)
+        print(export(recorded, args.kind, args.to))
         return Exit.PASS
 
     return for_each(folders, export_one)

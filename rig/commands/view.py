@@ -27,10 +27,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Shows it, or prints where the recording is."""
+    from rig.runfile.doubt import refuse_changed
     from rig.runfile.manifest import read
     from rig.runfile.process import is_being_made
 
-    goes_on = is_being_made(read(args.run))
+    manifest = read(args.run)
+    goes_on = is_being_made(manifest)
+    if not goes_on:
+        refuse_changed(args.run, manifest)
     if args.where is None:
         if goes_on:
             raise UsageError(f"{args.run} is still being made: --web or --native follows it, a file is made afterwards")

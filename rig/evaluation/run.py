@@ -45,6 +45,7 @@ def analyse_folder(
     from rig.report.history import asked_before, with_former
     from rig.report.page import bench, write
     from rig.report.record import write_result
+    from rig.runfile.doubt import refuse_changed
     from rig.runfile.events import read_events
     from rig.runfile.finalise import add_derived
     from rig.runfile.run import Run
@@ -120,22 +121,6 @@ BESIDE: Mapping[Regime, Callable[[Run], Run | None]] = {
     Regime.LOCKED: reference_of_one_zero,
 }
 """Where a run finds the slow run it is analysed with, where none is named."""
-
-
-def refuse_changed(folder: Path, manifest: Mapping[str, Any]) -> None:
-    """Figures from samples that are not those that were closed would be worth nothing. Raises DataError."""
-    from rig.runfile.finalise import describe
-    from rig.runfile.manifest import told
-
-    said, path = manifest.get("files", {}).get("samples.parquet", {}).get("sha256"), folder / "samples.parquet"
-    if not said or not path.exists():
-        return
-    with told(DataError, f"{path} cannot be read"):
-        same = describe(path)["sha256"] == said
-    if not same:
-        raise DataError(
-            "samples.parquet is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
-        )
 
 
 def changed_journal(folder: Path, manifest: Mapping[str, Any]) -> str:

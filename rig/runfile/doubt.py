@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rig.core.errors import HdrigError, said_of
+from rig.core.errors import DataError, HdrigError, said_of
 from rig.runfile.remains import SAMPLES
 
 RESULT = "result.json"
@@ -36,6 +36,21 @@ def quick_doubt(folder: Path, about: Mapping[str, Any]) -> str:
     return doubt(folder, about) if samples.st_mtime > result.st_mtime or size != samples.st_size else ""
 
 
+def refuse_changed(folder: Path, about: Mapping[str, Any]) -> None:
+    """What is made of samples that are not those the run was closed with would be worth nothing. Raises DataError when
+    they are others, or cannot be read."""
+    from rig.runfile.finalise import describe
+    from rig.runfile.manifest import told
+
+    path, said = folder / SAMPLES, _sha256(about, SAMPLES)
+    if not said or not path.exists():
+        return
+    with told(DataError, f"{path} cannot be read"):
+        same = describe(path)["sha256"] == said
+    if not same:
+        raise DataError(f"{path} is not the file this run was closed with (its SHA-256 differs): see hdrig verify")
+
+
 def _unreadable(folder: Path) -> str:
     """Of samples that nobody took a hash of, or that a journal stands in for."""
     from rig.runfile.run import Run
@@ -57,7 +72,8 @@ def _is_another(path: Path, sha256: str | None) -> bool:
 
 
 def _sha256(about: Mapping[str, Any], name: str) -> str | None:
-    return _entry(about, name).get("sha256")
+    said = _entry(about, name).get("sha256")
+    return said if isinstance(said, str) else None
 
 
 def _entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:

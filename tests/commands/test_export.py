@@ -1,9 +1,10 @@
-"""hdrig export: where files of several runs go."""
+"""hdrig export: where files of several runs go, and what is not exported; nor is it viewed."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
 
 from rig.cli import main
@@ -19,3 +20,16 @@ def test_several_runs_do_not_go_into_one_file_and_nothing_is_written(
     assert f"--to {one} is one file, and these are 2 runs: expected a folder" in capsys.readouterr().err
     assert not one.exists()
     assert main(["export", *runs, "--as", "csv", "--to", str(tmp_path / "both")]) == 0
+
+
+@pytest.mark.parametrize("command", ["export", "view"])
+def test_samples_that_are_not_those_the_run_was_closed_with_go_nowhere(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = made_run(tmp_path / "one")
+    samples = pq.read_table(run / "samples.parquet")
+    pq.write_table(samples.drop_columns(["theta_l"]), run / "samples.parquet")
+    before = {path.name for path in run.iterdir()}
+    assert main([command, str(run)]) == 3
+    assert "samples.parquet is not the file this run was closed with (its SHA-256 differs)" in capsys.readouterr().err
+    assert {path.name for path in run.iterdir()} == before
