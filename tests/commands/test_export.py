@@ -30,6 +30,6 @@ def test_samples_that_are_not_those_the_run_was_closed_with_go_nowhere(
     samples = pq.read_table(run / "samples.parquet")
     pq.write_table(samples.drop_columns(["theta_l"]), run / "samples.parquet")
     before = {path.name for path in run.iterdir()}
-    assert main([command, str(run)]) == 3
+    assert main([command, str(run)]) == 6
     assert "samples.parquet is not the file this run was closed with (its SHA-256 differs)" in capsys.readouterr().err
     assert {path.name for path in run.iterdir()} == before
