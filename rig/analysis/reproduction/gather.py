@@ -10,7 +10,7 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.model import Model, identify_gear
@@ -21,6 +21,9 @@ from rig.runfile import manifest as manifests
 from rig.runfile.misfits import usable
 
 PROCESSES = 2  # the machine beside a rig has two cores to spare
+P = ParamSpec("P")
+T = TypeVar("T")
+
 SLOW = ("kinematic_error", "full_turn")  # unloaded, at one speed, smooth
 
 
@@ -93,11 +96,11 @@ class Ahead:
         self.begun: dict[Path, Future[Reading]] = {}
 
     def __enter__(self) -> Ahead:
-        self._pool = _pool(1)
+        self._pool = Pool(1)
         return self
 
-    def __exit__(self, kind: object, error: object, trace: object) -> None:
-        self._pool.shutdown(cancel_futures=True)
+    def __exit__(self, *error: object) -> None:
+        self._pool.__exit__(*error)
 
     def begin(self, folder: Path) -> None:
         """Read the run in `folder`, which is closed. Raises HdrigError when it has no manifest."""
@@ -106,8 +109,28 @@ class Ahead:
             self.begun[folder.resolve()] = self._pool.submit(read, folder)
 
 
-def _pool(processes: int) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(processes, multiprocessing.get_context("spawn"), _quiet)
+class Pool(ProcessPoolExecutor):
+    """Processes of their own, to which a Ctrl-C says nothing: it is the main process's to handle.
+
+    One that has hardly begun has not come to `_quiet` yet, and would die of it with a traceback: while processes are
+    begun, which is when work is submitted, the signal waits, and they inherit that.
+    """
+
+    def __init__(self, processes: int) -> None:
+        super().__init__(processes, multiprocessing.get_context("spawn"), _quiet)
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """As of any pool."""
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+    def __exit__(self, *error: object) -> None:
+        """What was not begun is given up; what was is waited for: a process killed in the middle of what it sends would
+        leave the pool reading for ever."""
+        self.shutdown(cancel_futures=True)
 
 
 def gather(
@@ -121,7 +144,7 @@ def gather(
     What cannot be read is left out, and the campaign says so. How many processes read does not change what they read.
     """
     reference = slow_reference(found)
-    with _pool(processes) as pool:
+    with Pool(processes) as pool:
         model = pool.submit(identify_gear, *to_identify(found))
         readings = [
             begun.get(e.folder.resolve()) or pool.submit(read, e.folder, reference if e.locked else None) for e in found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.catalogue import exhibits
-from rig.analysis.reproduction.gather import Ahead, Entry, entries, gather
+from rig.analysis.reproduction.gather import Ahead, Entry, Pool, entries, gather
 
 pytestmark = pytest.mark.xdist_group("gather")  # what the module makes is made once, not for every worker
 
@@ -51,3 +52,12 @@ def test_one_process_and_two_and_reading_ahead_give_the_same_figures(found: list
         assert (a.fast is None) is (b.fast is None)
         if a.fast is not None and b.fast is not None:
             assert np.array_equal(a.fast.profile.cosine, b.fast.profile.cosine)
+
+
+def test_a_process_is_deaf_to_ctrl_c_from_its_first_moment() -> None:
+    """Before it comes to say so itself it inherits it; the main process hears as before."""
+    with Pool(1) as pool:
+        blocked = pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, ()).result()
+        assert signal.SIGINT in blocked
+        assert pool.submit(signal.getsignal, signal.SIGINT).result() is signal.SIG_IGN
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
