@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from types import FrameType
 from typing import Any
 
+from rig.core.errors import HdrigError
+
 MACHINERY = "<frozen importlib._bootstrap"  # how names of files begin whose frames are imports
 USUAL: dict[signal.Signals, Any] = {
     signal.SIGINT: signal.default_int_handler,
@@ -25,6 +27,9 @@ AGAIN = 0.02  # s until it is tried again: no person notices, and an import take
 def after_imports() -> Iterator[None]:
     """While active, SIGINT and SIGTERM raise KeyboardInterrupt, after the import that one falls into. A signal that is
     not Python's own to handle, and in another thread than the main one all, are left as they are.
+
+    Raised in a callback of a library in C it may be lost, and show as an error of that library's: an error nobody
+    foresaw that comes after an interrupt is taken for it.
     """
     ours = threading.current_thread() is threading.main_thread()
     mine = [number for number, usual in USUAL.items() if ours and signal.getsignal(number) is usual]
@@ -32,12 +37,15 @@ def after_imports() -> Iterator[None]:
         yield
         return
     came: list[int] = []
+    raised = False
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
+        nonlocal raised
         if importing(frame):
             came.append(signum)
             signal.setitimer(signal.ITIMER_REAL, AGAIN)
             return
+        raised = True
         raise KeyboardInterrupt
 
     def again(signum: int, frame: FrameType | None) -> None:
@@ -48,6 +56,10 @@ def after_imports() -> Iterator[None]:
         signal.signal(number, interrupt)
     try:
         yield
+    except Exception as error:
+        if raised and not isinstance(error, HdrigError):
+            raise KeyboardInterrupt from error
+        raise
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number in mine:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from rig.core.errors import UsageError
 from rig.process.ctrl_c import after_imports, uninterrupted
 from rig.runfile.manifest import write_atomic
 
@@ -55,6 +56,19 @@ def press() -> None:
     with after_imports():
         os.kill(os.getpid(), signal.SIGINT)
         wait()
+
+
+@pytest.mark.parametrize(("error", "comes_out"), [(ValueError, KeyboardInterrupt), (UsageError, UsageError)])
+def test_an_interrupt_that_a_library_made_another_error_of_is_one(error: type, comes_out: type) -> None:
+    """As matplotlib does, which is in the middle of a path in C; a sentence of ours is said all the same."""
+    with pytest.raises(comes_out), after_imports():
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            wait()
+        except KeyboardInterrupt:
+            raise error("Invalid affine transformation matrix") from None
+    with pytest.raises(ValueError, match="of its own"), after_imports():
+        raise ValueError("of its own")
 
 
 def test_an_interrupt_in_an_import_comes_when_the_module_is_whole(slow: str) -> None:
