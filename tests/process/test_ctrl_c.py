@@ -61,12 +61,17 @@ def press() -> None:
 @pytest.mark.parametrize(("error", "comes_out"), [(ValueError, KeyboardInterrupt), (UsageError, UsageError)])
 def test_an_interrupt_that_a_library_made_another_error_of_is_one(error: type, comes_out: type) -> None:
     """As matplotlib does, which is in the middle of a path in C; a sentence of ours is said all the same."""
-    with pytest.raises(comes_out), after_imports():
-        try:
-            os.kill(os.getpid(), signal.SIGINT)
-            wait()
-        except KeyboardInterrupt:
-            raise error("Invalid affine transformation matrix") from None
+
+    def lost() -> None:
+        with after_imports():
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+                wait()
+            except KeyboardInterrupt:
+                raise error("Invalid affine transformation matrix") from None
+
+    with pytest.raises(comes_out):
+        lost()
     with pytest.raises(ValueError, match="of its own"), after_imports():
         raise ValueError("of its own")
 
