@@ -26,6 +26,7 @@ from rig.commands.options import bench_arguments, show_argument
 from rig.commands.perform import let_be
 from rig.commands.person import Person
 from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.beforehand import foretell, refusing
 from rig.commands.show.onlookers import Onlookers
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
@@ -66,6 +67,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Plan, then dry run, or everything that is still to be made."""
+    with refusing(args.json):
+        return _run(args)
+
+
+def _run(args: argparse.Namespace) -> int:
     if args.resume:
         return _resume(args)
     if args.skip:
@@ -81,8 +87,7 @@ def begin(plan: Plan, args: argparse.Namespace) -> int:
     bench = read_bench(args.bench or DEFAULT, overrides)
     campaign = planned(plan, bench, secrets.randbelow(SEEDS) if args.seed is None else args.seed)
     if args.dry_run:
-        print("\n".join(dry_run.lines(campaign)))
-        return 0
+        return foretell(args.json, dry_run.lines(campaign))
     refuse_nobody(campaign, range(len(campaign.items)))
     refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
@@ -100,8 +105,7 @@ def _resume(args: argparse.Namespace) -> int:
     campaign = planned(plan, bench, book["seed"] if args.seed is None else args.seed)
     refuse_other_campaign(journal, campaign)
     if args.dry_run:
-        print("\n".join(dry_run.lines(campaign, journal.open_runs())))
-        return 0
+        return foretell(args.json, dry_run.lines(campaign, journal.open_runs()))
     refuse_nobody(campaign, journal.open_runs())
     for line in take_up(journal):
         print(line, file=sys.stderr)

@@ -24,6 +24,7 @@ from rig.campaign.run import open_session
 from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
+from rig.commands.show.beforehand import refusing
 from rig.commands.show.show import Show, showing
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
@@ -52,9 +53,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Begin or go on, round after round; then the story as JSON and as a page."""
-    if not args.budget_minutes > 0:
-        raise UsageError(f"--budget-minutes {args.budget_minutes:g}: expected minutes of rig time above 0")
-    return _resume(args) if args.resume else _begin(args)
+    with refusing(args.json):
+        if not args.budget_minutes > 0:
+            raise UsageError(f"--budget-minutes {args.budget_minutes:g}: expected minutes of rig time above 0")
+        return _resume(args) if args.resume else _begin(args)
 
 
 def _begin(args: argparse.Namespace) -> int:

@@ -21,6 +21,7 @@ from rig.commands.options import (
     show_argument,
 )
 from rig.commands.perform import Job, clear, let_be, perform
+from rig.commands.show.beforehand import foretell, refusing
 from rig.commands.show.show import showing
 from rig.commands.viewing import view, view_argument
 from rig.core.errors import UsageError
@@ -71,6 +72,11 @@ def parameters_text() -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Dry run, or proof, run, analysis, report."""
+    with refusing(args.json):
+        return _run(args)
+
+
+def _run(args: argparse.Namespace) -> int:
     name = args.procedure.replace("_", "-")  # manifests write it with underscores
     limits = limits_of(args.limits)
     if name in SWEEPS:  # many runs, with changes by hand between them
@@ -85,15 +91,16 @@ def run(args: argparse.Namespace) -> int:
     bench, clock = open_bench(args)
     procedure = make_procedure(procedure_class(name), args.parameters)
     refuse_endless(bench, procedure)
-    if args.dry_run:
-        print("\n".join([*plan_lines(bench, procedure), *swing_lines(bench, procedure)]))
+
+    def check() -> None:
         refuse_beyond_limits(bench, procedure)
         args.resonance(bench, procedure)
-        return 0
+
+    if args.dry_run:
+        return foretell(args.json, [*plan_lines(bench, procedure), *swing_lines(bench, procedure)], check)
     note = args.note.encode("utf-8", "replace").decode()
     with showing(args.json) as show, view(args.view) as looking_on:
-        refuse_beyond_limits(bench, procedure)
-        args.resonance(bench, procedure)
+        check()
         return perform(Job(bench, clock, procedure, args.out, note, args.before, limits), show, looking_on)
 
 

@@ -24,6 +24,7 @@ class HdrigError(Exception):
     """A sentence for the person at the rig, and the exit code of the command that ends with it."""
 
     exit = Exit.INTERNAL
+    told = False  # in an event, to whoever reads those
 
 
 class UsageError(HdrigError):

@@ -1,6 +1,7 @@
 """What happens while a verb works on a rig, as events: one JSON object each, the same for every way of showing them.
 
-With `--json` each is a line on stdout, and nothing else is. Every event has `event` and `utc` (ISO 8601); the others:
+With `--json` each is a line on stdout, and nothing else is; of a dry run its lines are `said`. Every event has `event`
+and `utc` (ISO 8601); the others:
 
 | event | further keys | when |
 |---|---|---|
@@ -156,6 +157,7 @@ def showing(json: bool) -> Iterator[Show]:
             yield show
     except HdrigError as error:
         show.leave(error.exit, str(error))
+        error.told = True
         raise
     except KeyboardInterrupt:
         show.leave(Exit.HALTED, "interrupted")
