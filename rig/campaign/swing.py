@@ -49,9 +49,9 @@ def predicted(bench: Bench, speed: float, amplitude: float) -> str:
     """The line of a dry run: how far order 2 is expected to swing the shaft torque up to `speed` rad/s."""
     gear = bench.declared_gear
     most = swing(gear, amplitude, speed)
-    told = f"±{most:.2f}" if most >= 0.01 else "less than ±0.01"
+    told = f"±{most:.2f} N·m at most" if most >= 0.01 else "less than ±0.01 N·m"
     return (
-        f"predicted   the shaft torque swings by {told} N·m at most, from the declared "
+        f"predicted   the shaft torque swings by {told}, from the declared "
         f"gear (order 2 resonates at {resonance_speed(gear) / RPM:.0f} rpm of the motor) and {amplitude / ARCMIN:g} "
         "arcmin of order 2, zero to peak"
     )

@@ -92,7 +92,7 @@ def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
     """
     if len(paths) < 2:
         raise UsageError(
-            f"compare was given {len(paths)} run folder: expected two or more, the others against the first"
+            f"compare was given {len(paths) or 'no'} run folder: expected two or more, the others against the first"
         )
     copies: list[str] = []
     found = tuple(once([_run(path) for path in paths], lambda f, why: copies.append(f"{f.name} counts once: {why}")))

@@ -55,9 +55,10 @@ def procedure_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def make_procedure(kind: type[Procedure], assignments: list[str]) -> Procedure:
-    """The procedure with its parameters set. Raises UsageError: unknown name, wrong type, value that makes no sense."""
-    return make(kind, parameters_of(assignments), kind.name)
+def make_procedure(kind: type[Procedure], assignments: list[str], called: str) -> Procedure:
+    """The procedure, `called` so, with its parameters set. Raises UsageError: unknown name, wrong type, a value that
+    makes no sense."""
+    return make(kind, parameters_of(assignments), called)
 
 
 def parameters_of(assignments: list[str]) -> dict[str, Any]:

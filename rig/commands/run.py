@@ -89,7 +89,7 @@ def _run(args: argparse.Namespace) -> int:
         raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, [*CATALOGUE, *SWEEPS])}")
     refuse_not_given(name.replace("-", "_"), limits)
     bench, clock = open_bench(args)
-    procedure = make_procedure(procedure_class(name), args.parameters)
+    procedure = make_procedure(procedure_class(name), args.parameters, name)
     refuse_endless(bench, procedure)
 
     def check() -> None:

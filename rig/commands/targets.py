@@ -9,7 +9,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from rig.core.errors import UsageError
 from rig.runfile.process import sole_writer
+from rig.runfile.text_path import refuse_no_text
 from rig.runfile.writing import writing
 
 BLOCK = bytes(4096)  # a folder can still be made on a disk that has no block left
@@ -20,6 +22,7 @@ def refuse_unwritable(folder: Path, option: str = "--out") -> None:
     """Raises UsageError when `folder`, or the nearest one above it that exists, takes no new file, or
     when no folder of that name can be made there. Leaves nothing.
     """
+    refuse_no_text(folder, option)
     with writing(folder, option):
         there = folder
         while not os.path.lexists(there) and there != there.parent:
@@ -33,6 +36,8 @@ def refuse_unwritable(folder: Path, option: str = "--out") -> None:
 
 def refuse_unwritable_file(path: Path, option: str) -> None:
     """Raises UsageError when no file can be written at `path`: its folder has to be there. Leaves nothing."""
+    if str(path) == "-":  # to many programs it is standard output, and a file of that name is in everybody's way
+        raise UsageError(f"{option} -: expected the name of a file")
     with writing(path, option):
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, "it is a folder")

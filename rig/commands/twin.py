@@ -49,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--bitrate {args.bitrate:g}: expected more than 0 bit/s, for example 1e6")
     if not 0.0 <= args.rate <= MOST_LINES:
         raise UsageError(f"--rate {args.rate:g}: expected 0 to {MOST_LINES:g} lines/s")
+    if not args.seconds >= 0.0:
+        raise UsageError(f"--for {args.seconds:g}: expected 0 s or more, for example 60")
     bench = read(args.bench, args.set)
     if bench.file.twin is None:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")

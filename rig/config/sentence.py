@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from pydantic import BaseModel, ValidationError
 
 from rig.core.nearest import nearest
@@ -22,10 +24,18 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         case "value_error":
             return f"{'.'.join(path)}: {first['ctx']['error']}" if path else str(first["ctx"]["error"])
         case _:
-            expected = first["msg"].removeprefix("Input should be ")
+            expected = _expected(first["msg"], first["input"])
             shown = repr(first["input"])
             shown = shown if len(shown) <= 60 else shown[:57] + "..."
             return f"{key} = {shown}{_unit_note(model, path)}: expected {expected}"
+
+
+def _expected(said: str, given: object) -> str:
+    """What pydantic wanted, to stand behind "expected": of no number it names the limit that it is not within."""
+    if isinstance(given, float) and not math.isfinite(given):
+        return "a finite number"
+    said = said.removeprefix("Input should be ")
+    return said.replace("String should have", "a text of").replace("String should match", "a text that matches")
 
 
 def _model_at(model: type[BaseModel], path: list[str]) -> type[BaseModel]:

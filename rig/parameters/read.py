@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
@@ -12,7 +13,7 @@ from rig.core.nearest import nearest
 from rig.parameters.told import told
 
 Made = TypeVar("Made")
-LARGEST = 1e100  # nothing on a rig is near, and its square is still a number
+LARGEST = 1e12  # in any unit: nothing on a rig is near
 WORDS = {
     float: "a finite number",
     int: "a whole number",
@@ -97,8 +98,10 @@ def _listed(text: str) -> Any:
 
 
 def _number(field: Field[Any], raw: Any, signed: bool) -> float:
-    if isinstance(raw, bool) or not isinstance(raw, float | int) or not -LARGEST < raw < LARGEST:
+    if isinstance(raw, bool) or not isinstance(raw, float | int) or not -math.inf < raw < math.inf:
         raise _refused(field, raw, WORDS[float])
+    if not -LARGEST < raw < LARGEST:
+        raise _refused(field, raw, f"a number below {LARGEST:g}")
     if raw <= 0 and not signed:
         raise _refused(field, raw, "more than 0")
     return float(raw)

@@ -12,6 +12,10 @@ from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import DEG, RPM
 
+FEWEST = (
+    2.0  # motor turns of a stroke: the analysis cuts half a turn at either reversal, and a whole one has to be left
+)
+
 
 @dataclass(frozen=True)
 class KinematicError(Procedure):
@@ -44,6 +48,16 @@ class KinematicError(Procedure):
         """Travel is the amplitude; the torque is what the position loop may give."""
         wave = self.reference
         return Envelope(wave.duration + 2 * self.settle, wave.amplitude, wave.speed, setting.control.torque_limit)
+
+    def remarks(self, setting: Setting) -> list[str]:
+        """Of a stroke too short for a figure."""
+        turns = 2 * self.amplitude_deg / 360.0
+        if turns > FEWEST:
+            return []
+        return [
+            f"no kinematic error can be had: of a stroke of {turns:.2f} motor turns no whole one is left once half a "
+            f"turn is cut at either reversal; expected amplitude_deg above {180 * FEWEST:g} deg"
+        ]
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

@@ -20,6 +20,7 @@ from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
 from rig.runfile.misfits import misfits, misfits_of_ours, usable
 from rig.runfile.samples import Samples, open_samples
+from rig.runfile.text_path import refuse_no_text
 
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
 
@@ -44,6 +45,7 @@ class Run:
         at all, time that runs backwards, a unit other than the table's. Raises DataError when the samples are damaged.
         """
         folder = Path(path)
+        refuse_no_text(folder)
         about = manifests.read(folder)
         run = cls(folder, about, open_samples(folder))
         if not any(run.has(name) or (not run.rows and name in run.channels) for name in ANGLES):

@@ -124,7 +124,8 @@ def _gaps(run: Run) -> Iterator[Finding]:
     ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
-            many = f"{found.size} gaps longer than {GAP} periods of {period * 1e3:.4g} ms, {why}"
+            many = f"{found.size} gap{'s' if found.size > 1 else ''}"
+            many += f" longer than {GAP} periods of {period * 1e3:.4g} ms, {why}"
             yield Finding(level, "gaps", f"{many}; the longest is {dt[worst] * 1e3:.4g} ms at t = {t[worst]:.3f} s")
 
 

@@ -143,3 +143,22 @@ def test_the_doctor_in_a_folder_that_is_gone_says_so(tmp_path: Path, monkeypatch
     found = check_disk(read("twin"))
     assert [finding.health for finding in found] == [Health.BAD]
     assert "the working folder, where runs would go, is not there" in found[0].sentence
+
+
+def test_a_path_that_is_no_text_is_refused_before_anything_connects(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The library that writes samples takes none: a run was made, and could not be closed."""
+    odd = tmp_path / "bad\udcffname"
+    assert main(["run", "kinematic-error", "--with", "cycles=0.5", "--out", str(odd)]) == Exit.USAGE
+    assert f"--out {tmp_path}/bad\\udcffname: expected a path in UTF-8" in capsys.readouterr().err
+    assert not odd.exists()
+    run = made_run(tmp_path / "good").rename(odd)
+    assert main(["analyse", str(run)]) == Exit.USAGE
+    assert "expected a path in UTF-8" in capsys.readouterr().err
+
+
+def test_standard_output_is_no_file_for_a_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made_run(tmp_path / "good")
+    assert main(["trace", str(tmp_path), "--json", "-"]) == Exit.USAGE
+    assert "--json -: expected the name of a file" in capsys.readouterr().err

@@ -124,7 +124,7 @@ def test_a_gap_nobody_told_of_is_an_error(tmp_path: Path) -> None:
     folder = closed(tmp_path)
     with_column(folder, "t", late)
     assert found(folder) == [
-        ("gaps", "1 gaps longer than 1.5 periods of 1 ms, unexplained; the longest is 4 ms at t = 0.149 s")
+        ("gaps", "1 gap longer than 1.5 periods of 1 ms, unexplained; the longest is 4 ms at t = 0.149 s")
     ]
 
 
@@ -154,7 +154,7 @@ def test_a_late_tick_that_was_made_up_for_is_no_lost_row(tmp_path: Path, row: in
     with_column(folder, "t", late_once)
     assert found(folder) == []
     ((_, sentence),) = found(folder, "warning")
-    assert "1 gaps longer than 1.5 periods of 1 ms, a tick came late, no row is gone; the longest is 1.7 ms" in sentence
+    assert "1 gap longer than 1.5 periods of 1 ms, a tick came late, no row is gone; the longest is 1.7 ms" in sentence
 
 
 @pytest.mark.parametrize("row", [1, 150, 298])

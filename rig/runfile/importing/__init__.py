@@ -62,6 +62,8 @@ def import_file(source: Path, mapping: Path | str, out: Path, software: Mapping[
 
 def reader(source: Path) -> tuple[str, Reader]:
     """(what the suffix says the file is, how to read it). Raises UsageError for a suffix not in the catalogue."""
+    if source.is_dir():
+        raise UsageError(f"{source} is a folder; expected a file ending in one of {', '.join(READERS)}")
     if source.suffix.lower() not in READERS:
         raise UsageError(
             f"{source.name}: suffix '{source.suffix}' cannot be imported; expected one of {', '.join(READERS)}"

@@ -33,6 +33,7 @@ from rig.runfile.importing.strict import Section, nearest
 
 SCHEMA = "hdrig.import/1"
 SHIPPED = Path(__file__).parent / "mappings"
+SERIAL = 64  # characters of a gear's, as in a bench file: it is part of a folder's name
 CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit")  # plausibility an [accept] may waive
 
 
@@ -123,7 +124,7 @@ def _gear(raw: Section) -> dict[str, Any]:
     if raw.has("output"):
         gear["output"] = raw.text("output", choices=("flexspline", "circular_spline"))
     if raw.has("serial"):
-        gear["serial"] = raw.text("serial")
+        gear["serial"] = raw.text("serial", longest=SERIAL)
     raw.done()
     return gear
 

@@ -40,9 +40,19 @@ class Section:
         """The keys as they stand in the file."""
         return list(self._raw)
 
-    def text(self, key: str, default: Any = _MISSING, choices: Collection[str] = (), blank: bool = False) -> str:
-        """A text that is not blank (unless blanks are meant); one of `choices` when given."""
+    def text(
+        self,
+        key: str,
+        default: Any = _MISSING,
+        choices: Collection[str] = (),
+        blank: bool = False,
+        longest: float = math.inf,
+    ) -> str:
+        """A text that is not blank (unless blanks are meant), of at most `longest` characters; one of `choices` when
+        given."""
         found: str = self._take(key, str, default)
+        if found is not default and len(found) > longest:
+            self.refuse(key, f"{found[:40]}…", f"at most {longest:g} characters, these are {len(found)}")
         if found is not default and not blank and not found.strip():
             self.refuse(key, found, "a text that says something")
         if found is not default and choices and found not in choices:

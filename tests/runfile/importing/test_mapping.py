@@ -152,3 +152,8 @@ def test_imperial_units_are_what_their_definitions_give() -> None:
     assert UNITS["lbf·ft"].factor == pytest.approx(pound * gravity * foot, rel=1e-15)
     assert UNITS["lbf·in"].factor == pytest.approx(pound * gravity * foot / 12, rel=1e-15)
     assert UNITS["ozf·in"].factor == pytest.approx(pound / 16 * gravity * foot / 12, rel=1e-15)
+
+
+def test_a_serial_no_folder_could_be_called_by_is_refused() -> None:
+    text = MAPPING.replace("[gear]", f'[gear]\nserial = "{"7" * 400}"')
+    assert "expected at most 64 characters, these are 400" in refused(text)
