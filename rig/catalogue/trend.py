@@ -14,9 +14,11 @@ from rig.catalogue.filter import Filter
 from rig.catalogue.repeats import figure_of
 from rig.catalogue.row import Row, finite
 from rig.catalogue.sameness import Mounting, Point, mounting, point, words
-from rig.catalogue.scan import runs
+from rig.catalogue.scan import quickly_doubted, runs
+from rig.catalogue.scan import row as row_in
 from rig.catalogue.scatter import SHARE, Scatter, scatter
 from rig.core.errors import UsageError
+from rig.runfile.copies import known_by
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Trend:
     figure: str
     series: tuple[Series, ...]
     left_out: int  # runs that have the figure and do not count: not completed, or rejected
-    copies: tuple[str, ...] = ()  # folders left out because their run is there already, a sentence each
+    copies: tuple[str, ...] = ()  # folders left out: their run is there already, or in doubt; a sentence each
 
     def as_json(self) -> dict[str, Any]:
         """Schema hdrig.trend/1; numbers that are not finite as null."""
@@ -105,21 +107,40 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
 
     Raises UsageError without such a folder, without a run in it, or when none of its runs has the figure.
     """
-    copies: list[str] = []
-    found = runs(root, Filter(gear=gear), lambda folder, why: copies.append(f"{folder.name} is left out: {why}"))
+    copies: dict[Path, str] = {}
+    found = runs(root, Filter(gear=gear), lambda folder, why: copies.update({folder: why}))
     kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
-    for row in found:
-        one = figure_of(row, names_of(figure))
-        if one is not None:
+    counted: list[Row] = []
+    doubts: list[str] = []
+    for there in found:
+        row = there if figure_of(there, names_of(figure)) is None else _sound(there, copies, doubts)
+        if row is not None and (one := figure_of(row, names_of(figure))) is not None:
             kept[point(row), one.name].append((row, one))
+            counted.append(row)
     if not found:
         raise UsageError(f"there are no runs in {root}" + (f" of a gear '{gear}'" if gear else ""))
     if not kept:
         refuse_unknown(figure, _seen(found))
-    measured = {row.path for members in kept.values() for row, _ in members}
-    numbers = _numbers([row for row in found if row.path in measured])
+    numbers = _numbers(counted)
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
-    return Trend(figure, series, _left_out(found, figure) - sum(len(s.spots) for s in series), tuple(copies))
+    told = (*doubts, *(f"{folder.name} is left out: {why}" for folder, why in copies.items()))
+    return Trend(figure, series, _left_out(found, figure) - len(counted) - len(doubts), told)
+
+
+def _sound(there: Row, copies: dict[Path, str], doubts: list[str]) -> Row | None:
+    """The run, or where its figures are in doubt a copy of it whose are not, which then is no copy that is left out;
+    None where there is none, which is added to the `doubts`."""
+    doubt = quickly_doubted(there).doubt
+    if not doubt:
+        return there
+    for folder in copies:
+        copy = row_in(folder)
+        if known_by(copy) == known_by(there) and not quickly_doubted(copy).doubt:
+            copies.pop(folder)
+            copies[there.path] = f"its figures are in doubt, those of its copy {folder} are not: {doubt}"
+            return copy
+    doubts.append(f"{there.path.name} is left out: its figures are in doubt: {doubt}")
+    return None
 
 
 def _seen(found: Sequence[Row]) -> set[str]:

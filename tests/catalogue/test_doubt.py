@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from pathlib import Path
 
 import pytest
 
 from rig.catalogue.compare import compare
+from rig.catalogue.trend import trend
 from rig.cli import main
 from tests.commands.made_run import made_run
 
@@ -16,8 +18,8 @@ FIGURE = {"label": "Peak to peak", "value": 90.0, "unit": "arcsec", "ci95": [89.
 RESULT = {"schema": "hdrig.result/1", "verdict": "PASS", "estimates": {"kinematic_error_peak_to_peak": FIGURE}}
 
 
-def analysed(folder: Path) -> Path:
-    made_run(folder)
+def analysed(folder: Path, **change: object) -> Path:
+    made_run(folder, change=change)
     (folder / "result.json").write_text(json.dumps(RESULT))
     return folder
 
@@ -77,3 +79,23 @@ def test_a_result_that_was_edited_is_too(pair: tuple[Path, Path]) -> None:
     about["files"]["result.json"] = {"sha256": "0" * 64, "derived": True}
     (pair[0] / "manifest.json").write_text(json.dumps(about))
     assert compare(pair).remarks[0].startswith("a: its figures are not to be believed: result.json is not what it was")
+
+
+def test_a_trend_leaves_out_a_run_in_doubt_and_takes_the_copy_of_one_that_is_in_none(tmp_path: Path) -> None:
+    def taken() -> set[str]:
+        return {spot.row.path.name for series in trend(tmp_path, "peak-to-peak").series for spot in series.spots}
+
+    first, second = analysed(tmp_path / "a", uid="one"), analysed(tmp_path / "b", uid="two")
+    shutil.copytree(first, tmp_path / "z")
+    taken_first = (taken() - {"b"}).pop()  # of two copies whichever the disk names first
+    (other,) = {"a", "z"} - {taken_first}
+    changed(tmp_path / taken_first / "samples.parquet")
+    assert taken() == {other, "b"}
+    found = trend(tmp_path, "peak-to-peak")
+    assert found.left_out == 0
+    said = f"its figures are in doubt, those of its copy {tmp_path / other} are not: samples.parquet is not what it was"
+    assert found.copies[0].startswith(f"{taken_first} is left out: {said}")
+    changed(second / "samples.parquet")
+    assert taken() == {other}
+    said = trend(tmp_path, "peak-to-peak").copies[0]
+    assert said.startswith("b is left out: its figures are in doubt: samples.parquet is not what it was")
