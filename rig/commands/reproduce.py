@@ -118,16 +118,18 @@ def draw(campaign: Path, out: Path, begun: Mapping[Path, Future[Reading]] = Mapp
     if not campaign.is_dir():
         raise UsageError(f"{campaign} is no folder; expected that of a campaign")
     refuse_unwritable(out)
-    found = entries(campaign)
+    no_runs: list[str] = []
+    found = entries(campaign, no_runs.append)
     read = gather(found, lambda text: print(f"reproduce: {text}", file=sys.stderr), begun=begun)
+    left_out = (*no_runs, *read.left_out)
     made = exhibits(read)
     backends = {str(e.manifest.get("backend")) for e in found}
     backend = "sim" if "sim" in backends else next(iter(backends)) if len(backends) == 1 else None
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
-        page = write(out, made, About(facts(campaign, found), read.left_out, backend))
+        page = write(out, made, About(facts(campaign, found), left_out, backend))
     print("SIMULATED" if backend == "sim" else f"campaign {campaign.name}")
-    print("\n".join([*told_of(made), *(f"left out: {why}" for why in read.left_out)]))
+    print("\n".join([*told_of(made), *(f"left out: {why}" for why in left_out)]))
     print(f"page {page}")
     return int(Exit.INCOMPLETE if any(e.missing for e in made) else Exit.PASS)
 

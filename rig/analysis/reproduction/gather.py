@@ -15,7 +15,7 @@ from typing import Any, ParamSpec, TypeVar
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.model import Model, identify_gear
 from rig.analysis.reproduction.reading import Reading, read
-from rig.core.errors import DataError, HdrigError
+from rig.core.errors import DataError, HdrigError, UsageError, said_of
 from rig.core.kinds import Regime, regime_of
 from rig.runfile import manifest as manifests
 from rig.runfile.misfits import usable
@@ -60,11 +60,16 @@ def entry(folder: Path) -> Entry:
     return Entry(folder, usable(manifests.read(folder)))
 
 
-def entries(campaign: Path) -> list[Entry]:
-    """Every run in the folder that came to its end, in order; checks and warm-up left out. Raises DataError: none, or
-    runs of several gears.
+def entries(campaign: Path, leave_out: Callable[[str], object] = lambda why: None) -> list[Entry]:
+    """Every run in the folder that came to its end, in order; checks and warm-up left out, and what is no run of ours,
+    of which `leave_out` is told. Raises DataError: none, or runs of several gears.
     """
-    found = [entry(path.parent) for path in sorted(campaign.rglob(manifests.NAME))]
+    found = []
+    for path in sorted(campaign.rglob(manifests.NAME)):
+        try:
+            found.append(entry(path.parent))
+        except UsageError as error:
+            leave_out(f"{path.parent.name}: {said_of(path.parent, error)}")
     found = [e for e in found if _counts(e.manifest)]
     if not found:
         raise DataError(f"{campaign} holds no completed run")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import signal
 from pathlib import Path
 
@@ -61,3 +62,14 @@ def test_a_process_is_deaf_to_ctrl_c_from_its_first_moment() -> None:
         assert signal.SIGINT in blocked
         assert pool.submit(signal.getsignal, signal.SIGINT).result() is signal.SIG_IGN
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def test_a_folder_that_is_no_run_of_ours_is_left_out_and_said(tmp_path: Path, shared: Path) -> None:
+    shutil.copytree(shared / "cases" / "open-1" / SOME[2], tmp_path / SOME[2])
+    foreign = tmp_path / "theirs"
+    foreign.mkdir()
+    (foreign / "manifest.json").write_text("{}")
+    said: list[str] = []
+    found = entries(tmp_path, said.append)
+    assert [e.folder.name for e in found] == [SOME[2]]
+    assert said == ['theirs: manifest.json has schema null, expected "hdrig.run/1"']
