@@ -11,7 +11,7 @@ import numpy as np
 
 from rig.analysis.findings.collected import Findings, conclude
 from rig.analysis.findings.result import Result
-from rig.analysis.motion.held import not_held
+from rig.analysis.motion.held import not_held, not_still
 from rig.analysis.motion.overview import add_overview
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.speed import Speed, motor_speed
@@ -171,7 +171,8 @@ def _broken(run: Tame, doubt: str) -> str:
         gone = f"{gone}, so the figures are from a part of it"
     locked = regime_of(run.procedure) is Regime.LOCKED or bool(run.conditions.get("output_locked"))
     turned = not_held(run.column("theta_l")) if locked else ""
-    found = [said for said in (doubt, gone, time_untold(run.manifest, run.column("t")), turned) if said]
+    moved = not_still(run.column("theta_m")) if run.procedure == "standstill" else ""
+    found = [said for said in (doubt, gone, time_untold(run.manifest, run.column("t")), turned, moved) if said]
     return f"The samples are not what the manifest says: {'; '.join(found)}." if found else ""
 
 

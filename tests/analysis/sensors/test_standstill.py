@@ -83,6 +83,15 @@ def test_a_motor_that_moved_was_not_at_rest() -> None:
     assert not next(c for c in result.checks if c.name == "still").passed
 
 
+def test_a_run_that_turns_is_no_standstill_whatever_its_manifest_says() -> None:
+    """An import with the wrong procedure had a noise of a million arcsec, and no word against it."""
+    t = np.arange(0, 10, 1e-3)
+    result = analyse(MadeRun({"t": t, "theta_m": t}, {"procedure": "standstill", "gear": {"ratio": 50}}))
+    assert result.verdict == "INCONCLUSIVE"
+    said = "The samples are not what the manifest says: it says it is a standstill, and its motor goes 1.59 turns."
+    assert said in result.sentence
+
+
 def test_the_drift_of_an_angle_that_flips_by_single_counts_is_not_told_from_zero() -> None:
     count_arcsec = 1_296_000 / 65_536
     t = np.arange(0, 10, 1e-3)
