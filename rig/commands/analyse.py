@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.commands.folders import expand, for_each, runs_argument
-from rig.commands.limits import limit_argument, limits_of
+from rig.commands.limits import limit_argument, limits_of, refuse_not_given
 from rig.core.errors import Exit
 from rig.core.loading import load
 from rig.evaluation.reference import reference_named
-from rig.evaluation.run import NEEDED, analyse_folder, exit_of, limits_for
+from rig.evaluation.run import NEEDED, analyse_folder, exit_of, limits_for, procedure_in
 
 if TYPE_CHECKING:
     from rig.analysis.findings.result import Result
@@ -46,7 +46,10 @@ def run(args: argparse.Namespace) -> int:
     limits = limits_of(args.limits)
 
     def analyse_one(folder: Path) -> Exit:
-        mine = limits if len(folders) == 1 else limits_for(folder, limits)
+        mine = limits_for(folder, limits)
+        if len(folders) == 1:  # nothing else it could be meant for
+            refuse_not_given(procedure_in(folder), {n: x for n, x in limits.items() if x is not None})
+            mine = limits
         result, simulated = analyse_folder(folder, places[folder], reference, mine)
         print_result(result, places[folder], folder, simulated)
         for name in [n for n in limits if n not in mine]:

@@ -53,7 +53,7 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
 
 
 def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
-    """Raises UsageError when a run that is yet to be made is not made for a figure it is to be judged by."""
+    """Raises UsageError when a run of that procedure is not made for a figure it is to be judged by."""
     if not limits:
         return
     from rig.analysis.findings.figure_names import figures_of, is_run_for

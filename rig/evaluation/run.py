@@ -86,10 +86,16 @@ def limits_for(folder: Path, limits: Mapping[str, Any]) -> Mapping[str, Any]:
     if not limits:
         return limits
     from rig.analysis.findings.figure_names import is_run_for
+
+    procedure = procedure_in(folder)
+    return {name: limit for name, limit in limits.items() if is_run_for(procedure, name)}
+
+
+def procedure_in(folder: Path) -> str:
+    """What its manifest calls it. Raises UsageError when there is none."""
     from rig.runfile.manifest import read
 
-    procedure = str(read(folder).get("procedure", ""))
-    return {name: limit for name, limit in limits.items() if is_run_for(procedure, name)}
+    return str(read(folder).get("procedure", ""))
 
 
 def judged_by(run: Run, limits: Mapping[str, Any]) -> Run:

@@ -164,3 +164,12 @@ def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
 )  # fmt: skip
 def test_a_run_may_be_judged_by_what_it_measures_or_might(procedure: str, limit: str) -> None:
     refuse_not_given(procedure, limits_of([limit]))
+
+
+def test_one_run_is_not_judged_by_what_it_is_not_made_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Neither before it is made nor after; a limit that is lifted may be any."""
+    run = made_run(tmp_path / "good")
+    assert main(["analyse", str(run), "--limit", "K1=7000.."]) == 2
+    assert "a kinematic-error run gives no figure stiffness_K1; expected one of" in capsys.readouterr().err
+    assert not (run / "result.json").exists()
+    assert main(["analyse", str(run), "--limit", "K1=none"]) == 0
