@@ -25,6 +25,7 @@ from rig.session import Ended, Session
 STRANGE = 0.5  # of the RMS of the error: feeding such a series forward may well make it worse
 HALVED = 5  # a speed is halved fewer times than that to find one that would do
 DYNAMIC = 0.4  # of the error; with so much made by the gear's dynamics its series is not found in the rest
+UNLIKE = 1.25  # times: by less the model is right enough, however narrow the intervals are
 ORDERS = 15  # looked at for the one that is amplified most
 SEED = 20011  # of the draws of the series: the same gear file gives the same prediction
 
@@ -167,5 +168,25 @@ def sentence(c: Compared) -> str:
         f"at {c.speed_rpm:g} rpm the load left its reference by {b.rms.value:.2f} arcsec RMS ({b.rms.low:.2f} to "
         f"{b.rms.high:.2f}), {b.peak_to_peak.value:.1f} peak to peak without compensation, and by {a.rms.value:.2f} "
         f"({a.rms.low:.2f} to {a.rms.high:.2f}), {a.peak_to_peak.value:.1f} with it: {c.improvement:.1f} times less; "
-        f"the model said {eb.rms:.2f} and {ea.rms:.2f} arcsec, {c.expected_improvement:.1f} times less"
+        f"the model said {_said(eb)} and {_said(ea)} arcsec, {c.expected_improvement:.1f} times less"
+        + "".join(f"; {said}" for said in unlike_the_model(c))
     )
+
+
+def unlike_the_model(c: Compared) -> list[str]:
+    """Where what was measured is not what the model said: neither interval reaches the other, by UNLIKE at least."""
+    pairs = (("without", c.without.rms, c.expected_without), ("with", c.with_it.rms, c.expected_with))
+    return [
+        f"{which} compensation the error is {_times(m.value / e.rms)} what the model said, beyond both intervals: at "
+        "this speed the motor's loop leaves another error than was taken, or the gear is not as the gear file has it"
+        for which, m, e in pairs
+        if (m.low > e.rms_ci95[1] or m.high < e.rms_ci95[0]) and abs(np.log(m.value / e.rms)) > np.log(UNLIKE)
+    ]
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
+
+
+def _said(e: Expected) -> str:
+    return f"{e.rms:.2f} ({e.rms_ci95[0]:.2f} to {e.rms_ci95[1]:.2f})"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.analysis.orders.align import Alignment
-from rig.closing.compensate import Compared
+from rig.closing.compensate import Compared, unlike_the_model
 from rig.core.errors import NotReady
 from rig.core.units import ARCSEC
 from rig.model.gearfile import GearFile
@@ -46,6 +46,7 @@ def document(found: Sequence[Compared], where: Alignment, gear: GearFile, simula
                     for name, f in (("without", one.without), ("with", one.with_it))
                 },
                 "predicted": {"without": asdict(one.expected_without), "with": asdict(one.expected_with)},
+                "unlike_the_model": unlike_the_model(one),
                 "improvement": {"measured": one.improvement, "predicted": one.expected_improvement},
             }
             for one in found

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from rig.analysis.across_runs.compensation import turned
+from rig.analysis.across_runs.compensation import BINS, Expected, Followed, expected, turned
+from rig.analysis.findings.intervals import Ranged
 from rig.bench import read, twin_parameters
-from rig.closing.compensate import Compared, compensate
+from rig.closing.compensate import Compared, compensate, unlike_the_model
 from rig.core.errors import NotReady
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile, declared
@@ -55,6 +58,11 @@ def test_at_the_slow_speed_most_of_the_error_goes_and_the_model_says_how_much(sl
     assert found.improvement > 8.0
     assert found.improvement == pytest.approx(found.expected_improvement, rel=0.3)
     assert found.with_it.rms.low < found.with_it.rms.value < found.with_it.rms.high
+    low, high = found.expected_with.rms_ci95
+    assert low < found.expected_with.rms < high
+    assert found.with_it.rms.low < high
+    assert found.with_it.rms.high > low
+    assert unlike_the_model(found) == []
 
 
 @pytest.mark.long
@@ -77,3 +85,33 @@ def test_the_series_of_another_gear_is_refused_before_it_is_fed_forward(tmp_path
     strange = replace(known, kinematic_error=replace(known.kinematic_error, series=other))
     with pytest.raises(NotReady, match="another gear"):
         made(tmp_path, strange, 60.0)
+
+
+def told_of(gear_file: GearFile) -> tuple[Expected, Expected]:
+    """What is expected at 300 rpm of a motor whose loop leaves nothing."""
+    nothing = Ranged(0.0, 0.0, 0.0)
+    before = Followed(nothing, nothing, np.zeros((2, BINS)), np.zeros((2, BINS)), np.zeros((8, BINS)), 8)
+    return expected(gear_file, 300.0, before, np.random.default_rng(1))
+
+
+def test_what_the_gear_file_does_not_know_well_the_prediction_does_not_either() -> None:
+    known = gear()
+    sure, _ = told_of(known)
+    assert sure.rms_ci95 == pytest.approx((sure.rms, sure.rms))
+    K = known.parameters["K"]
+    vague = replace(K, interval=(0.8 * K.value, 1.2 * K.value))
+    unsure, _ = told_of(replace(known, parameters={**known.parameters, "K": vague}))
+    assert unsure.rms == sure.rms
+    assert unsure.rms_ci95[0] < 0.99 * sure.rms < 1.01 * sure.rms < unsure.rms_ci95[1]
+
+
+@pytest.mark.parametrize(("times", "told"), [(1.0, 0), (1.2, 0), (2.0, 1), (0.5, 1)])
+def test_a_prediction_that_is_not_what_was_measured_is_said(times: float, told: int) -> None:
+    without, with_it = told_of(gear())
+    rms = Ranged(times * without.rms, 0.99 * times * without.rms, 1.01 * times * without.rms)
+    shown: Any = SimpleNamespace(rms=rms)
+    same: Any = SimpleNamespace(rms=Ranged(1.0, 0.9, 1.1))
+    flat = replace(with_it, rms=1.0, rms_ci95=(0.9, 1.1))
+    said = unlike_the_model(Compared(300.0, shown, same, without, flat, ("a", "b")))
+    assert len(said) == told
+    assert all("without compensation the error is" in one and "what the model said" in one for one in said)

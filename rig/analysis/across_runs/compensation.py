@@ -12,6 +12,7 @@ from rig.analysis.findings.intervals import Ranged, t95
 from rig.analysis.findings.result import Array
 from rig.analysis.orders.align import Alignment, align
 from rig.core.errors import DataError
+from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.fourier import FourierSeries
 from rig.model.gearfile import GearFile
@@ -19,7 +20,8 @@ from rig.runfile.run import Run
 
 BINS: Final = 180  # of a motor turn: 2°, twelve to a period of order 15
 TRUSTED: Final = 8  # orders that vote for the encoder's zero: higher ones are nearly noise
-DRAWS: Final = 200  # of the series from its covariance, one a turn
+DRAWS: Final = 200  # of the series and of the gear
+LEAST: Final = 0.01  # of a parameter: none is zero or below, however wide its interval
 
 Complex = npt.NDArray[np.complex128]
 
@@ -39,10 +41,12 @@ class Followed:
 
 @dataclass(frozen=True)
 class Expected:
-    """What the model says, arcsec."""
+    """What the model says, arcsec, and between what 95 % of the gears lie that the gear file allows."""
 
     peak_to_peak: float
     rms: float
+    peak_to_peak_ci95: tuple[float, float]
+    rms_ci95: tuple[float, float]
 
 
 def followed(run: Run) -> Followed:
@@ -135,32 +139,53 @@ def turned(series: FourierSeries, shift: float) -> FourierSeries:
     return FourierSeries(tuple(map(float, c.real)), tuple(map(float, -c.imag)))
 
 
-def transmissibility(gear: GearFile, omega_m: float, orders: int) -> Complex:
+def transmissibility(gear: GearFile, omega_m: float, orders: int, off: Array | None = None) -> Complex:
     """What the load makes of a motion of the gear's input side at orders 1..k of the motor's speed [rad/s]: (k,).
 
     G = (B_sp·s + K)/(J_l·s² + (B_sp + B_l)·s + K), the motor's angle imposed      [ghorbel2001, Eq. 7]
+    `off` (4,) is by how many standard deviations K, B_sp, B_l and J_l are off; one nobody measured is off by nothing.
     """
-    p = {name: gear.parameters[name].value for name in ("K", "B_sp", "B_l", "J_l")}
+    known = [gear.parameters[name] for name in ("K", "B_sp", "B_l", "J_l")]
+    by = np.nan_to_num([p.half / Z95 for p in known]) * (0.0 if off is None else off)
+    K, B_sp, B_l, J_l = (max(p.value + d, LEAST * p.value) for p, d in zip(known, by, strict=True))
     s = 1j * np.arange(1, orders + 1) * omega_m
-    return np.asarray((p["B_sp"] * s + p["K"]) / (p["J_l"] * s**2 + (p["B_sp"] + p["B_l"]) * s + p["K"]))
+    return np.asarray((B_sp * s + K) / (J_l * s**2 + (B_sp + B_l) * s + K))
 
 
 def expected(gear: GearFile, speed_rpm: float, before: Followed, rng: np.random.Generator) -> tuple[Expected, Expected]:
     """Without and with compensation: θ̃_p through the model; then what is not known of it, and what the motor's loop
-    had left without compensation, which it is taken to leave with it.
+    had left without compensation, which it is taken to leave with it. Intervals are those of gears that the gear file
+    allows, and of single turns.
     """
-    series = gear.kinematic_error.series
+    series, omega_m = gear.kinematic_error.series, speed_rpm * RPM
     k = len(series.a)
-    g = transmissibility(gear, speed_rpm * RPM, k)
     c = np.array(series.a) - 1j * np.array(series.b)
-    wave = _wave(c * g)
-    without = Expected(float(np.ptp(wave)) / ARCSEC, float(np.sqrt(np.mean(wave**2))) / ARCSEC)
+    unknown = np.resize(_draws(gear, rng), (DRAWS, k))
+    gears = rng.standard_normal((DRAWS, 4))
+    may_be = [_wave((c + d) * transmissibility(gear, omega_m, k, off)) for d, off in zip(unknown, gears, strict=True)]
     n = np.arange(1, BINS // 4)
     waves = 2 / BINS * np.exp(-1j * np.multiply.outer(n, _grid()))
-    lag = before.loop @ waves.T  # (turns, orders)
-    lag[:, :k] += np.resize(_draws(gear, rng), (lag.shape[0], k))
-    left = np.array([_wave(c * transmissibility(gear, speed_rpm * RPM, n.size)) for c in lag])
-    return without, Expected(float(np.mean(np.ptp(left, axis=1))) / ARCSEC, float(np.sqrt(np.mean(left**2))) / ARCSEC)
+    loop = before.loop @ waves.T  # (turns, orders)
+    lag = loop[np.arange(DRAWS) % loop.shape[0]]
+    lag[:, :k] += unknown
+    left = [_wave(c * transmissibility(gear, omega_m, n.size, off)) for c, off in zip(lag, gears, strict=True)]
+    return _told([_wave(c * transmissibility(gear, omega_m, k))], may_be), _told(left, left)
+
+
+def _told(waves: list[Array], may_be: list[Array]) -> Expected:
+    """Figures of `waves`, with what 95 % of those have that `may_be`; each (BINS,)."""
+    (high, rms), (highs, many) = _figures(waves), _figures(may_be)
+    return Expected(float(np.mean(high)), float(np.sqrt(np.mean(rms**2))), _most(highs), _most(many))
+
+
+def _figures(waves: list[Array]) -> tuple[Array, Array]:
+    """Peak to peak and RMS of each, arcsec."""
+    return np.ptp(waves, axis=1) / ARCSEC, np.sqrt(np.mean(np.square(waves), axis=1)) / ARCSEC
+
+
+def _most(values: Array) -> tuple[float, float]:
+    low, high = np.percentile(values, (2.5, 97.5))
+    return float(low), float(high)
 
 
 def _draws(gear: GearFile, rng: np.random.Generator) -> Complex:

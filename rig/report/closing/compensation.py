@@ -50,15 +50,21 @@ def _speed(s: Mapping[str, Any]) -> dict[str, Any]:
     for key, label in (("rms", "RMS"), ("peak_to_peak", "Peak to peak")):
         measured = [s["measured"][which][key] for which in ("without", "with")]
         told_of = [f"{m['value']:.2f} ({m['low']:.2f} to {m['high']:.2f})" for m in measured]
-        rows.append((label, *told_of, *(f"{s['predicted'][which][key]:.2f}" for which in ("without", "with"))))
+        rows.append((label, *told_of, *(_predicted(s["predicted"][which], key) for which in ("without", "with"))))
     return {
         "rpm": f"{s['speed_rpm']:g}",
         "turns": s["measured"]["with"]["turns"],
         "measured": f"{s['improvement']['measured']:.1f}",
         "predicted": f"{s['improvement']['predicted']:.1f}",
         "rows": rows,
+        "unlike": s["unlike_the_model"],
         "drawing": Markup(_drawing(s["measured"])),
     }
+
+
+def _predicted(said: Mapping[str, Any], key: str) -> str:
+    low, high = said[f"{key}_ci95"]
+    return f"{said[key]:.2f} ({low:.2f} to {high:.2f})"
 
 
 def _drawing(measured: Mapping[str, Any]) -> str:
