@@ -25,18 +25,14 @@ def done(
 
 def noise_in(s: Solution, rest: Solution) -> Callable[[Key], tuple[float, float]]:
     """What sensor noise makes of an effect in a block: mean square of what it does there, and mean of that times what
-    is left, in the block's own unit squared: those of the few runs it is known of, of the same procedure. `rest` is the
-    fit without the effect."""
+    is left, in the block's own unit squared. It is known of a fast and a slow run of each procedure, and may grow with
+    the speed: the lesser is taken. `rest` is the fit without the effect."""
     eq = s.design.eq
-    found: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    found: dict[tuple[str, str], tuple[float, float]] = {}
     for key in s.design.noise:
         left = s.design.noise_left(key, s.x)
         made = s.design.noise_left(key, rest.x) - left
+        like = (eq.runs[key[0]].procedure, key[1])
         both = float(np.mean(made**2)), float(np.mean(made * left))
-        found.setdefault((eq.runs[key[0]].procedure, key[1]), []).append(both)
-
-    def of(key: Key) -> tuple[float, float]:
-        square, along = np.mean(found.get((eq.runs[key[0]].procedure, key[1]), [(0.0, 0.0)]), axis=0)
-        return float(square), float(along)
-
-    return of
+        found[like] = min(both, found.get(like, both))
+    return lambda key: found.get((eq.runs[key[0]].procedure, key[1]), (0.0, 0.0))
