@@ -94,14 +94,14 @@ def _found(
 
 def starts(file: GearFile, args: argparse.Namespace) -> int:
     """One line a torque: does it run up from rest, to which speed, in what time. Raises UsageError: with a figure."""
-    from rig.commands.starts import lines
+    from rig.commands.starts import lines, run_ups, speeds_reached
 
     if args.out is not None:
         raise UsageError("--out draws a steady turn: it goes with --speed or --torque, not with --start")
-    found = "\n".join(lines(file, args.start, args.load))
+    made = run_ups(file, args.start, args.load)
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
-    print(found)
-    for sentence in beyond(file, [], args.load):
+    print("\n".join(lines(file, args.start, made)))
+    for sentence in beyond(file, speeds_reached(made), args.load):
         print(sentence)
     return int(Exit.PASS)
 

@@ -23,18 +23,28 @@ HARDLY = 0.01  # motor turns: the spring gives so much before anything slides
 Array = npt.NDArray[Any]
 
 
-def lines(file: GearFile, torques: Sequence[float], load: float) -> Iterator[str]:
-    """A line a torque, by the gear file's gear and as many drawn from its intervals. Raises UsageError: no numbers,
+def run_ups(file: GearFile, torques: Sequence[float], load: float) -> list[RunUp]:
+    """Each torque by the gear file's gear and as many drawn from its intervals. Raises UsageError: no numbers,
     NoSteadyState: a load beyond any gear.
     """
     if not np.isfinite(torques).all():
         raise UsageError(f"--start {' '.join(f'{x:g}' for x in torques)}: expected torques in N·m")
     gears = [file.gear(), *drawn_gears(file)]
     refuse_load(gears[0], load)
+    return [run_up(gears, tau, SECONDS, load) for tau in torques]
+
+
+def speeds_reached(made: Sequence[RunUp]) -> list[float]:
+    """Motor speeds, rpm, at which the gear file's own gear keeps turning."""
+    return [float(one.speed[0]) / RPM for one in made if one.turning[0]]
+
+
+def lines(file: GearFile, torques: Sequence[float], made: Sequence[RunUp]) -> Iterator[str]:
+    """A line a torque."""
     yield f"{'τ, N·m':>10s}{'does it turn':>22s}{'motor speed, rpm':>20s}{'run up in, s':>20s}"
-    for tau in torques:
-        yield line(tau, run_up(gears, tau, SECONDS, load))
-    drawn = len(gears) - 1
+    for tau, one in zip(torques, made, strict=True):
+        yield line(tau, one)
+    drawn = made[0].turning.size - 1
     how = f"± 95 %: {drawn} gears drawn from the gear file" if drawn else "no intervals: nothing was measured"
     yield f"  ({how}; motor speed: mean from {0.8 * SECONDS:g} to {SECONDS:g} s; run up: 95 % of it)"
     if (tau_s := file.parameters["tau_s"]).origin != "measured":

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from rig.cli import main
 from rig.commands.simulate import beyond
 from rig.commands.starts import went
-from rig.model.gearfile import Covered, GearFile, Parameter
+from rig.model.gearfile import Covered, GearFile, Parameter, write
 from rig.report.text.gear import breakaway_beside
 from tests.closing.test_compensate import gear
 
@@ -121,3 +122,14 @@ def test_every_column_of_the_starting_table_names_its_unit(capsys: pytest.Captur
     names = re.split(r"\s{2,}", head.strip())
     assert [name for name in names if name.rpartition(", ")[2] not in UNITS] == ["does it turn"]
     assert row.endswith("it does not start")
+
+
+def test_a_start_that_ends_beyond_what_the_gear_was_identified_at_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "gear.toml"
+    write(path, replace(gear(), covered=Covered((9.6, 314.0), (-40.0, 0.0))))
+    assert main(["simulate", str(path), "--start", "0.3", "2"]) == 0
+    said = capsys.readouterr().out
+    assert said.count("extrapolated: ") == 1
+    assert "rpm; the gear was identified from 9.6 to 314 rpm" in said

@@ -54,6 +54,7 @@ def _torques(found: Findings, run: Source, settled: Motion, window: Window) -> N
         floor = floor_of(tau_l, settled.t)
         how = f"Mean of the torque sensor {where}, its zero not taken off; interval from the scatter of twenty pieces."
         found.figure("mean_shaft_torque", "Mean shaft torque", floor.mean, "N·m", floor.u_mean, how)
+        found.cannot.append("The torque sensor's zero is in the mean shaft torque: no part of this run shows it alone.")
         low, high = np.percentile(tau_l, [0.5, 99.5])
         how = f"From the 0.5 to the 99.5 percentile of single rows {where}: noise of the sensor is in it."
         found.exact("shaft_torque_swing", "Shaft torque, swing", float(high - low), "N·m", how)
