@@ -196,9 +196,11 @@ def following(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     limit = guard.limits.following + guard.limits.following_time * abs(asked.omega_ref)
     if not abs(error) > limit:
         return None
+    way = error * asked.omega_ref
+    where = "behind" if way > 0 else "ahead of" if way < 0 else "off"
     return Trip(
         "following",
-        f"motor {error / DEG:.1f}° behind its reference, limit ±{limit / DEG:.1f}° at this speed: "
+        f"motor {abs(error) / DEG:.1f}° {where} its reference, limit ±{limit / DEG:.1f}° at this speed: "
         "the gains are too weak or too strong (hdrig tune finds better ones), or something holds the motor",
     )
 

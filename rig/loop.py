@@ -21,6 +21,8 @@ from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
+LONG = 0.01  # s without a command: by less no gains that hold a reference lose it
+RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
@@ -74,6 +76,7 @@ class Loop:
         self.tripped = tripped
         self.running = False
         self.away = (NEVER, 0.0)  # when this program last came back late, and how late [s]
+        self.longest = (NEVER, 0.0)  # the same, of the longest time it was away of late
         self.rows = 0  # handed to the sink so far
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
@@ -162,6 +165,8 @@ class Loop:
         skipped = int(lateness / period)
         self.timing.skip(skipped)
         self.away = (now, lateness)
+        if lateness >= self.longest[1] or now - self.longest[0] > RECENT:
+            self.longest = self.away
         return skipped
 
     def _tripped(self, trip: Trip, sample: Sample, asked: Setpoint, now: float) -> Ending:
@@ -216,7 +221,10 @@ class Loop:
         return now
 
     def _explained(self, trip: Trip, sample: Sample, asked: Setpoint, now: float) -> Trip:
-        """Data too old to act on: whose, and where a device tells one thing and not the other, which it is."""
+        """Data too old to act on: whose, and where a device tells one thing and not the other, which it is. A motor
+        that lost its reference: whether nobody led it for a while."""
+        if trip.name == "following" and (words := self._stalled(now)):
+            return trip._replace(sentence=f"{trip.sentence}; {words}")
         if trip.name != "stale":
             return trip
         late = self.instruments.overdue(now, self.guard.limits.stale)
@@ -229,6 +237,16 @@ class Loop:
         back, late = self.away
         mostly = back > now - age and late > MOSTLY * age
         return f"this program itself was held up for {late * 1e3:.1f} ms of it" if mostly else ""
+
+    def _stalled(self, now: float) -> str:
+        """That this program itself was away so long a while ago that the motor may have lost its reference by it."""
+        back, late = self.longest
+        if late < LONG or now - back > RECENT:
+            return ""
+        return (
+            f"but this program itself was held up for {late * 1e3:.1f} ms, {(now - back) * 1e3:.0f} ms before, which "
+            "alone may have done it: is the machine busy with something else?"
+        )
 
     def _last_row(self, sample: Sample, asked: Setpoint) -> None:
         """What was seen when the torque had just been taken off."""

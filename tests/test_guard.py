@@ -120,3 +120,12 @@ def test_the_quick_test_and_the_rules_always_agree(values: list[float]) -> None:
     assert (trip is None) == all(r is None for r in rules)
     if trip is not None:
         assert math.isfinite(len(trip.sentence))
+
+
+@pytest.mark.parametrize(
+    ("omega_ref", "word"), [(3.0, "45.8° behind its"), (-3.0, "45.8° ahead of its"), (0.0, "11.5° off its")]
+)
+def test_a_motor_is_ahead_of_its_reference_or_behind_it(omega_ref: float, word: str) -> None:
+    trip = guard().check(GOOD, Torque(0.0, theta_ref=1.2 + 0.2 * abs(omega_ref), omega_ref=omega_ref))
+    assert trip is not None
+    assert word in trip.sentence

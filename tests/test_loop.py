@@ -12,7 +12,7 @@ from rig.core.channels import Flag
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Mode, Torque
-from rig.guard import Guard
+from rig.guard import Guard, Trip
 from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
@@ -257,3 +257,21 @@ def test_stale_data_say_whether_the_program_itself_was_away_meanwhile(held: floa
     reason = bench.run(strike).reason
     assert "no new load-encoder sample for" in reason
     assert reason.split("; ")[1:] == words
+
+
+@pytest.mark.parametrize(("held", "ago", "told"), [(0.0, 0, False), (0.004, 20, False), (0.073, 20, True)])
+def test_a_motor_that_lost_its_reference_says_whether_the_program_was_away_before(
+    held: float, ago: int, told: bool
+) -> None:
+    """A stall of 73 ms was blamed on the gains."""
+    bench = Bench()
+    guard = Guard(LIMITS, Constant().envelope(SETTING), 50.0)
+    loop = Loop(bench.instruments, bench.supervisor, guard, bench.sink, bench.interrupts, bench.timing)
+    some = bench.instruments.read(10.0)
+    if held:
+        loop._skipped(10.0, held, 0.001)
+    loop._skipped(10.0 + ago * 1e-3 / 2, 0.002, 0.001)  # a short one after it hides nothing
+    lost = Trip("following", "motor 26.1° ahead of its reference")
+    trip = loop._explained(lost, some, Torque(0.0), 10.0 + ago * 1e-3)
+    assert ("this program itself was held up for 73.0 ms, 20 ms before" in trip.sentence) is told
+    assert loop._explained(lost, some, Torque(0.0), 12.0) == lost
