@@ -18,6 +18,7 @@ from rig.analysis.motion.speed import Speed, motor_speed
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.sensors.latch_skew_words import LABEL as SKEW
 from rig.analysis.sensors.latch_skew_words import add_latch_skew
+from rig.analysis.sensors.seldom import said_seldom
 from rig.analysis.turning.run import add_turning
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
@@ -202,5 +203,5 @@ def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Re
         PROCEDURES.get(run.procedure, _other)(found, run, motion, speed)
     if regime_of(run.procedure) is Regime.AT_SPEED and not found.rejected:
         _split(found, run, motion, reference)
-    found.cannot += run.notes
+    found.cannot += [*([seldom] if (seldom := said_seldom(run, motion)) else []), *run.notes]
     return conclude(found, run.procedure, run.manifest)
