@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit, UsageError
+from rig.core.errors import Exit
 from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from rig.live.view.viewer import Viewer
-
-PORTS = 65535  # as many as there are
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,8 +33,6 @@ def run(args: argparse.Namespace) -> int:
     from rig.bench import read
     from rig.console.server import Serving
 
-    if not 0 <= args.port <= PORTS:
-        raise UsageError(f"--port {args.port}: expected 0 to {PORTS}")
     read(args.bench)  # what is wrong with it is said now
     refuse_unwritable(args.out)
     with writing(args.out):

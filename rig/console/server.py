@@ -14,7 +14,7 @@ import uvicorn
 
 from rig.console.access import Access, called, is_loopback, new_token
 from rig.console.app import Console
-from rig.core.errors import NotReady
+from rig.core.errors import NotReady, UsageError
 from rig.live.view.viewer import Viewer
 
 LONGEST_STOP = 120.0  # s: a wound-up gear is let out along its ramp, then the run is closed
@@ -99,7 +99,7 @@ class Serving:
 
 def _listen(host: str, port: int) -> socket.socket:
     if not 0 <= port <= HIGHEST:
-        raise NotReady(f"nothing can listen at port {port}: ports go from 0, which finds a free one, to {HIGHEST}")
+        raise UsageError(f"nothing can listen at port {port}: ports go from 0, which finds a free one, to {HIGHEST}")
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         made = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)  # named, or asyncio leaves Nagle on

@@ -21,7 +21,7 @@ from rig.core.errors import Exit
         (["run", "kinematic-error", "--dry-run", "--set", "gear.N=nan"], "gear.N = nan: expected a finite number"),
         (["run", "kinematic-error", "--dry-run", "--set", "gear.serial=''"], "expected a text of at least 1 character"),
         (["run", "sign-and-scale", "--with", "duration=3"], "sign-and-scale has no parameter 'duration'"),
-        (["serve", "--port", "99999999"], "--port 99999999: expected 0 to 65535"),
+        (["serve", "--port", "99999999"], "ports go from 0, which finds a free one, to 65535"),
         (["twin", "--for", "nan"], "--for nan: expected 0 s or more"),
         (["twin", "--for", "-1"], "--for -1: expected 0 s or more"),
         (["import", ".", "--map", "lara8"], ". is a folder; expected a file ending in one of .csv"),

@@ -38,7 +38,7 @@ def test_a_file_that_is_absent(foreign: Foreign, suffix: str) -> None:
 
 def test_a_folder_and_a_suffix_nobody_reads(foreign: Foreign) -> None:
     (foreign.folder / "x.csv").mkdir()
-    assert "it is a folder, expected a regular file" in foreign.refused(foreign.folder / "x.csv")
+    assert "x.csv is a folder; expected a file ending in one of .csv" in foreign.refused(foreign.folder / "x.csv")
     said = foreign.refused(foreign.bytes(b"x", "x.xlsx"))
     assert said == f"x.xlsx: suffix '.xlsx' cannot be imported; expected one of {', '.join(READERS)}"
 

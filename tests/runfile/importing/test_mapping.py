@@ -155,5 +155,5 @@ def test_imperial_units_are_what_their_definitions_give() -> None:
 
 
 def test_a_serial_no_folder_could_be_called_by_is_refused() -> None:
-    text = MAPPING.replace("[gear]", f'[gear]\nserial = "{"7" * 400}"')
+    text = MAPPING.replace('serial = "SN7"', f'serial = "{"7" * 400}"')
     assert "expected at most 64 characters, these are 400" in refused(text)
