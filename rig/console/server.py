@@ -39,7 +39,7 @@ class Serving:
     def __init__(
         self, host: str, port: int, root: Path, offered: str, names: tuple[str, ...] = (), viewer: Viewer | None = None
     ) -> None:
-        """Raises NotReady when nothing can listen there."""
+        """Raises NotReady when nothing can listen there, UsageError where there is no such port."""
         self._socket = _listen(host, port)
         port = self._socket.getsockname()[1]
         self.access = Access(new_token(), host, port, names)
