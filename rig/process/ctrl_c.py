@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
@@ -29,7 +30,8 @@ def after_imports() -> Iterator[None]:
     not Python's own to handle, and in another thread than the main one all, are left as they are.
 
     Raised in a callback of a library in C it may be lost, and show as an error of that library's: an error nobody
-    foresaw that comes after an interrupt is taken for it.
+    foresaw that comes after an interrupt is taken for it. Raised where Python itself lets nothing out, as in what is
+    called when an object goes, it comes again.
     """
     ours = threading.current_thread() is threading.main_thread()
     mine = [number for number, usual in USUAL.items() if ours and signal.getsignal(number) is usual]
@@ -39,19 +41,29 @@ def after_imports() -> Iterator[None]:
     came: list[int] = []
     raised = False
 
+    def wait(signum: int) -> None:
+        came.append(signum)
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
     def interrupt(signum: int, frame: FrameType | None) -> None:
         nonlocal raised
         if importing(frame):
-            came.append(signum)
-            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+            wait(signum)
             return
         raised = True
         raise KeyboardInterrupt
+
+    def let_out(lost: sys.UnraisableHookArgs) -> None:
+        if raised and lost.exc_type is KeyboardInterrupt:
+            wait(signal.SIGINT)
+            return
+        told(lost)
 
     def again(signum: int, frame: FrameType | None) -> None:
         signal.raise_signal(came.pop())  # to whoever handles it by now: a session counts it
 
     alarm = signal.signal(signal.SIGALRM, again)
+    told, sys.unraisablehook = sys.unraisablehook, let_out
     for number in mine:
         signal.signal(number, interrupt)
     try:
@@ -65,6 +77,7 @@ def after_imports() -> Iterator[None]:
         for number in mine:
             signal.signal(number, USUAL[number])
         signal.signal(signal.SIGALRM, alarm)
+        sys.unraisablehook = told
 
 
 @contextlib.contextmanager

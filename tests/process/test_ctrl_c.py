@@ -76,6 +76,29 @@ def test_an_interrupt_that_a_library_made_another_error_of_is_one(error: type, c
         raise ValueError("of its own")
 
 
+class Pressed:
+    """Somebody presses Ctrl-C while it goes."""
+
+    def __del__(self) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        wait()
+
+
+def test_an_interrupt_where_python_lets_no_error_out_comes_again(capsys: pytest.CaptureFixture[str]) -> None:
+    """It was told as ignored, with a traceback, and an analysis went on to its end."""
+
+    def lost() -> None:
+        with after_imports():
+            Pressed()
+            wait()
+
+    before = sys.unraisablehook
+    with pytest.raises(KeyboardInterrupt):
+        lost()
+    assert sys.unraisablehook is before
+    assert capsys.readouterr().err == ""
+
+
 def test_an_interrupt_in_an_import_comes_when_the_module_is_whole(slow: str) -> None:
     with pytest.raises(KeyboardInterrupt):
         load(slow)
