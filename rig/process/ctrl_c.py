@@ -98,6 +98,17 @@ def uninterrupted() -> Iterator[None]:
             signal.raise_signal(came[0])
 
 
+@contextlib.contextmanager
+def deaf() -> Iterator[None]:
+    """While active, a Ctrl-C waits, and processes that are begun inherit that for good: it is for the main process to
+    handle. One that says so itself, once it has begun, would die of it before, with a traceback."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def importing(frame: FrameType | None) -> bool:
     """True when `frame` runs because something is being imported."""
     while frame is not None:

@@ -17,6 +17,7 @@ from rig.analysis.reproduction.model import Model, identify_gear
 from rig.analysis.reproduction.reading import Reading, read
 from rig.core.errors import DataError, HdrigError, UsageError, said_of
 from rig.core.kinds import Regime, regime_of
+from rig.process.ctrl_c import deaf
 from rig.runfile import manifest as manifests
 from rig.runfile.misfits import usable
 
@@ -115,22 +116,15 @@ class Ahead:
 
 
 class Pool(ProcessPoolExecutor):
-    """Processes of their own, to which a Ctrl-C says nothing: it is the main process's to handle.
-
-    One that has hardly begun has not come to `_quiet` yet, and would die of it with a traceback: while processes are
-    begun, which is when work is submitted, the signal waits, and they inherit that.
-    """
+    """Processes of their own, to which a Ctrl-C says nothing: they are begun when work is submitted."""
 
     def __init__(self, processes: int) -> None:
         super().__init__(processes, multiprocessing.get_context("spawn"), _quiet)
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """As of any pool."""
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
+        with deaf():
             return super().submit(fn, *args, **kwargs)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def __exit__(self, *error: object) -> None:
         """What was not begun is given up; what was is waited for: a process killed in the middle of what it sends would

@@ -21,6 +21,8 @@ from typing import Any, Final, TypeVar
 
 import pyarrow as pa
 
+from rig.process.ctrl_c import deaf
+
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -95,21 +97,22 @@ def _copy(work: Callable[[], Iterator[tuple[int, R]]]) -> Iterator[Callable[[], 
     """A forked copy that does `work`; what is given waits for it and returns what it made. Gone when the block ends."""
     give_back()
     shared = os.memfd_create("trace")
-    child = os.fork()
-    if child == 0:
-        _as_copy(work, shared)
-    waiting = True
+    child = 0  # none, before and when it was waited for
 
     def brought() -> dict[int, R]:
-        nonlocal waiting
+        nonlocal child
         _, status = os.waitpid(child, 0)
-        waiting = False
+        child = 0
         return _read(shared) if status == 0 else {}
 
     try:
+        with deaf():  # an interrupt in the copy would unwind what is the main process's to end
+            child = os.fork()
+            if child == 0:
+                _as_copy(work, shared)
         yield brought
     finally:
-        if waiting:
+        if child:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
         os.close(shared)

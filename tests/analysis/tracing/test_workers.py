@@ -1,6 +1,7 @@
 """Work shared with a forked copy: the same results in the same order, whoever made them."""
 
 import os
+import signal
 import threading
 import time
 from pathlib import Path
@@ -110,3 +111,16 @@ def test_a_block_that_raises_leaves_no_copy_behind(tmp_path: Path) -> None:
     assert int(mark.read_text()) != os.getpid()
     with pytest.raises(ProcessLookupError):
         os.kill(int(mark.read_text()), 0)
+
+
+def test_a_copy_is_deaf_to_ctrl_c_from_its_first_moment() -> None:
+    """Between the fork and its work an interrupt unwound in it what stood behind the fork in the main process."""
+
+    def heard(n: int) -> tuple[int, bool]:
+        time.sleep(0.05)  # so that either takes some
+        return os.getpid(), signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+    found = set(each(heard, range(8)))
+    assert len(found) == 2
+    assert {hears for who, hears in found if who == os.getpid()} == {True}
+    assert {hears for who, hears in found if who != os.getpid()} == {False}
