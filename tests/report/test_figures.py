@@ -1,7 +1,10 @@
 """Figures over any subset of curves: drawn or absent, never empty, never in the way of the page."""
 
+import os
 import re
+import signal
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,6 +14,7 @@ from hypothesis import strategies as st
 
 from rig.report import figures
 from rig.report.figures import CATALOGUE, Drawing, Frame
+from rig.report.figures.canvas import Curves
 from rig.report.palette import LIGHT
 from tests.report import made_up
 
@@ -221,3 +225,22 @@ def test_a_run_at_speed_is_not_called_the_kinematic_error() -> None:
     text = figures.svg(kinematic_error.DRAWING, fast) or ""
     assert "θ̃ at 120 rpm" in text
     assert "Kinematic error" not in text
+
+
+def test_an_interrupt_waits_for_the_figure() -> None:
+    """In the middle of a path matplotlib made a ValueError of it: --json told of an internal error and 70."""
+    done = []
+
+    def pressed(curves: Curves, frame: Frame) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        signal.sigtimedwait({signal.SIGUSR1}, 0.05)
+        done.append(True)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        for make in (figures.svg, figures.png):
+            with pytest.raises(KeyboardInterrupt):
+                make(replace(CATALOGUE[0], draw=pressed), {})
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert done == [True, True]

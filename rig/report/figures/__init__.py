@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 import matplotlib as mpl
 
+from rig.process.ctrl_c import uninterrupted
 from rig.report.palette import LIGHT
 from rig.report.without_help import without_help
 
@@ -74,13 +75,20 @@ def styled() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def drawing_whole() -> Iterator[None]:
+    """As `styled`, and an interrupt waits for the figure: in matplotlib's C it becomes an error of another kind."""
+    with styled(), uninterrupted():
+        yield
+
+
 def svg(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, prefix: str | None = None) -> str | None:
     """The figure as an <svg> element, or None when its curves are absent.
 
     Without `prefix` it is a file of its own in light colours; with one it is part of a page: ids begin with it, colours
     are the page's variables, width is the page's to set.
     """
-    with styled():
+    with drawing_whole():
         figure = drawing.draw(curves, frame or Frame())
         if figure is None:
             return None
@@ -91,7 +99,7 @@ def svg(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, prefix:
 def png(drawing: Drawing, curves: Curves, frame: Frame | None = None, *, scale: float = 2.0) -> bytes | None:
     """The figure as PNG on white, `scale` dots per CSS pixel; None when its curves are absent."""
     data = io.BytesIO()
-    with styled():
+    with drawing_whole():
         figure = drawing.draw(curves, frame or Frame())
         if figure is None:
             return None
