@@ -29,6 +29,7 @@ class Parser(argparse.ArgumentParser):
     """A wrong command line is one sentence on stderr and exit code 2."""
 
     hints: Mapping[str, str] = MappingProxyType({})  # of options that are looked for here, where they are
+    events = False  # a program reads them, and is told of a wrong command line in one
 
     def __init__(self, **words: Any) -> None:
         super().__init__(**words)
@@ -36,7 +37,12 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> None:  # type: ignore[override]
         hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), "")
-        print(f"hdrig: {message}{hint}; see {self.prog} --help", file=sys.stderr)
+        sentence = f"{message}{hint}; see {self.prog} --help"
+        if self.events:
+            from rig.commands.show.beforehand import refuse
+
+            refuse(sentence)
+        print(f"hdrig: {sentence}", file=sys.stderr)
         raise SystemExit(Exit.USAGE)
 
 
@@ -106,6 +112,7 @@ def _verb(args: list[str]) -> int:
     parser = Parser(prog=f"hdrig {verb}", description=CATALOGUE[verb][1], formatter_class=raw)
     parser.hints = getattr(module, "HINTS", parser.hints)
     module.arguments(parser)
+    parser.events = bool(parser.get_default("events")) and "--json" in args
     return int(module.run(parser.parse_args(args[1:])))
 
 

@@ -32,6 +32,7 @@ def show_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="every event as a JSON line on stdout; keys in rig/commands/show/show.py"
     )
+    parser.set_defaults(events=True)  # what --json means here: a refusal of the command line itself is one too
 
 
 def open_bench(args: argparse.Namespace) -> tuple[Bench, ClockName]:

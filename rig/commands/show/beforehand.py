@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Callable, Iterable, Iterator
 
 from rig.commands.show.show import showing
-from rig.core.errors import HdrigError
+from rig.core.errors import Exit, HdrigError
 
 
 @contextlib.contextmanager
@@ -19,6 +19,12 @@ def refusing(json: bool) -> Iterator[None]:
             with showing(json):
                 raise
         raise
+
+
+def refuse(sentence: str) -> None:
+    """A wrong command line, before anything could be made of it, as an event."""
+    with showing(json=True) as show:
+        show.leave(Exit.USAGE, sentence)
 
 
 def foretell(json: bool, lines: Iterable[str], check: Callable[[], None] = lambda: None) -> int:

@@ -1,7 +1,7 @@
 """What happens while a verb works on a rig, as events: one JSON object each, the same for every way of showing them.
 
-With `--json` each is a line on stdout, and nothing else is; of a dry run its lines are `said`. Every event has `event`
-and `utc` (ISO 8601); the others:
+With `--json` each is a line on stdout, and nothing else is; of a dry run its lines are `said`, of what is refused at
+once, a wrong command line too, there is `exit` alone. Every event has `event` and `utc` (ISO 8601); the others:
 
 | event | further keys | when |
 |---|---|---|

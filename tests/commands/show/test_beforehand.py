@@ -44,3 +44,20 @@ def test_the_lines_of_a_dry_run_are_said(words: tuple[str, ...], capsys: pytest.
     assert code == 0
     assert [one["text"] for one in found[:-1]] == lines
     assert (found[-1]["event"], found[-1]["code"]) == ("exit", 0)
+
+
+@pytest.mark.parametrize("words", [("run",), ("campaign", "quick", "--bogus"), ("close-loop", "--seed", "x")])
+def test_a_wrong_command_line_is_one_exit_event(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    """It was a sentence on stderr and no line on stdout."""
+    with pytest.raises(SystemExit, match="2"):
+        main([*words, "--json"])
+    said = capsys.readouterr()
+    (event,) = [json.loads(line) for line in said.out.splitlines()]
+    assert (event["event"], event["code"]) == ("exit", 2)
+    assert said.err == f"hdrig: {event['error']}\n"
+
+
+def test_a_wrong_command_line_of_a_verb_without_events_is_a_sentence_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["list", "--bogus", "--json"])
+    assert capsys.readouterr().out == ""
