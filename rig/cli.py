@@ -47,9 +47,12 @@ class Parser(argparse.ArgumentParser):
 
 
 def _place(said: str) -> Path:
-    """A path as given, but none of no characters: Path takes it for the folder one is in."""
+    """A path as given, but none of no characters, which Path takes for the folder one is in, and no -: a file of that
+    name is in everybody's way."""
     if not said:
         raise argparse.ArgumentTypeError("an empty path, as of a shell variable that is not set; expected a name")
+    if said == "-":
+        raise argparse.ArgumentTypeError("- is standard input or output to other programs, not here; expected a name")
     return Path(said)
 
 

@@ -9,7 +9,6 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from rig.core.errors import UsageError
 from rig.runfile.process import sole_writer
 from rig.runfile.text_path import refuse_no_text
 from rig.runfile.writing import writing
@@ -36,8 +35,6 @@ def refuse_unwritable(folder: Path, option: str = "--out") -> None:
 
 def refuse_unwritable_file(path: Path, option: str) -> None:
     """Raises UsageError when no file can be written at `path`: its folder has to be there. Leaves nothing."""
-    if str(path) == "-":  # to many programs it is standard output, and a file of that name is in everybody's way
-        raise UsageError(f"{option} -: expected the name of a file")
     with writing(path, option):
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, "it is a folder")

@@ -158,7 +158,12 @@ def test_a_path_that_is_no_text_is_refused_before_anything_connects(
     assert "expected a path in UTF-8" in capsys.readouterr().err
 
 
-def test_standard_output_is_no_file_for_a_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    made_run(tmp_path / "good")
-    assert main(["trace", str(tmp_path), "--json", "-"]) == Exit.USAGE
-    assert "--json -: expected the name of a file" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    "words", [("trace", "x", "--json"), ("identify", "x", "-o"), ("trend", "--html"), ("export", "csv", "x", "--to")]
+)
+def test_standard_output_is_no_place_to_write_to(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    """A file called - was left behind."""
+    with pytest.raises(SystemExit, match="2"):
+        main([*words, "-"])
+    assert words[-1] in (said := capsys.readouterr().err)
+    assert "- is standard input or output to other programs, not here; expected a name" in said
