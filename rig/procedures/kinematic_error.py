@@ -11,10 +11,7 @@ from rig.core.errors import UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import DEG, RPM
-
-FEWEST = (
-    2.0  # motor turns of a stroke: the analysis cuts half a turn at either reversal, and a whole one has to be left
-)
+from rig.procedures.whole_turns import too_short
 
 
 @dataclass(frozen=True)
@@ -50,14 +47,8 @@ class KinematicError(Procedure):
         return Envelope(wave.duration + 2 * self.settle, wave.amplitude, wave.speed, setting.control.torque_limit)
 
     def remarks(self, setting: Setting) -> list[str]:
-        """Of a stroke too short for a figure."""
-        turns = 2 * self.amplitude_deg / 360.0
-        if turns > FEWEST:
-            return []
-        return [
-            f"no kinematic error can be had: of a stroke of {turns:.2f} motor turns no whole one is left once half a "
-            f"turn is cut at either reversal; expected amplitude_deg above {180 * FEWEST:g} deg"
-        ]
+        """Of strokes too short for a figure."""
+        return too_short(self.reference)
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from rig.control.pid import Pid
@@ -14,6 +14,7 @@ from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import DEG, RPM
 from rig.procedures.speed_list import speeds_of
+from rig.procedures.whole_turns import too_short
 
 FEWEST = 3  # speeds: two to see a change, one more to see that it has ended
 # At 60 rpm 10 000 counts a turn are 10 counts a millisecond: every row is then rounded alike, and the rounding follows
@@ -77,6 +78,10 @@ class SpeedConvergence(Procedure):
         waves = self.waves
         duration = sum(wave.duration + self.settle for wave in waves) + self.settle
         return Envelope(duration, self.amplitude_deg * DEG, abs(waves[0].speed), setting.control.torque_limit)
+
+    def remarks(self, setting: Setting) -> list[str]:
+        """Of strokes too short for a figure, which they are alike at every speed."""
+        return too_short(replace(self.waves[0], cycles=sum(wave.cycles for wave in self.waves)))
 
     def conditions(self) -> dict[str, Any]:
         """For the manifest."""

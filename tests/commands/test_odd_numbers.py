@@ -36,7 +36,7 @@ def test_what_cannot_be_run_is_refused(command: list[str], said: str, capsys: py
     assert said in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("amplitude", "told"), [("180", True), ("360", True), ("400", False)])
+@pytest.mark.parametrize(("amplitude", "told"), [("180", True), ("355", True), ("360", False)])
 def test_a_stroke_too_short_for_a_figure_is_said_beforehand(
     amplitude: str, told: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
