@@ -9,29 +9,14 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import resonance, resonated
-from rig.model.waves import sums
+from rig.model.second_mode import coupling, output
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
 SOFT = 5.0  # or a coupling with its own resonance among the frequencies that are compared
 HUB = 4.0  # or an inertia between the gear and the spring of the torque sensor
 DRIVEN = 6.0  # the inertia on the load once more, its swing told by the torque
-SMALL = 1e-6  # rad: a twist by less has the tangent's slopes
-
-
-def twisted(s: Signals, psi: Array) -> tuple[Array, Array]:
-    """Slopes of θ̃ and of its lever by the twist ψ rad (n,), secants from θ_m − ψ to θ_m: (1/N − Δθ̃_p/ψ, Δθ̃_p′/ψ)."""
-    series, back = s.gear.kinematic_error, s.theta_m - psi
-    small = np.abs(psi) < SMALL
-    by, (value_back, slope_back) = np.where(small, 1.0, psi), sums(series, back, 0, 1)
-    slope = np.where(small, s.series_slope, (s.series_value - value_back) / by)
-    bend = np.where(small, s.series_bend, (s.series_slope - slope_back) / by)
-    return 1.0 / s.ratio - slope, bend
-
-
-def tangent(s: Signals) -> tuple[Array, Array]:
-    """The same of a twist that is not known yet."""
-    return 1.0 / s.ratio - s.series_slope, s.series_bend
+FLANGE = 7.0  # or an inertia behind the torque sensor, before the shaft that bears the load
 
 
 class TorsionalMode(Effect):
@@ -48,7 +33,8 @@ class TorsionalMode(Effect):
     against each other, ω_p² = ω²·J_l/(J_l − J_2), J_l both of them.
 
     A hub before the torque sensor is turned by the gear and not by what the sensor reads: the gear carries
-    J_2·(ω̇_l + T̈/k) more, k being the sensor's spring.
+    J_2·(ω̇_l + T̈/k) more, k being the sensor's spring. A flange behind it, with a shaft that bears the load, twists that
+    and lets the load swing: `output.flange`.
     """
 
     name: ClassVar[str] = "torsional_mode"
@@ -57,6 +43,7 @@ class TorsionalMode(Effect):
         "J_2": "inertia on a spring of its own",
         "frequency": "frequency at which that spring and inertia resonate",
         "zeta": "ζ, damping ratio of that resonance",
+        "shaft_compliance": "1/k, compliance of the shaft behind the flange",
         "coupling_compliance": "1/k, compliance of the coupling between motor and wave generator",
     }
     source: ClassVar[str] = "ghorbel2001"
@@ -69,21 +56,24 @@ class TorsionalMode(Effect):
     DAMPED: Final = 0.1  # of a soft coupling in the bank: its neighbours are three steps away, the refit finds the rest
     SOFTEST: Final = 1.0  # rad/(N·m): a coupling that twists by a turn at 6 N·m is none
     PEAK: Final = 0.15  # of a frequency, half its 95 % interval: of true ones it is a fiftieth
+    FURTHEST: Final = 1.6  # of the band: a flange shows below its resonance as well
+    OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
+    TWICE: Final = 3.0  # that a flange's 1/ω² is told as, apart from its frequency: so far they may differ
     EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
-        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)
+        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN, FLANGE) for f in frequencies)
         soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
         top = float(max(reach.band, self.LOWEST))
         return (*modes, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
-        return ((LOAD, DRIVEN), (0.7 * self.LOWEST, 1.2 * reach.band), (0.002, 0.4), (0.0, self.SOFTEST))
+        return ((LOAD, FLANGE), (0.7 * self.LOWEST, self.FURTHEST * reach.band), (0.002, 0.4), (0.0, self.SOFTEST))
 
     def expands(self, shape: Shape) -> bool:
         """About the twist of a coupling."""
@@ -97,10 +87,11 @@ class TorsionalMode(Effect):
         """A mode that the fit pushed out of the band, or down to where none is looked for, or damped until it was no
         peak; a stiff coupling needs none inside."""
         low, high = self.bounds(reach)[1]
-        if shape[0] not in (LOAD, MOTOR, DRIVEN, SOFT):
+        if shape[0] not in (LOAD, MOTOR, DRIVEN, SOFT, FLANGE):
             return False
         flat = shape[2] > self.AT_THE_END * self.bounds(reach)[2][1]
-        above = shape[0] != SOFT and shape[1] > self.AT_THE_END * high
+        end = high if shape[0] == FLANGE else self.OTHERS * high
+        above = shape[0] != SOFT and shape[1] > self.AT_THE_END * end
         return flat or above or shape[1] * self.AT_THE_END < low
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
@@ -109,74 +100,36 @@ class TorsionalMode(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
-        two, for J_2 and for J_2/k; of a soft coupling three, for 1/k, 1/ω² and J_2/ω²."""
+        two, for J_2 and for J_2/k; of a flange three, for 1/k, J_2/k and 1/ω²; of a soft coupling three, for 1/k, 1/ω²
+        and J_2/ω²."""
         side, frequency, zeta, about = shape
+        omega = 2.0 * np.pi * frequency
         if side == HUB:
-            return self._hub(signals)
+            return output.hub(signals)
+        if side == FLANGE:
+            return output.flange(signals, lambda whole: self._fast(whole, whole.torque), omega, zeta)
         if side == SOFT:
-            return self._soft(signals, 2.0 * np.pi * frequency, zeta, about)
-        if side in (BEFORE, AFTER):
-            return self._stiff(signals, side, about)
+            return coupling.soft(signals, omega, zeta, about)
+        if side == BEFORE:
+            return coupling.stiff(signals, coupling.through_it(signals, about), about)
+        if side == AFTER:
+            # the wave generator's inertia, say half of J_m, its friction and the gear are beyond it
+            through = signals.tau_m - 0.5 * signals.gear.J_m * signals.alpha_m
+            return coupling.stiff(signals, through, about)
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
-            # in slow runs there is nothing but noise at such frequencies, which the mode would only amplify
-            turns, omega = np.abs(whole.omega_m) > self.EXCITED, 2.0 * np.pi * frequency
             if side == DRIVEN:
-                torque = np.where(turns, np.nan_to_num(whole.tau_l), 0.0)
-                return (-resonance(torque, whole.dt, omega, zeta)[1],)
-            alpha = np.where(turns, whole.alpha_m if side == MOTOR else whole.alpha_l, 0.0)
+                return (-resonance(self._fast(whole, whole.tau_l), whole.dt, omega, zeta)[1],)
+            alpha = self._fast(whole, whole.alpha_m if side == MOTOR else whole.alpha_l)
             return (resonated(alpha, whole.dt, omega, zeta),)
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: signals.states(swinging)[0][:, None]}
 
-    def _stiff(self, s: Signals, side: float, about: float) -> Mapping[Port, Array]:
-        through = self._through(s, about)
-        if side == AFTER:
-            # the wave generator's inertia, say half of J_m, its friction and the gear are beyond it
-            through = s.tau_m - 0.5 * s.gear.J_m * s.alpha_m
-        lever, bend = twisted(s, about * through) if about else tangent(s)
-        return {
-            Port.KINEMATIC_ERROR: (lever * through)[:, None],
-            Port.MOTOR_TORQUE: (s.torque * bend * through)[:, None],
-        }
-
-    def _soft(self, s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, Array]:
-        def swinging(whole: Signals) -> tuple[Array, ...]:
-            torque, alpha = self._through(whole, about), np.ascontiguousarray(whole.alpha_m)
-            return (*resonance(torque, whole.dt, omega, zeta), *resonance(alpha, whole.dt, omega, zeta))
-
-        by_torque, jerk_t, by_alpha, jerk_a = s.states(swinging)
-        lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)
-        turned, twist, torque = s.torque * bend, np.zeros((lever.size, 3)), np.empty((lever.size, 3))
-        twist[:, 0], twist[:, 1] = lever * by_torque, lever * by_alpha
-        torque[:, 0], torque[:, 1], torque[:, 2] = turned * by_torque, turned * by_alpha - jerk_t, -jerk_a
-        return {Port.KINEMATIC_ERROR: twist, Port.MOTOR_TORQUE: torque}
-
-    def _through(self, s: Signals, about: float) -> Array:
-        """T times the lever at the wave generator's own angle, N·m. Frequency and damping change nothing of it, and are
-        tried many at a time: the last is kept.
-        """
-        last: dict[float, Array] = s.once(self.name, dict)
-        through = last.get(about)
-        if through is None:
-            through = self._turned(s, about)
-            last.clear()
-            last[about] = through
-        return through
-
-    def _turned(self, s: Signals, about: float) -> Array:
-        straight = s.torque * (1.0 / s.ratio - s.series_slope)
-        if not about:
-            return straight
-        (slope,) = sums(s.gear.kinematic_error, s.theta_m - about * straight, 1)
-        return s.torque * (1.0 / s.ratio - slope)
-
-    def _hub(self, s: Signals) -> Mapping[Port, Array]:
-        (bend,) = s.states(lambda whole: (np.gradient(whole.torque_rate, whole.dt),))  # over its neighbours
-        turned = np.stack([s.alpha_l, bend], 1)
-        lever = 1.0 / s.ratio - s.series_slope
-        return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
+    def _fast(self, s: Signals, x: Array) -> Array:
+        """x where the motor turns, 0 elsewhere: in slow runs there is nothing but noise at such frequencies, which the
+        mode would only amplify."""
+        return np.where(np.abs(s.omega_m) > self.EXCITED, np.nan_to_num(x), 0.0)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Inertia, frequency and damping; of a coupling its compliance, of a hub no damping."""
@@ -190,6 +143,8 @@ class TorsionalMode(Effect):
             parameter("frequency", fit.shape[1], fit.half_width(by_frequency), "Hz"),
             parameter("zeta", fit.shape[2], fit.half_width(by_zeta), "1"),
         )
+        if fit.shape[0] == FLANGE:
+            return (parameter("shaft_compliance", fit.coefficients[0], fit.half_width(by[0]), "rad/(N·m)"), *mode)
         if fit.shape[0] in (LOAD, MOTOR):
             return (parameter("J_2", fit.coefficients[0], fit.half_width(by[0]), "kg·m²"), *mode)
         compliance = parameter("coupling_compliance", fit.coefficients[0], fit.half_width(by[0]), "rad/(N·m)")
@@ -221,8 +176,12 @@ class TorsionalMode(Effect):
         return (*turned, parameter("frequency", frequency, half, "Hz"))
 
     def plausible(self, fit: Fit) -> bool:
-        """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared."""
+        """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared; a flange
+        slows the load as its frequency says."""
         inertia, *others = fit.coefficients[:2]
+        if fit.shape[0] == FLANGE:
+            told = fit.coefficients[2] * (2.0 * np.pi * fit.shape[1]) ** 2
+            return bool(min(fit.coefficients[:2]) > 0 and 1.0 / self.TWICE < told < self.TWICE)
         if fit.shape[0] == HUB:
             return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
         return bool(inertia > 0 and all(x > 0 for x in others))

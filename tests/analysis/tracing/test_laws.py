@@ -35,6 +35,7 @@ from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
+from rig.model.second_mode import coupling
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
@@ -122,13 +123,13 @@ def test_a_soft_coupling_swings_as_its_own_equation_of_motion_says() -> None:
 def test_the_torque_through_a_soft_coupling_is_made_once_for_all_its_frequencies(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    made, of, effect, s = list[float](), TorsionalMode._turned, TorsionalMode(), motion()
+    made, of, effect, s = list[float](), coupling.turned_by, TorsionalMode(), motion()
 
-    def turned(self: TorsionalMode, signals: Signals, about: float) -> Array:
+    def turned(signals: Signals, about: float) -> Array:
         made.append(about)
-        return of(self, signals, about)
+        return of(signals, about)
 
-    monkeypatch.setattr(TorsionalMode, "_turned", turned)
+    monkeypatch.setattr(coupling, "turned_by", turned)
     shapes = [(SOFT, hz, 0.1, about) for about in (0.02, 0.03, 0.0, 0.02) for hz in (9.0, 12.0, 20.0)]
     kept = [effect.columns(s, shape) for shape in shapes]
     assert made == [0.02, 0.03, 0.0, 0.02]

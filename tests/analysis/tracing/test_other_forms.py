@@ -12,7 +12,7 @@ from rig.model.effect import Array, Fit, Port
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
 from rig.model.effects.presliding_friction import BRISTLES, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
-from rig.model.effects.torsional_mode import DRIVEN, TorsionalMode
+from rig.model.effects.torsional_mode import DRIVEN, FLANGE, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
 
 
@@ -125,3 +125,40 @@ def test_a_disc_on_a_hub_swings_as_the_torque_tells() -> None:
     assert told["J_2"] == pytest.approx(disc, rel=0.02)
     assert told["frequency"] == pytest.approx(np.sqrt(k / disc) / (2 * np.pi), rel=0.01)
     assert told["zeta"] == pytest.approx(c / (2 * np.sqrt(k * disc)), rel=0.02)
+
+
+@pytest.mark.slow
+def test_a_flange_behind_the_torque_sensor_twists_its_shaft_and_lets_the_load_swing() -> None:
+    """Flange and load of 0.08 and 0.9 kg·m² on a shaft of 2e4 N·m/rad, the flange turned by a torque that sweeps."""
+    first, load, k, c = 0.08, 0.9, 2e4, 2.0
+    dt = 4e-4
+    t = dt * np.arange(20_000)
+
+    def torque(at: float | Array) -> float | Array:
+        return 5.0 * np.sin(2 * np.pi * (5.0 + 3.5 * at) * at)
+
+    def rates(at: float, x: Array) -> list[float]:
+        through = k * (x[0] - x[1]) + c * (x[2] - x[3])
+        return [x[2], x[3], (float(torque(at)) - through) / first, through / load]
+
+    x = solve_ivp(rates, (0.0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-8, atol=1e-12).y
+    alpha, drives = (k * (x[0] - x[1]) + c * (x[2] - x[3])) / load, np.asarray(torque(t))
+    s = dataclasses.replace(
+        motion(n=t.size), t=t, dt=dt, omega_m=np.full(t.size, 30.0), torque=drives, tau_l=drives, alpha_l=alpha
+    )
+    both = float(np.sqrt(k * (first + load) / (first * load)))
+    zeta = c * both / (2 * k)
+    shape = (FLANGE, both / (2 * np.pi), zeta, 0.0)
+    coefficients = np.array([1 / k, first / k, 1 / both**2])
+    effect = TorsionalMode()
+    got = {port: columns @ coefficients for port, columns in effect.columns(s, shape).items()}
+    twist = x[0] - x[1] - drives / k  # beyond what a constant torque does, which the gear's own K has
+    assert float(np.std(got[Port.WIND_UP] - twist)) < 0.03 * float(np.std(twist))
+    slower = drives - (first + load) * alpha
+    assert float(np.std(got[Port.LOAD_TORQUE] - slower)) < 0.02 * float(np.std(slower))
+    fit = Fit(coefficients, shape, np.zeros((7, 7)), KNOWN, N)
+    assert effect.plausible(fit)
+    assert not effect.plausible(dataclasses.replace(fit, coefficients=coefficients * np.array([1.0, 1.0, 9.0])))
+    assert {p.name: p.value for p in effect.parameters(fit)} == {
+        "shaft_compliance": 1 / k, "frequency": shape[1], "zeta": zeta,
+    }  # fmt: skip
