@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.fit.footprint import footprint
-from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep
+from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import Droop, SensorWaves
 from rig.analysis.tracing.nameless.springs import EvenSpring
 from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.runs.smoothing import Smoother
+from rig.analysis.tracing.selection import confounders
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import MEASURED, Port
@@ -102,3 +105,40 @@ def test_creep_is_not_called_hysteresis(tmp_path: Path) -> None:
     write_case(Request("outside", 11, "complete", "gear_creep", over_floor=4.0), tmp_path, "case")
     verdict = trace(tmp_path / "case").verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "memory")
+
+
+def test_where_a_sensors_loop_was_left_before_a_run_is_not_known_and_makes_no_difference() -> None:
+    """A run that lies at 30 N·m swings as far into its loop as one about nothing."""
+    s = motion()
+    (about_zero,) = SensorLoop().columns(s, ()).values()
+    (lifted,) = SensorLoop().columns(replace(s, tau_l=s.tau_l + 30.0, torque=s.torque + 30.0), ()).values()
+    np.testing.assert_allclose(lifted, about_zero, atol=1e-12)
+
+
+@pytest.mark.parametrize(("zero_of", "kept"), [("L", "sensor_loop"), ("", "hysteretic_stiffness")])
+def test_a_sensors_loop_is_weighed_with_a_zero_for_every_run(
+    monkeypatch: pytest.MonkeyPatch, zero_of: str, kept: str
+) -> None:
+    """It explains less than the spring's as long as all runs share one zero, and more where each has its own."""
+    gains = {("spring", "shared"): 10.0, ("sensor", "shared"): 8.0, ("spring", "own"): 5.0, ("sensor", "own"): 7.0}
+
+    def model(terms: tuple[SimpleNamespace, ...], noise: Noise) -> SimpleNamespace:
+        zeros = "shared" if np.isfinite(noise.local["L"]) else "own"
+        law = "sensor" if any(t.name == "sensor_loop" for t in terms) else "spring"
+        eq = Equations((), {}, noise)
+        return SimpleNamespace(
+            design=SimpleNamespace(terms=terms, eq=eq, size=2, y={(0, "L"): np.zeros(9)}),
+            gain=gains[law, zeros],
+            keys=((0, "L"),),
+        )
+
+    shared = Noise({}, {"L": 1.0}, {"L": 0.002})
+    spring = model((SimpleNamespace(name="hysteretic_stiffness"),), shared)
+    only = {"sensor_loop": replace(CONFOUNDERS["sensor_loop"], zero_of=zero_of)}
+    monkeypatch.setattr(confounders, "CONFOUNDERS", only)
+    monkeypatch.setattr(confounders, "reduced", lambda d, gone: SimpleNamespace(terms=(), eq=d.eq))
+    monkeypatch.setattr(confounders, "extended", lambda d, term, runs: SimpleNamespace(terms=(*d.terms, term), eq=d.eq))
+    monkeypatch.setattr(confounders, "design", lambda eq, terms, runs: SimpleNamespace(terms=terms, eq=eq))
+    monkeypatch.setattr(confounders, "fit", lambda d: model(d.terms, d.eq.noise))
+    chosen = confounders.with_confounders(spring, (0,), REACH)
+    assert [t.name for t in chosen.design.terms] == [kept]

@@ -71,7 +71,8 @@ class SensorLoop(OfTheTorqueSensor):
     """The torque sensor's own hysteresis: it reads Σ c_i·P_{r_i}[T] too much, play operators of the torque [kuhnen2003]
 
     In a lock test it is a loop in the spring; where the output is free the torque it makes up accelerates no load and
-    loads no motor.
+    loads no motor. What it was left behind by before a run is not known: it starts from there, and its zero is the
+    run's own.
     """
 
     name: ClassVar[str] = "sensor_loop"
@@ -88,4 +89,5 @@ class SensorLoop(OfTheTorqueSensor):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """What each play stays behind by."""
         torque = np.ascontiguousarray(torque_of(signals))
+        torque = torque - torque[0]
         return {Port.READS_TAU_L: np.stack([torque - play(torque, width) for width in self.WIDTHS], 1)}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import Solution, extended, fit
+from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
@@ -31,14 +31,16 @@ from rig.model.effect import Effect, Reach
 
 @dataclass(frozen=True)
 class Confounder:
-    """A law, the coordinate it lives in, what is said of it, effects it is taken for, and whether it is searched for by
-    itself as well: not one that a friction of the load would be taken for."""
+    """A law, the coordinate it lives in, what is said of it, effects it is taken for, whether it is searched for by
+    itself as well: not one that a friction of the load would be taken for; and a channel whose zero it leaves to every
+    run, or none."""
 
     effect: Effect
     coordinate: str
     sentence: str
     mimics: frozenset[str] = frozenset()
     searched: bool = True
+    zero_of: str = ""
 
 
 CONFOUNDERS: Final = {
@@ -63,6 +65,7 @@ CONFOUNDERS: Final = {
         "hysteresis does; a loop in the spring explains less, and no effect of the library explains it.",
         mimics=frozenset({"hysteretic_stiffness"}),
         searched=False,
+        zero_of="L",
     ),
     "sensor_waves": Confounder(
         SensorWaves(),
@@ -186,10 +189,20 @@ def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Soluti
         mine = [i for i, term in enumerate(s.design.terms) if term.name in confounder.mimics]
         able = confounder.effect.needs <= covered.has and confounder.effect.shapes(covered)
         if mine and able:
-            other = fit(extended(reduced(s.design, mine), Term(confounder.effect, ()), runs))
+            term = Term(confounder.effect, ())
+            other = fit(extended(reduced(s.design, mine), term, runs))
             saved = (s.design.size - other.design.size) * np.log(n)
-            s = other if other.gain + saved > s.gain else s
+            s = other if _more(s, other, runs, confounder.zero_of) + saved > 0.0 else s
     return s
+
+
+def _more(s: Solution, other: Solution, runs: Sequence[int], zero_of: str) -> float:
+    """How much more `other` explains of the weighted sum of squares, the zero of that channel being every run's own."""
+    if not zero_of:
+        return other.gain - s.gain
+    eq = replace(s.design.eq, noise=s.design.eq.noise.free(zero_of))
+    gain, its = (fit(design(eq, m.design.terms, runs)).gain for m in (s, other))
+    return its - gain
 
 
 def of_the_library(ranking: Sequence[Scored]) -> tuple[Scored, ...]:
