@@ -17,6 +17,7 @@ from rig.model.effects.channel_time_skew import EACH_RUN, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
+from rig.model.effects.flexspline_frame_error import FlexsplineFrameError
 from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
@@ -507,3 +508,19 @@ def test_only_a_campaign_with_a_temperature_is_asked_for_one() -> None:
 
 
 HAS = (frozenset({"t", "theta_m", "temperature"}), frozenset({"t", "theta_m"}))
+
+
+def test_the_papers_slow_run_is_long_enough_to_tell_an_order_of_the_flexspline_from_the_motors() -> None:
+    """Of order 2.04 a third or more is no order 2 over ±1440°, and too little over half of that."""
+
+    def apart(turns: float) -> float:
+        theta = np.linspace(0.0, 2 * np.pi * N * turns, 4000)
+        s = dataclasses.replace(motion(), theta_m=theta, theta_l=theta / N)
+        waves = FlexsplineFrameError().columns(s, (2.0, 1.0))[Port.KINEMATIC_ERROR]
+        whole = np.column_stack([np.ones(theta.size), np.cos(2 * theta), np.sin(2 * theta)])
+        left = waves - whole @ np.linalg.lstsq(whole, waves, rcond=None)[0]
+        return float(np.std(left) / np.std(waves))
+
+    for turns, offered in ((2 * 1440 / 360 / N, True), (1440 / 360 / N, False)):
+        assert bool(FlexsplineFrameError().shapes(dataclasses.replace(REACH, load_turns=turns))) == offered
+        assert (apart(turns) > 1 / 3) == offered
