@@ -120,7 +120,7 @@ def shaken() -> set[str]:
 
 def lost() -> set[str]:
     sides = {0: (missed_counts.LOAD, missed_counts.MOTOR)}
-    return {p.name for p in Steps({0: (5, 9)}, {0: (1e-3, 2e-3)}, sides).parameters()}
+    return {p.name for p in Steps({0: (5, 9)}, {0: (1e-3, 2e-3)}, sides, {0: (1e-5, 1e-5)}).parameters()}
 
 
 @every_effect

@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor import steps
-from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, jumps
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, heights, jumps
 from rig.analysis.tracing.floor.steps import Steps, _rested, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
@@ -86,6 +86,36 @@ def test_jumps_that_stand_in_each_others_windows_are_told_apart(rng: np.random.G
     assert all(min(abs(row - true) for true in rows) <= EDGE for row in found)
 
 
+def test_a_jump_that_noise_makes_too_small_in_the_usual_window_is_found_beside_others(rng: np.random.Generator) -> None:
+    """Of a loss that a third of a second of wander halves a whole second sees enough."""
+    count, everywhere = 4e-6, np.ones(9000, dtype=bool)
+    e = 1e-6 * rng.standard_normal(9000)
+    e[2000:] += count
+    e[6000:] += count
+    e[6000:6040] -= 0.5 * count
+    first = jumps(e, everywhere, 4.0, (0.65 * count, 9 * count))
+    assert [row for row, _ in first] == [pytest.approx(2000, abs=4)]
+    assert [row for row, _ in among(e, everywhere, first, count)] == [pytest.approx(r, abs=45) for r in (2000, 6000)]
+
+
+def test_the_height_of_a_jump_is_taken_from_all_that_is_flat_beside_it_and_has_an_error(
+    rng: np.random.Generator,
+) -> None:
+    """Where it is largest a jump has some noise in its size: over a window it comes out too large."""
+    off, within = [], 0
+    for _ in range(40):
+        e = 4e-6 * rng.standard_normal(6000)
+        e[2500:] += 1e-5
+        e[4000:] -= 1e-5
+        (size, error), (back, _) = heights(e, (2500, 4000))
+        off += [size - 1e-5, -back - 1e-5]
+        within += abs(size - 1e-5) < 2.2 * error
+    assert abs(float(np.mean(off))) < 5e-8
+    assert float(np.std(off)) < 2.5e-7
+    assert within >= 34
+    assert heights(np.r_[0.0, 0.0, 1.0, 1.0], (2,)) == [(1.0, 0.0)]
+
+
 def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
     rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -155,7 +185,8 @@ def jumped(angles: list[float], turns: float) -> tuple[Any, Steps]:
     runs = [SimpleNamespace(ratio=50.0)] * len(angles)
     rows = {(i, "A"): SimpleNamespace(theta_m=theta) for i in range(len(angles))}
     at = {i: (int(np.searchsorted(theta, angle)),) for i, angle in enumerate(angles)}
-    return SimpleNamespace(runs=runs, rows=rows), Steps(at, dict.fromkeys(at, (3e-05,)), dict.fromkeys(at, (LOAD,)))
+    sizes, sides, errors = (dict.fromkeys(at, (value,)) for value in (3e-5, LOAD, 1e-7))
+    return SimpleNamespace(runs=runs, rows=rows), Steps(at, sizes, sides, errors)
 
 
 def test_jumps_at_one_angle_of_the_output_are_a_scale_with_a_fault_and_no_lost_counts(rng: np.random.Generator) -> None:

@@ -16,8 +16,10 @@ Mask = npt.NDArray[np.bool_]
 
 WINDOW: Final = 40  # rows before and after a step: a third of a second, shorter than the wander of an output
 FAR: Final = 4 * WINDOW  # rows: a longer window, over which wander counts less
+LONG: Final = 50 * WINDOW  # rows: a few turns of the motor, which the size of a jump is taken from
 EDGE: Final = 3  # rows over which the low-pass spreads a step
 SHORTER: Final = (WINDOW // 2, WINDOW // 4)  # windows for jumps between others
+OTHERS: Final = (*SHORTER, FAR)  # and one for what stands alone, and is too small for the usual window to tell its size
 ROUNDS: Final = 40  # jumps found between others, at most
 ONE: Final = 0.65  # of the usual size: the least that one loss may be
 TWO: Final = 2.7  # of the usual size: the most that two at a time may be
@@ -55,10 +57,10 @@ def jumps(
 
 
 def among(e: Array, onward: Mask, found: list[tuple[int, float]], usual: float) -> list[tuple[int, float]]:
-    """`found` with jumps of once or twice the `usual` size [rad] that stood in each other's windows."""
+    """`found` with jumps of once or twice the `usual` size [rad] that stood in each other's windows, or alone."""
     for _ in range(ROUNDS):
         left = e - _stairs(e, found)
-        seen = [jump for w in SHORTER for jump in jumps(left, onward, STEP_AGAIN, (ONE * usual, TWO * usual), window=w)]
+        seen = [jump for w in OTHERS for jump in jumps(left, onward, STEP_AGAIN, (ONE * usual, TWO * usual), window=w)]
         new = [jump for jump in seen if all(abs(jump[0] - row) > 2 * EDGE for row, _ in found)]
         if not new:
             break
@@ -76,6 +78,30 @@ def one_of_size(e: Array, rows: Sequence[int], size: float) -> tuple[int, float]
     apart = (total[-1] - total[at - 1]) / (e.size - at) - total[at - 1] / at
     top = int(np.argmax(apart**2 * at * (e.size - at)))
     return (int(at[top]), float(apart[top])) if ONE < apart[top] / size < 1 / ONE else None
+
+
+def heights(e: Array, rows: Sequence[int]) -> list[tuple[float, float]]:
+    """How far what is before each of `rows` of `e` (n,) is from what is after it [rad], as far as LONG or the next, and
+    the standard error of it. Where a jump is largest some noise is in its size: that window is not the measure."""
+    order = sorted(set(rows))
+    last, following = dict(zip(order, [0, *order], strict=False)), dict(zip(order, [*order[1:], e.size], strict=True))
+
+    def height(row: int) -> tuple[float, float]:
+        before = e[max(last[row] + EDGE, row - LONG) : row - EDGE]
+        after = e[row + EDGE : min(following[row] - EDGE, row + LONG)]
+        if not (before.size and after.size):
+            return float(e[row:].mean() - e[:row].mean()), 0.0
+        return float(after.mean() - before.mean()), float(np.hypot(_error(before), _error(after)))
+
+    return [height(row) for row in rows]
+
+
+def _error(e: Array) -> float:
+    """Standard error of the mean of `e` (n,), of whose windows each is as good as independent of the next."""
+    count = e.size // WINDOW
+    if count < 2:
+        return float(np.std(e))
+    return float(np.std(e[: count * WINDOW].reshape(count, WINDOW).mean(1), ddof=1) / np.sqrt(count))
 
 
 def _stairs(e: Array, found: Sequence[tuple[int, float]]) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
-from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, jumps, one_of_size
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, heights, jumps, one_of_size
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
@@ -25,6 +25,7 @@ ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −l
 IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
 AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-out part more
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
+OF_MEDIAN = 1.25  # standard error of a median over that of a mean, √(π/2)
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
 FEWER = 0.5  # of the smallest of a few jumps that are certain, another may be: two counts beside three, and noise
@@ -33,23 +34,26 @@ MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be
 
 @dataclass(frozen=True)
 class Steps:
-    """Rows of A where a run jumps, by how much [rad], and the encoder that lost the counts at each
-    (`missed_counts.LOAD` …)."""
+    """Rows of A where a run jumps, by how much [rad], the encoder that lost the counts at each
+    (`missed_counts.LOAD` …), and the standard error of how much."""
 
     rows: dict[int, tuple[int, ...]]
     sizes: dict[int, tuple[float, ...]]
     sides: dict[int, tuple[float, ...]]
+    errors: dict[int, tuple[float, ...]]
 
     def parameters(self) -> tuple[Parameter, ...]:
         """Number of steps and, of each encoder that made some, their usual size at the output."""
-        sizes, sides = (np.concatenate(list(x.values())) for x in (self.sizes, self.sides))
-        mine = {name: np.abs(sizes[sides == side]) for side, name in ((LOAD, "l"), (MOTOR, "m"))}
-        made = {name: x for name, x in mine.items() if x.size}
-        return (parameter("steps", float(sizes.size), 0.0, "1"), *(_usual(name, x) for name, x in made.items()))
+        sizes, sides, errors = (np.concatenate(list(x.values())) for x in (self.sizes, self.sides, self.errors))
+        made = {name: sides == side for side, name in ((LOAD, "l"), (MOTOR, "m")) if (sides == side).any()}
+        usual = (_usual(name, np.abs(sizes[mine]), errors[mine]) for name, mine in made.items())
+        return (parameter("steps", float(sizes.size), 0.0, "1"), *usual)
 
 
-def _usual(name: str, sizes: Array) -> Parameter:
-    half = Z95 * float(np.std(sizes)) / np.sqrt(sizes.size)
+def _usual(name: str, sizes: Array, errors: Array) -> Parameter:
+    """Their median, known by how they scatter or by how well each is."""
+    each = max(float(np.std(sizes)), float(np.sqrt(np.mean(errors**2))))
+    half = Z95 * each * (OF_MEDIAN if sizes.size > 2 else 1.0) / np.sqrt(sizes.size)
     return parameter(f"step_theta_{name}", float(np.median(sizes)), half, "rad")
 
 
@@ -85,7 +89,9 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
         rows[run], sizes[run] = (row,), (size,)
     placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
     rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
-    return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()})
+    high = {run: heights(e[run, "A"], at) for run, at in rows.items()}
+    sizes, errors = ({run: tuple(of[i] for of in each) for run, each in high.items()} for i in (0, 1))
+    return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()}, errors)
 
 
 def _in_other_parts(
