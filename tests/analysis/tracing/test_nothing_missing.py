@@ -1,7 +1,11 @@
 """Campaigns with nothing hidden, by the independent plant: nothing is said to be missing, whatever was not measured."""
 
+import json
 from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.outcome.result import Status
@@ -16,3 +20,16 @@ def test_nothing_is_missing_from_a_rig_that_is_the_papers(tmp_path: Path, plan: 
     write_case(Request("clean", 5, plan), tmp_path, "case")
     verdict = trace(tmp_path / "case").verdict
     assert (verdict.status, verdict.effects) == (Status.NOTHING, ())
+
+
+def test_numbers_made_up_without_any_noise_have_nothing_hidden_in_their_rounding(tmp_path: Path) -> None:
+    folder = tmp_path / "campaign" / "ramp"
+    folder.mkdir(parents=True)
+    told = {"schema": "hdrig.run/1", "procedure": "kinematic_error", "gear": {"ratio": 50}}
+    (folder / "manifest.json").write_text(json.dumps(told))
+    t = np.arange(0.0, 100.0, 0.004)
+    theta = 25.13 * (1 - 2 * np.abs(2 * t / 100 - 1))
+    still = np.ones(t.size)
+    columns = {"t": t, "theta_m": theta, "theta_l": theta / 50, "tau_l": still, "tau_m": 0.1 * still}
+    pq.write_table(pa.table(columns), folder / "samples.parquet")
+    assert trace(tmp_path / "campaign").verdict.status == Status.NOTHING

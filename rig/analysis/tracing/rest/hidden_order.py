@@ -22,6 +22,7 @@ from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
 
 WHOLE_ORDER: Final = 0.05  # how far from a whole number
+NOTHING: Final = 0.01  # mean square over the floor's, of what is rounding alone: made-up numbers have no noise
 
 
 def hidden_order(
@@ -52,6 +53,8 @@ def _in_channel(
         return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
 
     bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
+    if bare < NOTHING * sum(unseen[key].size for key in keys):
+        return []
     return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in tried if home is not None]
 
 

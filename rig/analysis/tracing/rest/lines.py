@@ -50,6 +50,8 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     if not good.any():
         return None
     x, e = x[good], (r.e * r.worth * sense(r))[good]
+    if not e.any():
+        return None
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
     first = max(SPAN[name][0], step, 1 / turns if 0 < turns < HALF else 0.0)
