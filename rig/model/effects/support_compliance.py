@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import resonated
+from rig.model.shaken import shaken
 
 ON_HOUSING, ON_GROUND = 0.0, 1.0  # of the first shape parameter: where the encoders are held
 
@@ -17,7 +18,7 @@ class SupportCompliance(Effect):
     """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much when the encoders
     ride on it; held on the ground they read right, and the gear seems so much softer.
 
-    Far below ω it is just more or less compliance, which the baseline's K already has.
+    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has.
     """
 
     name: ClassVar[str] = "support_compliance"
@@ -58,7 +59,8 @@ class SupportCompliance(Effect):
         """One column, in both readings or in the wind-up."""
         held, frequency, zeta = shape
         torque = signals.once(self.name, lambda: np.ascontiguousarray(np.nan_to_num(signals.torque)))
-        moved = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)[:, None]
+        swung = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)
+        moved = (torque + shaken(signals, swung - torque))[:, None]
         if held == ON_GROUND:
             return {Port.WIND_UP: moved}
         return {Port.READS_THETA_L: moved, Port.READS_THETA_M: moved}

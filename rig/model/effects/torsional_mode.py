@@ -10,6 +10,7 @@ import numpy as np
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.memory import resonance, resonated
 from rig.model.second_mode import coupling, output
+from rig.model.shaken import shaken
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
@@ -60,7 +61,6 @@ class TorsionalMode(Effect):
     OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
     TWICE: Final = 3.0  # that a flange's 1/ω² is told as, apart from its frequency: so far they may differ
-    EXCITED: Final = 3.0  # rad/s of the motor: order 15 of a gear's error then comes to 7 Hz
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
@@ -107,7 +107,7 @@ class TorsionalMode(Effect):
         if side == HUB:
             return output.hub(signals)
         if side == FLANGE:
-            return output.flange(signals, lambda whole: self._fast(whole, whole.torque), omega, zeta)
+            return output.flange(signals, omega, zeta)
         if side == SOFT:
             return coupling.soft(signals, omega, zeta, about)
         if side == BEFORE:
@@ -119,17 +119,13 @@ class TorsionalMode(Effect):
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
             if side == DRIVEN:
-                return (-resonance(self._fast(whole, whole.tau_l), whole.dt, omega, zeta)[1],)
-            alpha = self._fast(whole, whole.alpha_m if side == MOTOR else whole.alpha_l)
-            return (resonated(alpha, whole.dt, omega, zeta),)
+                torque = np.ascontiguousarray(np.nan_to_num(whole.tau_l))
+                return (shaken(whole, -resonance(torque, whole.dt, omega, zeta)[1]),)
+            alpha = np.ascontiguousarray(whole.alpha_m if side == MOTOR else whole.alpha_l)
+            return (shaken(whole, resonated(alpha, whole.dt, omega, zeta)),)
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: signals.states(swinging)[0][:, None]}
-
-    def _fast(self, s: Signals, x: Array) -> Array:
-        """x where the motor turns, 0 elsewhere: in slow runs there is nothing but noise at such frequencies, which the
-        mode would only amplify."""
-        return np.where(np.abs(s.omega_m) > self.EXCITED, np.nan_to_num(x), 0.0)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Inertia, frequency and damping; of a coupling its compliance, of a hub no damping."""

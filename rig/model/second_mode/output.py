@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
 from rig.model.memory import resonance
+from rig.model.shaken import shaken
 
 Array = npt.NDArray[np.float64]
 
@@ -22,9 +23,8 @@ def hub(s: Signals) -> Mapping[Port, Array]:
     return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
 
 
-def flange(s: Signals, driving: Callable[[Signals], Array], omega: float, zeta: float) -> Mapping[Port, Array]:
-    """Three, where the inertia is behind the sensor and a shaft of k behind that; `driving` is the torque, N·m (n,), of
-    what turns fast enough to swing.
+def flange(s: Signals, omega: float, zeta: float) -> Mapping[Port, Array]:
+    """Three, where the inertia is behind the sensor and a shaft of k behind that.
 
     The shaft twists by δ = (T − J_2·(ω̇_l + δ̈))/k, and J_2·δ̈ = (1 − H_p)·T, both inertias swinging against each other:
     beyond T/k, which the gear's own 1/K has, that is (H_p − 1)·T/k − (J_2/k)·ω̇_l. The load follows H_p·T, which is
@@ -32,9 +32,9 @@ def flange(s: Signals, driving: Callable[[Signals], Array], omega: float, zeta: 
     """
 
     def swinging(whole: Signals) -> tuple[Array, ...]:
-        torque = driving(whole)
+        torque = np.ascontiguousarray(np.nan_to_num(whole.torque))
         swung, jerk = resonance(torque, whole.dt, omega, zeta)
-        return swung - torque, jerk
+        return shaken(whole, swung - torque), shaken(whole, jerk)
 
     behind, jerk = s.states(swinging)
     twist, resists = np.zeros((jerk.size, 3)), np.zeros((jerk.size, 3))

@@ -263,6 +263,17 @@ def test_a_housing_shows_in_both_angles_or_in_the_wind_up_as_its_encoders_are_he
     np.testing.assert_allclose(grounded[Port.WIND_UP][:, 0], s.torque, atol=0.05 * np.abs(s.torque).max())
 
 
+def test_no_housing_swings_in_a_slow_run_and_none_is_shaken_when_a_motor_speeds_up() -> None:
+    """Below 3 rad/s it is compliance alone; above, it has swung all along: a load that is held makes no step of it."""
+    s = dataclasses.replace(motion(), torque=np.full(4000, 30.0), omega_m=np.linspace(0.0, 6.0, 4000))
+    column = SupportCompliance().columns(s, (ON_GROUND, 20.0, 0.02))[Port.WIND_UP][:, 0]
+    np.testing.assert_allclose(column, 30.0, atol=1e-9)
+    noisy = dataclasses.replace(s, torque=s.torque + np.sin(2 * np.pi * 20.0 * s.t))
+    column = SupportCompliance().columns(noisy, (ON_GROUND, 20.0, 0.02))[Port.WIND_UP][:, 0]
+    np.testing.assert_array_equal(column[:1900], noisy.torque[:1900])
+    assert float(np.ptp(column[3000:])) > 10 * float(np.ptp(noisy.torque))
+
+
 @pytest.mark.parametrize(("driven", "can_be"), [(0.03, True), (-0.002, True), (-0.02, False)])
 def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be: bool) -> None:
     fit = Fit(np.array([0.03, driven]), (1.0, 1.0), np.zeros((4, 4)), KNOWN, N)
