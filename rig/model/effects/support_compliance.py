@@ -18,7 +18,8 @@ class SupportCompliance(Effect):
     """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much when the encoders
     ride on it; held on the ground they read right, and the gear seems so much softer.
 
-    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has.
+    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has: of encoders
+    on the ground the column is (H − 1)·T, and what the torque sensor reads too much is wound up by all of it.
     """
 
     name: ClassVar[str] = "support_compliance"
@@ -56,13 +57,14 @@ class SupportCompliance(Effect):
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column, in both readings or in the wind-up."""
+        """One column, in both readings or, beyond 1/K, in the wind-up."""
         held, frequency, zeta = shape
         torque = signals.once(self.name, lambda: np.ascontiguousarray(np.nan_to_num(signals.torque)))
         swung = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)
-        moved = (torque + shaken(signals, swung - torque))[:, None]
+        beyond = shaken(signals, swung - torque)[:, None]
         if held == ON_GROUND:
-            return {Port.WIND_UP: moved}
+            return {Port.WIND_UP: beyond}
+        moved = torque[:, None] + beyond
         return {Port.READS_THETA_L: moved, Port.READS_THETA_M: moved}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:

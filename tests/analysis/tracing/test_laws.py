@@ -259,18 +259,19 @@ def test_a_housing_shows_in_both_angles_or_in_the_wind_up_as_its_encoders_are_he
     ridden, grounded = (SupportCompliance().columns(s, (held, 40.0, 0.05)) for held in (ON_HOUSING, ON_GROUND))
     assert set(ridden) == {Port.READS_THETA_L, Port.READS_THETA_M}
     assert set(grounded) == {Port.WIND_UP}
-    np.testing.assert_allclose(grounded[Port.WIND_UP], ridden[Port.READS_THETA_L])
-    np.testing.assert_allclose(grounded[Port.WIND_UP][:, 0], s.torque, atol=0.05 * np.abs(s.torque).max())
+    np.testing.assert_allclose(ridden[Port.READS_THETA_L][:, 0], s.torque, atol=0.05 * np.abs(s.torque).max())
+    beyond = ridden[Port.READS_THETA_L] - s.torque[:, None]  # of the rest the gear only seems softer, and K has that
+    np.testing.assert_allclose(grounded[Port.WIND_UP], beyond, atol=1e-12)
 
 
 def test_no_housing_swings_in_a_slow_run_and_none_is_shaken_when_a_motor_speeds_up() -> None:
     """Below 3 rad/s it is compliance alone; above, it has swung all along: a load that is held makes no step of it."""
     s = dataclasses.replace(motion(), torque=np.full(4000, 30.0), omega_m=np.linspace(0.0, 6.0, 4000))
     column = SupportCompliance().columns(s, (ON_GROUND, 20.0, 0.02))[Port.WIND_UP][:, 0]
-    np.testing.assert_allclose(column, 30.0, atol=1e-9)
+    np.testing.assert_allclose(column, 0.0, atol=1e-9)
     noisy = dataclasses.replace(s, torque=s.torque + np.sin(2 * np.pi * 20.0 * s.t))
     column = SupportCompliance().columns(noisy, (ON_GROUND, 20.0, 0.02))[Port.WIND_UP][:, 0]
-    np.testing.assert_array_equal(column[:1900], noisy.torque[:1900])
+    assert not column[:1900].any()
     assert float(np.ptp(column[3000:])) > 10 * float(np.ptp(noisy.torque))
 
 
