@@ -18,8 +18,8 @@ class SupportCompliance(Effect):
     """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much when the encoders
     ride on it; held on the ground they read right, and the gear seems so much softer.
 
-    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has: of encoders
-    on the ground the column is (H − 1)·T, and what the torque sensor reads too much is wound up by all of it.
+    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has: of
+    encoders on the ground the column is (H − 1)·T, and what the torque sensor reads too much is wound up by all of it.
     """
 
     name: ClassVar[str] = "support_compliance"
