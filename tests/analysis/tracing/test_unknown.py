@@ -76,6 +76,10 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         lambda at: at["direction"] * np.exp(-((np.mod(5.537 * at["motor_angle"], 6.283) - 2) ** 2) / 0.02),
     ),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
+    "friction that breathes with a thermostat": (
+        "time_periodic",
+        lambda at: at["direction"] * np.sin(2 * np.pi * at["time"] / 38.0),
+    ),
     "a torque sensor whose gain breathes": ("time_periodic", lambda at: at["load"] * np.sin(2.7 * at["time"])),
     "a brinell mark in the race": (
         "motor_angle",

@@ -39,11 +39,12 @@ class Home:
 
 
 def plainest(found: Sequence[Home]) -> list[Home]:
-    """The best first, and before it simpler ones that do nearly as well."""
+    """The best first, and before it simpler ones that do nearly as well; of those that are said late the best."""
     best = max(h.share for h in found)
 
     def rank(h: Home) -> tuple[bool, bool, bool, int, float]:
-        return h.share < PLAIN_ENOUGH * best, not h.first, h.late, SIMPLE.index(h.coordinate), -h.share
+        simple = len(SIMPLE) if h.late else SIMPLE.index(h.coordinate)
+        return h.share < PLAIN_ENOUGH * best, not h.first, h.late, simple, -h.share
 
     return sorted(found, key=rank)
 

@@ -150,17 +150,18 @@ def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among:
     return Home("time_periodic", channel, score(h, phase(r)) / h.total, frequency_hz=f, read=in_bins(phase))
 
 
-def by_the_day(h: Halves, channel: str) -> Home | None:
-    """A wave of the campaign's own time, slower than a run shows by itself: a room that warms and cools."""
+def by_the_day(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
+    """A wave of the campaign's own time against the `sense` of the motion, slower than a run shows by itself: a room
+    that warms and cools, and the friction in it."""
     r = h.rest
     x = TURN * r.at["time"]
     step = 0.25 * TURN / float(np.ptp(x))
     rough = np.arange(step, SLOWEST, step)
     if rough.size < DAY:
         return None
-    e = r.e * r.worth
+    e = r.e * r.worth * sense(r)
     f = _sharpened(x, e, float(rough[int(np.argmax(spectrum(x, e, rough)))]), step)
-    read = in_columns(lambda rest: waves(TURN * rest.at["time"], f))
+    read = in_columns(lambda rest: waves(TURN * rest.at["time"], f) * sense(rest)[:, None])
     return Home("time_periodic", channel, share(h, read), frequency_hz=f, read=read, late=True)
 
 

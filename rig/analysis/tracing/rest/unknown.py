@@ -112,7 +112,8 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     """`seen`: a line in runs of differing speed."""
     if not h.rest.timed:
         return []
-    found = [home for home in (seen, by_the_day(h, channel)) if home is not None]
+    slow = [by_the_day(h, channel, sense) for sense in SENSES]
+    found = [home for home in (seen, *slow) if home is not None]
     return found + [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
 
 

@@ -33,7 +33,7 @@ def of_the_rest(best: Home, total: float) -> str:
         f"What is left is {total:.1f} times the floor and follows no effect of the library; it lives in "
         f"{where} ({min(best.share, 1.0):.0%} of it)"
         + (f", order {best.order:.2f}" if best.order else "")
-        + (f", {best.frequency_hz:.2f} Hz" if best.frequency_hz else "")
+        + (f", {best.frequency_hz:.3g} Hz" if best.frequency_hz else "")
         + "."
     )
 
