@@ -60,7 +60,7 @@ class TorsionalMode(Effect):
     FURTHEST: Final = 1.6  # of the band: a flange shows below its resonance as well
     OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
-    TWICE: Final = 3.0  # that a flange's 1/ω² is told as, apart from its frequency: so far they may differ
+    APART: Final = 3.0  # times: how far the two a flange tells its frequency by may differ, as 1/ω² and as a peak
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Frequencies up to what the equations are compared at."""
@@ -177,7 +177,7 @@ class TorsionalMode(Effect):
         inertia, *others = fit.coefficients[:2]
         if fit.shape[0] == FLANGE:
             told = fit.coefficients[2] * (2.0 * np.pi * fit.shape[1]) ** 2
-            return bool(min(fit.coefficients[:2]) > 0 and 1.0 / self.TWICE < told < self.TWICE)
+            return bool(min(fit.coefficients[:2]) > 0 and 1.0 / self.APART < told < self.APART)
         if fit.shape[0] == HUB:
             return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
         return bool(inertia > 0 and all(x > 0 for x in others))
