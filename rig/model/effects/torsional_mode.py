@@ -66,10 +66,11 @@ class TorsionalMode(Effect):
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
-        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN, FLANGE) for f in frequencies)
+        modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)
+        flange = tuple((FLANGE, float(f), self.ZETA, 0.0) for f in frequencies[::2])
         soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
         top = float(max(reach.band, self.LOWEST))
-        return (*modes, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
+        return (*modes, *flange, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""

@@ -94,6 +94,10 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a sensor that keeps a part of its last excursion": ("memory", lagging),
     "a clamp that slips under torque": ("memory", slipping),
     "friction that is more from one moment on": ("time", lambda at: at["direction"] * (at["time"] > 100.0)),
+    "an inertia of the load that is another one from one moment on": (
+        "time",
+        lambda at: at["load"] * (at["time"] > 130.0),
+    ),
     "a second wave that is another one on the way back": (
         "direction",
         lambda at: at["direction"] * np.sin(2 * at["motor_angle"]),
@@ -115,7 +119,8 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     made = law(at)
     own_zero = np.concatenate([x - x.mean() for x in np.split(made, RUNS)])
     e = 4.0 * own_zero / own_zero.std() + rng.normal(0, 1, own_zero.size)
-    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), "A"))
+    channel = "L" if "inertia" in what else "A"
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))
     assert found[0].coordinate == expected, [(h.coordinate, round(h.share, 2)) for h in found[:4]]
     assert found[0].share > 0.5
 

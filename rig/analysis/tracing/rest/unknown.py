@@ -140,9 +140,15 @@ def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
     well: all slow runs may have been taken before all fast ones. Where a step leaves next to nothing, a coordinate that
     leaves several times as much only follows the order of the runs."""
     turned = turned_since(h, channel) if channel == "A" else None
-    steps = [*(since(h, channel, sense) for sense in SENSES), *([turned] if turned else [])]
+    senses = (*SENSES, _load) if channel == "L" else SENSES
+    steps = [*(since(h, channel, sense) for sense in senses), *([turned] if turned else [])]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
     return [replace(step, first=best < PLAIN_ENOUGH * step.share or _is_it(step.share, best)) for step in steps]
+
+
+def _load(r: Rest) -> Array:
+    """What an inertia that is another one from one moment on leaves of a shaft's torque is a part of it."""
+    return np.nan_to_num(r.at["load"])
 
 
 def _is_it(share: float, other: float) -> bool:
