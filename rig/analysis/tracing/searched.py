@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from rig.analysis.tracing.fit.bank import Bank, fill, reach
 from rig.analysis.tracing.fit.encoder_lines import with_lines
@@ -28,53 +28,56 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     covered = reach([p.eq.runs[i] for i in runs])
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
-    tried = _filled(p, with_lines(covered, start, runs))
+    tried = Tried(p, with_lines(covered, start, runs))
     calm = quiet or is_calm(p)
-    selected, found, tried = _selected(p, start, tried, quiet, calm)
+    selected, found, covered = _selected(p, start, tried, quiet, calm)
     if calm and not is_certain(selected):
         found = Found(start, found.ranking)
-        selected = select(p, found, runs, tried.covered)
+        selected = select(p, found, runs, covered)
     del tried  # half a gigabyte, and the report is made by two processes
     give_back()
     return selected, replace(found, ranking=of_the_library(found.ranking))
 
 
-@dataclass(frozen=True)
 class Tried:
-    """All that is tried, in shapes that what the runs cover can show."""
+    """All that is tried, in shapes that what the runs cover can show. A bank is a gigabyte where no torque was read, so
+    that there is only ever one."""
 
-    bank: Bank
-    covered: Reach
+    def __init__(self, p: Prepared, covered: Reach) -> None:
+        self.fill(p, covered)
 
-
-def _filled(p: Prepared, covered: Reach) -> Tried:
-    """All that is tried. What hundreds of shapes keep with the signals they are made of is a tenth of a gigabyte, and
-    done with."""
-    candidates = [
-        *CATALOGUE.values(),
-        *(confounder.effect for confounder in CONFOUNDERS.values() if confounder.searched),
-    ]
-    return Tried(fill(some(p.eq.afresh(), p.split.fitted), candidates, p.split.fitted, covered), covered)
+    def fill(self, p: Prepared, covered: Reach) -> None:
+        """Made anew; the one before is gone first. What hundreds of shapes keep with the signals they are made of is a
+        tenth of a gigabyte, and done with."""
+        vars(self).pop("bank", None)
+        give_back()
+        candidates = [
+            *CATALOGUE.values(),
+            *(confounder.effect for confounder in CONFOUNDERS.values() if confounder.searched),
+        ]
+        self.covered = covered
+        self.bank: Bank = fill(some(p.eq.afresh(), p.split.fitted), candidates, p.split.fitted, covered)
 
 
 def _selected(
     p: Prepared, start: Solution, tried: Tried, quiet: bool, calm: bool, but: frozenset[str] = frozenset()
-) -> tuple[Selected, Found, Tried]:
-    """What stands of a search through all `but` some effects, what it found, and what else can be tried by then."""
+) -> tuple[Selected, Found, Reach]:
+    """What stands of a search through all `but` some effects, what it found, and what is covered by then."""
     runs = p.split.fitted
     found = search_some(start.design, tried.bank, runs, tried.covered, p.floors, quiet=quiet, excluded=but)
     give_back()
     let_go = bool(_remembering(found.solution.design.terms))
-    again, found, tried = _again(p, found, tried, but)
+    again, found = _again(p, found, tried, but)
     give_back()
-    selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, tried.covered)
+    covered = tried.covered
+    selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
     if not quiet:
-        selected = select_further(selected, found, tried.bank, runs, tried.covered)
+        selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
         other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
-        return (selected, found, tried) if other[0].loud else other
-    return selected, found, tried
+        return (selected, found, covered) if other[0].loud else other
+    return selected, found, covered
 
 
 def _remembering(terms: Sequence[Term]) -> frozenset[str]:
@@ -82,21 +85,21 @@ def _remembering(terms: Sequence[Term]) -> frozenset[str]:
     return frozenset(term.name for term in terms if term.effect.remembers)
 
 
-def _again(p: Prepared, found: Found, tried: Tried, but: frozenset[str]) -> tuple[Prepared, Found, Tried]:
+def _again(p: Prepared, found: Found, tried: Tried, but: frozenset[str]) -> tuple[Prepared, Found]:
     """What each run has to itself and the floor, looked for beside the effects that were found, and what they uncover.
 
     A large effect in the model's want hides lost counts, looks like them, and makes repeats differ. A weight that
-    nobody declared is most of the torque that others go by: then they are made anew.
+    nobody declared is most of the torque that others go by: then all that is `tried` is made anew.
     """
     if not found.solution.design.terms:
-        return p, found, tried
+        return p, found
     again, s = beside(p, found.solution, tried.covered, found.rough)
     runs = p.split.fitted
     if any(run.carries for run in again.eq.runs):
         loaded = reach([again.eq.runs[i] for i in runs])
-        tried = _filled(again, replace(tried.covered, torque=loaded.torque, pulled=loaded.pulled))
+        tried.fill(again, replace(tried.covered, torque=loaded.torque, pulled=loaded.pulled))
     found = search_some(s.design, tried.bank, runs, tried.covered, again.floors, ranking=found.ranking, excluded=but)
-    return again, found, tried
+    return again, found
 
 
 def beside(p: Prepared, s: Solution, covered: Reach, rough: bool = False) -> tuple[Prepared, Solution]:
