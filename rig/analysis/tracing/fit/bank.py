@@ -85,10 +85,13 @@ def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered:
 
     longest = sorted(runs, key=lambda run: -_work(eq, run))  # first, or one process waits for the other in the end
     made = dict(zip(longest, each(of, longest), strict=True))
-    parts = zip(*(made[run] for run in runs), strict=True)
-    clean, noise = ({k: b for found in part for k, b in found.items()} for part in parts)
+    clean, noise = Blocks(), Blocks()
+    for run in runs:
+        for blocks, part in zip((clean, noise), made.pop(run), strict=True):
+            blocks.update(part)
     wide = {c: _widest([b for (_, channel), b in clean.items() if channel == c], len(terms)) for c in CHANNELS}
-    clean, noise = ({key: b.spread(wide[key[1]]) for key, b in blocks.items()} for blocks in (clean, noise))
+    for blocks in (clean, noise):
+        _spread(blocks, wide)
     give_back()  # columns of single terms, half as much again as the bank
     return Bank(
         terms,
@@ -127,6 +130,13 @@ def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> tuple[Blocks, Blo
         for c, sheet in noise.items():
             sheet.add(noisy[c] - made[c] if c in made else None)
     return _blocks(run, clean), _blocks(run, noise)
+
+
+def _spread(blocks: Blocks, wide: Mapping[str, Index]) -> None:
+    """As many columns of each term in all runs, one block after the other: side by side with those before, they would
+    want twice the memory."""
+    for key in blocks:
+        blocks[key] = blocks[key].spread(wide[key[1]])
 
 
 def _blocks(run: int, made: Mapping[str, Sheet]) -> Blocks:
