@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rig.analysis.tracing.fit.bank import Bank, fill, reach
+from rig.analysis.tracing.fit.bank import Bank, fill, reach, torque_noise
 from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
@@ -25,7 +25,7 @@ from rig.model.effects import CATALOGUE
 def searched(p: Prepared) -> tuple[Selected, Found]:
     """What stands of all that was searched for, and the candidates of the library."""
     runs = p.split.fitted
-    covered = reach([p.eq.runs[i] for i in runs])
+    covered = replace(reach([p.eq.runs[i] for i in runs]), torque_noise=torque_noise(p.eq))
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     tried = Tried(p, with_lines(covered, start, runs))

@@ -28,5 +28,6 @@ class Reach:
     backwards: float = 0.5  # of the rows that turn, share of those that go the way of fewer
     pulled: float = 0.5  # of the squared torque, share of that with the sign that has less
     weights: int = 2  # different external torques
+    torque_noise: float = 0.0  # N·m, RMS of sensor noise in T, where it is most
     lines_m: tuple[int, ...] = ()  # line counts that the residual shows, whatever is said of the encoders
     lines_l: tuple[int, ...] = ()

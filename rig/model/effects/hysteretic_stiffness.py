@@ -14,14 +14,16 @@ from rig.model.memory import play, presliding
 class HystereticStiffness(Effect):
     """A loop in one of four laws, told by `law`.
 
-    0: φ gains Σ c_i·P_{r_i}[T], play operators of the torque: a Prandtl-Ishlinskii loop      [kuhnen2003]
+    0: φ gains Σ c_i·(P_{r_i}[T] − T), what play operators stay behind the torque by: a Prandtl-Ishlinskii loop about a
+    spring that is 1/K over a large swing      [kuhnen2003]
+
     1: φ loses (T_f/K)·z, dz/dφ = (1 − z·sgn φ̇)/x_0: friction T_f in parallel to the spring, which takes its share first
     after every reversal and whose minor loops stay open      [dahl1968]
 
     2: the same friction in proportion to the load, φ loses (μ/K)·|T|·z: teeth are pressed together by what they carry,
     and the loop is a wedge that closes at no torque      [wolf2018]
 
-    3: the plays of law 0, each wider under load, φ gains Σ (c_i + d_i·|T|)·P_{r_i}[T]: a loop between 0 and 2
+    3: the plays of law 0, each wider under load, φ gains Σ (c_i + d_i·|T|)·(P_{r_i}[T] − T): a loop between 0 and 2
 
     All are rate-independent. T_h scales the half widths r_i, and is K·x_0.
     """
@@ -40,6 +42,7 @@ class HystereticStiffness(Effect):
     adds: ClassVar[frozenset[str]] = frozenset({"hysteresis_loss", "loss_at_20_Nm"})
     WIDTHS: Final = (1.5, 4.0, 10.0, 25.0)  # N·m
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
+    ABOVE_NOISE: Final = 7.0  # times sensor noise in T: by narrower plays it is led, and a fit seems to explain it
     UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
     SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
     PLAYS, FRICTION, WEDGE, SWELLING = 0.0, 1.0, 2.0, 3.0
@@ -48,7 +51,9 @@ class HystereticStiffness(Effect):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Loops the campaign's torque can go round."""
         widths = [w for w in self.WIDTHS if w < 0.7 * reach.torque]
-        plays, wedges, swelling = ([(w, law) for w in widths] for law in (self.PLAYS, self.WEDGE, self.SWELLING))
+        wide = dict.fromkeys(max(w, self._least(reach)) for w in widths)
+        plays, swelling = ([(w, law) for w in wide] for law in (self.PLAYS, self.SWELLING))
+        wedges = [(w, self.WEDGE) for w in widths]
         return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges, *swelling)
 
     def has_state(self) -> bool:
@@ -56,13 +61,14 @@ class HystereticStiffness(Effect):
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One operator a half width, each once more by the load where it swells; or the friction's state."""
+        """What one operator a half width stays behind by, each once more by the load where it swells; or the friction's
+        state. With the operators themselves, 1/K would be what is left of the wind-up once the narrowest has gone."""
         width, law = shape
         torque = np.ascontiguousarray(np.nan_to_num(signals.torque))
         if law in (self.PLAYS, self.SWELLING):
-            plays = np.stack([play(torque, width * share) for share in self.SPREAD], 1)
-            by_load = plays * (np.abs(torque) / self.AT)[:, None]
-            return {Port.WIND_UP: plays if law == self.PLAYS else np.hstack([plays, by_load])}
+            behind = np.stack([play(torque, width * share) - torque for share in self.SPREAD], 1)
+            by_load = behind * (np.abs(torque) / self.AT)[:, None]
+            return {Port.WIND_UP: behind if law == self.PLAYS else np.hstack([behind, by_load])}
         state = presliding(self._wound(signals), width / signals.gear.K)
         return {Port.WIND_UP: (state * np.abs(torque) if law == self.WEDGE else state)[:, None]}
 
@@ -105,4 +111,9 @@ class HystereticStiffness(Effect):
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of T_h; the law is chosen, not fitted."""
         widths = [w for w, _ in self.shapes(reach)]
-        return ((min(widths) / 3, max(widths) * 3), (self.PLAYS, self.SWELLING)) if widths else ()
+        least = max(min(widths, default=0.0) / 3, self._least(reach))
+        return ((least, max(widths) * 3), (self.PLAYS, self.SWELLING)) if widths else ()
+
+    def _least(self, reach: Reach) -> float:
+        """T_h whose narrowest play is as wide as sensor noise lets one be, N·m."""
+        return self.ABOVE_NOISE * reach.torque_noise / self.SPREAD[0]

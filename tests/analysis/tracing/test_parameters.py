@@ -41,7 +41,7 @@ def test_damping_is_right_though_the_model_ends_with_the_second_derivative(monke
     eq = Equations((RUN,), rows, Noise({"A": 1e-8}, {"A": 1.0}, {"A": np.inf}))
     parts = {key: (Part(Bare(np.stack([waves(d) for d in range(3)], 1)), at, None),)}
     empty = Design(eq, (), (), {key: wind_up()}, {}, parts, np.zeros((size, size)), np.zeros(size))
-    gram, right = normal(empty, {key: parts[key][0]})
+    gram, right, _ = normal(empty, {key: parts[key][0]})
     monkeypatch.setattr(parameters, "third_rate", lambda run: waves(3))
     s = fit(Design(eq, (), (), empty.y, {}, parts, gram, right))
     fitted = -s.value("damping") / s.value("compliance") ** 2
@@ -59,7 +59,7 @@ def test_a_sensor_that_would_be_early_has_no_delay_and_an_interval_as_wide_as_th
     eq = Equations((RUN,), {}, Noise({"L": 0.05}, {"L": 1.0}, {"L": np.inf}))
     parts = {key: (Part(Bare(z), at, None),)}
     empty = Design(eq, (), (), {key: y}, {}, parts, np.zeros((size, size)), np.zeros(size))
-    gram, right = normal(empty, {key: parts[key][0]})
+    gram, right, _ = normal(empty, {key: parts[key][0]})
     (lag,) = (
         p for p in parameters.baseline(fit(Design(eq, (), (), empty.y, {}, parts, gram, right))) if p.name == "lag"
     )

@@ -108,3 +108,21 @@ def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
     monkeypatch.setattr(selected, "_without", without)
     nothing: Any = None
     assert selected._without_needless(with_(["weight", "mode"], now), (), nothing).names == expected
+
+
+@pytest.mark.parametrize(("leaves", "stays"), [(1.17, "loop in the spring"), (1.0, "loop in the sensor")])
+def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
+    monkeypatch: pytest.MonkeyPatch, leaves: float, stays: str
+) -> None:
+    left = {"loop in the spring": 1.09, "loop in the sensor": leaves}
+    spring, sensor = (solution("eq", SimpleNamespace(name=name)) for name in left)
+    monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: sensor)
+    monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", []))
+    worst = SimpleNamespace(
+        residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name])
+    )
+    p: Any = SimpleNamespace(held_out=worst)
+    held: Any = "held"
+    nothing: Any = None
+    stood = selected._stood_in_for(p, (spring, held, []), (), nothing)
+    assert [term.name for term in stood[0].design.terms] == [stays]

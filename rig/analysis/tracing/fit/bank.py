@@ -68,6 +68,16 @@ def reach(runs: Sequence[Recording]) -> Reach:
     )
 
 
+def torque_noise(eq: Equations) -> float:
+    """RMS of sensor noise in T of the run that has most of it, N·m."""
+    made = (
+        np.nanstd(np.concatenate([a.torque - b.torque for a, b in zip(noisy.pieces, eq.runs[i].pieces, strict=True)]))
+        for i, noisy in eq.noisy.items()
+        if any(np.isfinite(p.torque).any() for p in noisy.pieces)
+    )
+    return max(map(float, made), default=0.0)
+
+
 def _lesser(x: Array) -> float:
     """Of the sum of |x|, the share of the sign that has less of it."""
     x = np.nan_to_num(x)

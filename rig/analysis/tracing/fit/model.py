@@ -19,6 +19,7 @@ STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into o
 BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
 UNSEEN = 1e-12  # of the normal matrix' diagonal: what rounding leaves of a column that is a constant
 PINNED = 1e6  # times what the data know of it
+HELD = 100.0  # times what noise seems to know of it
 
 
 @dataclass(frozen=True)
@@ -168,14 +169,32 @@ def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
     new = {key: Part(Bare(z), at, None if noise is None else Bare(noise)) for key, (z, noise) in made.items()}
     parts = {key: (*old, new[key]) if key in new else old for key, old in d.parts.items()}
     out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), parts=parts)
-    part, right = normal(out, new)
-    part, right = part[:, at], right[at]
-    gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, part[d.size :]]])
+    part, right, noise = normal(out, new)
+    part, right, noise = part[:, at], right[at], noise[np.ix_(at, at)]
+    own = part[d.size :] + held_still(d.gram + np.diag(prior(d.size)), part[: d.size], part[d.size :], noise)
+    gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, own]])
     return replace(out, gram=gram, right=np.concatenate([d.right, right]))
 
 
-def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
-    """Products of all columns with the new ones (p, p), and of the new ones with y (p,), sensor noise taken off.
+def held_still(gram: Array, across: Array, own: Array, noise: Array) -> Array:
+    """What holds sums of a term's columns at nothing that are mostly sensor noise beside the model, (k, k): narrow
+    plays that stand against each other. What is taken off leaves nothing of them, and a fit would seem to explain more
+    than there is. Given are normal matrices of the model (b, b), of both (b, k), of the term, of its noise (k, k)."""
+    if not noise.any():
+        return np.zeros_like(own)
+    scaled, scale = evened(gram)
+    across = across * scale[:, None]
+    size = np.sqrt(np.maximum(np.diag(own + noise), 1e-300))
+    left = (own - across.T @ np.linalg.solve(scaled, across)) / size / size[:, None]
+    values, vectors = np.linalg.eigh(left)
+    spoilt = np.sum(vectors * ((noise / size / size[:, None]) @ vectors), axis=0)
+    held = np.where(values > CLEAR * (values + spoilt), 0.0, HELD * spoilt)
+    return np.asarray((vectors * held) @ vectors.T * size * size[:, None])
+
+
+def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array, Array]:
+    """Products of all columns with the new ones (p, p), and of the new ones with y (p,), sensor noise taken off; and
+    of that noise in the new ones (p, p).
 
     Noise in columns makes inertias come out low when it is left in. What it adds is found by adding each run's noise
     once more: products of the differences that makes      [fuller1987]
@@ -183,16 +202,17 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array]:
     with ThreadPoolExecutor(WORKERS) as pool:
         made = pool.map(lambda key: _products(d, key, new[key]), new)
         found = [product for block in made for product in block]
-    gram, right = np.zeros((d.size, d.size)), np.zeros(d.size)
-    for part, mine, across, along in found:
+    gram, right, noise = np.zeros((d.size, d.size)), np.zeros(d.size), np.zeros((d.size, d.size))
+    for part, mine, across, along, less in found:
         gram[np.ix_(part.at, mine.at)] += across
         if part is mine:
             right[mine.at] += along
-    return gram, right
+            noise[np.ix_(mine.at, mine.at)] += less
+    return gram, right, noise
 
 
-def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, Array]]:
-    """Of each part of a block with `mine`, and of that one with y."""
+def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, Array, Array | float]]:
+    """Of each part of a block with `mine`, and of that one with y; and what of the first was taken off as noise."""
     w, z = d.eq.noise.weight(key[1]), mine.z.whole()
     along = w * (z.T @ d.y[key])
     v, noise = w * d.eq.stands_for.get(key, 0.0), None if mine.spoilt is None else mine.spoilt.whole()
@@ -201,9 +221,10 @@ def _products(d: Design, key: Key, mine: Part) -> list[tuple[Part, Part, Array, 
     out = []
     for part in d.parts[key]:  # of a matrix with itself BLAS makes but half
         across = w * (z.T @ z if part is mine else part.z.onto(z))
+        less: Array | float = 0.0
         if noise is not None and part.spoilt is not None:
-            across -= v * (noise.T @ noise if part is mine else part.spoilt.onto(noise))
-        out.append((part, mine, across, along))
+            less = v * (noise.T @ noise if part is mine else part.spoilt.onto(noise))
+        out.append((part, mine, across - less, along, less))
     return out
 
 

@@ -85,7 +85,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
     if fewer or found.rough or len(solution.design.terms) > 1:
         solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
     p, solution = _own_kept(p, solution)
-    solution, held, scores = backward_elimination(with_confounders(solution, runs, covered), p.held_out)
+    solution, held, scores = _stood_in_for(p, (solution, held, scores), runs, covered)
     while vague := _not_told(p, solution, held, runs, covered):
         # one at a time: without it another one's law may be plain
         candidates = [score for score in scores if score.name in vague]
@@ -195,6 +195,18 @@ def _polished(p: Prepared, s: Solution, so_far: Kept, runs: Sequence[int], cover
     again = backward_elimination(polished(s, runs, covered), p.held_out)
     kept = {term.name for term in again[0].design.terms}
     return again if kept >= {term.name for term in s.design.terms} else so_far
+
+
+def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) -> Kept:
+    """With the confounders that explain more than what they are taken for. What leaves more of unseen runs takes no
+    name away: fitted ones may tell two loops apart by what either law has wrong (exam 34, case 25)."""
+    s, other = kept[0], with_confounders(kept[0], runs, covered)
+    again = backward_elimination(other, p.held_out)
+    came = {term.name for term in other.design.terms} - {term.name for term in s.design.terms}
+    if came:
+        as_it_was = backward_elimination(s, p.held_out)
+        return min(as_it_was, again, key=lambda one: p.held_out.worst(p.held_out.residuals(one[0], one[1]))[0])
+    return again
 
 
 def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
