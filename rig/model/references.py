@@ -7,6 +7,8 @@ REFERENCES: dict[str, str] = {
     "ASME J. Dynamic Systems, Measurement and Control 107 (1985) 100-103",
     "armstrong1994": "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and "
     "compensation methods for the control of machines with friction, Automatica 30 (1994) 1083-1138",
+    "hess1990": "D. P. Hess, A. Soom, Friction at a lubricated line contact operating at oscillating sliding "
+    "velocities, ASME Journal of Tribology 112 (1990) 147-152",
     "fuller1987": "W. A. Fuller, Measurement Error Models, Wiley (1987)",
     "cody1980": "W. J. Cody, W. Waite, Software Manual for the Elementary Functions, Prentice-Hall (1980)",
     "liang1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, "

@@ -373,6 +373,15 @@ def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() ->
     assert not NonlinearStiffness().is_scaled(Parameter("T_0", 0.3, (-2.0, 4.0), "N·m"), REACH)
 
 
+def test_what_an_oil_film_leaves_of_friction_at_rest_falls_to_half_and_goes_on_for_longer() -> None:
+    effect, s = StribeckFriction(), dataclasses.replace(motion(n=3), omega_m=np.array([0.0, 2.0, 20.0]), way=np.ones(3))
+    film, fall = (effect.columns(s, (2.0, 2.0, 0.0, law))[Port.MOTOR_TORQUE][:, 0] for law in (1.0, 0.0))
+    np.testing.assert_allclose(film, [1.0, 0.5, 1 / 101])
+    assert fall[2] < 1e-40
+    told = effect.parameters(Fit(np.array([0.2]), (2.0, 2.0, 0.0, 1.0), np.eye(3), KNOWN, N))
+    assert [p.name for p in told] == ["tau_s_minus_tau_c", "omega_s", "p"]
+
+
 def test_a_fan_of_curved_blades_drags_otherwise_backwards() -> None:
     effect = QuadraticDrag()
     ways = [effect.columns(motion(sign), (1.0, 2.0))[Port.MOTOR_TORQUE] for sign in (1.0, -1.0)]

@@ -80,7 +80,7 @@ def test_a_gap_may_be_wider_every_half_turn() -> None:
 
 
 def test_friction_may_fall_by_more_one_way_than_the_other() -> None:
-    effect, shape = StribeckFriction(), (2.0, 1.0, 1.0)
+    effect, shape = StribeckFriction(), (2.0, 1.0, 1.0, 0.0)
     forward, backward = (effect.columns(motion(sign), shape)[Port.MOTOR_TORQUE] for sign in (1.0, -1.0))
     assert forward[:, 0].any()
     assert not forward[:, 1].any()

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.model.effects.stribeck_friction import StribeckFriction
 
 WITHOUT, EFFECT = 1e6, 2e4  # gain of the model without it, and what the effect adds to that
-STRIBECK = Term(StribeckFriction(), (1.0, 1.0, 0.0))
+STRIBECK = Term(StribeckFriction(), (1.0, 1.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_th
 
     def refined(d: Any, term: Term, runs: Any, covered: Any, free: list[int]) -> Any:
         tried.append((term.shape, free))
-        shape = (1.2, 2.7, 0.0) if 1 in free else (1.3, *term.shape[1:])
+        shape = (1.2, 2.7, 0.0, 0.0) if 1 in free else (1.3, *term.shape[1:])
         other = 0.0 if shape[1] in (better, 2.7) else -300.0
         found = SimpleNamespace(gain=WITHOUT + EFFECT + other + (more if 1 in free else 0.0))
         return SimpleNamespace(terms=(Term(term.effect, shape),)), found
@@ -47,7 +47,8 @@ def test_another_exponent_takes_a_hundredth_of_what_the_effect_explains_or_of_th
     d: Any = SimpleNamespace(y={(0, "M"): np.zeros(2 * rows)}, eq=SimpleNamespace(noise=noise), terms=())
     best, _ = refine.refine(d, STRIBECK, (), nothing)
     assert best.terms[-1].shape[1] == exponent
-    assert tried == [((1.0, 1.0, 0.0), [0, 1]), ((1.2, 1.0, 0.0), [0]), ((1.2, 2.0, 0.0), [0])]
+    textbook = [((1.2, exponent, 0.0, law), [0]) for exponent in (1.0, 2.0) for law in (0.0, 1.0)]
+    assert tried == [((1.0, 1.0, 0.0, 0.0), [0, 1]), *textbook]
 
 
 def test_beside_another_term_of_the_effect_an_exponent_stays_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -60,6 +61,6 @@ def test_beside_another_term_of_the_effect_an_exponent_stays_as_it_is(monkeypatc
 
     monkeypatch.setattr(refine, "_refined", refined)
     nothing: Any = None
-    d: Any = SimpleNamespace(terms=(Term(StribeckFriction(), (3.0, 1.0, 0.0)),))
+    d: Any = SimpleNamespace(terms=(Term(StribeckFriction(), (3.0, 1.0, 0.0, 0.0)),))
     refine.refine(d, STRIBECK, (), nothing)
     assert tried == [[0]]
