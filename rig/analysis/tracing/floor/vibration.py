@@ -105,18 +105,21 @@ def _parts(eq: Equations, key: Key, e: Array, count: int) -> list[Part]:
 
 
 def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
-    """Hz of the strongest line at a fixed frequency in L (in A without a torque sensor), None when there is none."""
+    """Hz of the strongest line at a fixed frequency in L (in A without a torque sensor), None when there is none. Of
+    each frequency the runs tell whose rows are dense enough: in slow ones a fast line stands where it is no line."""
     channel = "L" if any(c == "L" for _, c in e) else "A"
     keys = [k for k in e if k[1] == channel and e[k].size > 256]
     parts = [part for key in keys for part in _parts(eq, key, e[key], 1 if len(keys) >= FEWEST else STRETCHES)]
     if len(parts) < FEWEST:
         return None
-    top = min(0.5 / (eq.runs[k[0]].smoother.dt * eq.runs[k[0]].smoother.step) for k in keys)
-    grid = np.arange(ExternalVibration.LOWEST, 0.98 * top, ExternalVibration.STEP)
+    tops = np.array([0.98 * 0.5 / float(np.median(np.diff(t))) for t, _, _ in parts])
+    grid = np.arange(ExternalVibration.LOWEST, np.sort(tops)[-FEWEST], ExternalVibration.STEP)
     heights = np.array([_heights(t, x, grid) for t, x, _ in parts])
+    heights[grid > tops[:, None]] = np.nan
     speed = np.array([turning for _, _, turning in parts])
     hits = heights > LINE
-    score = np.where(hits.mean(0) > LINE_RUNS, np.median(heights, axis=0), 0.0)
+    common = hits.sum(0) > LINE_RUNS * np.isfinite(heights).sum(0)
+    score = np.where(common, np.nanmedian(heights, axis=0), 0.0)
     for at in np.argsort(-score)[:50]:
         if score[at] <= 0:
             return None
