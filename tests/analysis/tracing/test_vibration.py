@@ -44,3 +44,23 @@ def test_stretches_of_one_log_are_what_several_runs_would_be(monkeypatch: pytest
     parts = vibration._parts(eq, (0, "L"), np.arange(t.size, dtype=float), 8)
     assert np.array_equal(np.concatenate([x for _, x, _ in parts]), np.arange(t.size))
     assert [speed for _, _, speed in parts] == pytest.approx([2.0, 2.0, 12.0, 12.0, 2.0, 2.0, 12.0, 12.0], rel=0.01)
+
+
+@pytest.mark.parametrize("hz", [11.0, 37.54])
+def test_a_line_above_what_slow_runs_resolve_is_told_by_the_fast_ones(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, hz: float
+) -> None:
+    """Rows of slow runs lie 16 ms apart: there a line at 37.54 Hz stands at 24.96 Hz."""
+    apart = [0.016] * 8 + [0.004] * 9
+    times = [dt * np.arange(round(20.0 / dt)) for dt in apart]
+    monkeypatch.setattr(vibration, "clock", lambda eq, key: times[key[0]])
+    rows = {(i, "L"): SimpleNamespace(theta_m=np.zeros(t.size)) for i, t in enumerate(times)}
+    eq: Any = SimpleNamespace(rows=rows, runs=[SimpleNamespace(turning=2.0 + i) for i in range(len(apart))])
+    e = {(i, "L"): np.sin(2 * np.pi * hz * t + i) + 0.1 * rng.standard_normal(t.size) for i, t in enumerate(times)}
+    assert vibration._loudest(eq, e) == pytest.approx(hz, abs=0.005)
+
+
+@pytest.mark.parametrize(("half", "is_one"), [(0.01, True), (0.08, False)])
+def test_a_line_whose_torque_may_be_nothing_is_no_vibration(half: float, is_one: bool) -> None:
+    line = vibration.Line(52.84, {"A": 0.0, "L": 0.065}, 0.001, half, 0.065)
+    assert line.of_the_load(7000.0) == is_one

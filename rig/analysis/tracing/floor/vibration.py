@@ -38,12 +38,13 @@ class Line:
     as_one: float = 0.0
 
     def of_the_load(self, stiffness: float) -> bool:
-        """True for a torque on the load; an interference in the torque sensor would wind the gear up in A too. Without
-        one the torque shows in A and M, in the proportion that the gear's stiffness and ratio make."""
+        """True for a torque on the load, of a size that is known; an interference in the torque sensor would wind the
+        gear up in A too. Without one the torque shows in A and M, in the proportion that the gear's stiffness and ratio
+        make."""
         if "L" not in self.amplitude:
             return self.as_one > AS_ONE
         torque = self.amplitude["L"]
-        return torque > 0 and self.amplitude.get("A", 0.0) < 0.5 * torque / stiffness
+        return torque > self.half_torque and self.amplitude.get("A", 0.0) < 0.5 * torque / stiffness
 
 
 @dataclass(frozen=True)
