@@ -25,7 +25,7 @@ def solved(seed: int, gain: float, telling: int = RUNS) -> Solution:
     eq = Equations((), {}, Noise({"A": 1.0}, {"A": 1.0}, {"A": np.inf}))
     size = len(BASELINE)
     d = Design(eq, (), (), y, {}, parts, np.zeros((size, size)), np.zeros(size))
-    gram, right = normal(d, {key: part[0] for key, part in parts.items()})
+    gram, right, _ = normal(d, {key: part[0] for key, part in parts.items()})
     return fit(Design(eq, (), (), y, {}, parts, gram, right))
 
 
@@ -59,6 +59,6 @@ def test_of_one_run_pieces_are_left_out() -> None:
     key = (0, "A")
     part, y = s.design.parts[key], s.design.y[key]
     empty = Design(s.design.eq, (), (), {key: y}, {}, {key: part}, s.gram * 0, s.right * 0)
-    gram, right = normal(empty, {key: part[0]})
+    gram, right, _ = normal(empty, {key: part[0]})
     one = fit(Design(empty.eq, (), (), empty.y, {}, empty.parts, gram, right))
     assert 0.3 / np.sqrt(ROWS) < np.sqrt(covariance(one)[0, 0]) < 3 / np.sqrt(ROWS)
