@@ -18,4 +18,6 @@ class Known:
     kinematic_error: FourierSeries
     tau_c: float = 0.0  # N·m and N·m·s/rad, the motor's friction
     B_m: float = 0.0
+    tau_cl: float = 0.0  # N·m and N·m·s/rad, the load's, of a torque that nobody read
+    B_l: float = 0.0
     torque_zero: float = 0.0  # N·m, what the torque sensor reads without torque; `torque` is without it

@@ -337,6 +337,8 @@ def known_of(values: Mapping[str, float], before: Known = UNKNOWN) -> Known:
         torque_zero=values["tau_l0"],
         tau_c=max(values["tau_c"], 0.0),
         B_m=max(values["B_m"], 0.0),
+        tau_cl=max(values["tau_cl"], 0.0),
+        B_l=max(values["B_l"], 0.0),
         kinematic_error=FourierSeries(
             tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
         ),

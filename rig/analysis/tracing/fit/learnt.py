@@ -11,6 +11,7 @@ from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.model import Solution
 from rig.model.effect import Known
 
+TURNS_ON: Final = 1.0  # N·m, torques that effects turn on are not less
 LOUD: Final = 10.0  # RMS that the load's equation leaves over the noise: another load hangs there from time to time
 
 
@@ -33,4 +34,5 @@ def change(before: Known, now: Known) -> float:
     a, b = before.kinematic_error, now.kinematic_error
     old = np.array([*a.a, *a.b])
     series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
-    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1))
+    rubs = abs(now.tau_cl - before.tau_cl) / TURNS_ON
+    return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1), rubs)

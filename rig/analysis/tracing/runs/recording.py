@@ -20,7 +20,7 @@ from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, substituted
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing, substituted
 from rig.analysis.tracing.thresholds import BANDWIDTH, RATE
 from rig.core.errors import UsageError
 from rig.core.once import Once
@@ -309,7 +309,10 @@ def _knowing(piece: Signals, known: Known, run: Recording) -> Signals:
         return rewound(piece, known)
     if run.look.inertia and known.J_l != piece.gear.J_l:
         return reloaded(piece, known, piece.carried, "t" in run.has)
-    return replace(piece, gear=known, torque=piece.torque + piece.gear.torque_zero - known.torque_zero)
+    torque = piece.torque + piece.gear.torque_zero - known.torque_zero
+    if run.load_unread:
+        torque = torque + rubbing(piece, known) - rubbing(piece, piece.gear)
+    return replace(piece, gear=known, torque=torque)
 
 
 def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signals:
@@ -318,4 +321,5 @@ def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signal
     added |= in_stand_ins(added, piece, dt, run.locked, "t" in run.has)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, run.smoother)
-    return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero})
+    rubs = rubbing(piece, piece.gear) if run.load_unread else 0.0
+    return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero + rubs})
