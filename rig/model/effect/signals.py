@@ -60,6 +60,7 @@ class Signals(Once):
     thinned: int = 1  # readings that made one row
     past: tuple[Moved, ...] = ()  # of the whole campaign
     cut: Cut | None = None  # what it is a part of: a state remembers what was before
+    stiffness: Array | None = None  # N·m/rad, of a lock test whose torque nobody read: what more wind-up takes more
     carried: Array | None = None  # N·m, of a `tau_l` that nobody read: what effects found in the load take
 
     def kept(self, order: float, omega: Array) -> Array:

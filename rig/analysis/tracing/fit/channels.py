@@ -286,10 +286,11 @@ def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
 def _wound(y: Array, columns: dict[str, Array], s: Signals, f: Smoother) -> Columns:
     """M where T is K·(θ̃ − θ̃_p): θ̃_p as known is put back, and has its own columns. The load rests: its bearings
     take nothing."""
-    spring = s.gear.K / s.ratio
-    waves = dict(zip(SERIES, -spring * f(series(s.theta_m)).T, strict=True))
+    spring = np.full(s.t.size, s.gear.K) if s.stiffness is None else s.stiffness
+    spring = spring / s.ratio
+    waves = dict(zip(SERIES, -f(spring[:, None] * series(s.theta_m)).T, strict=True))
     columns = {name: column for name, column in columns.items() if name not in ("B_l", "tau_cl")}
-    return y - spring * f(s.series_value), columns | {name: columns[name] + wave for name, wave in waves.items()}
+    return y - f(spring * s.series_value), columns | {name: columns[name] + wave for name, wave in waves.items()}
 
 
 def _load(s: Signals, f: Smoother, has: Has) -> Columns:

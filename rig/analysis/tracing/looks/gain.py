@@ -15,6 +15,7 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import searched
+from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.selected import Selected
 from rig.core.quantiles import Z95
 
@@ -25,9 +26,10 @@ TORQUES: Final = {"tau_m", "tau_l"}
 
 
 def wanted(selected: Selected) -> bool:
-    """Whether more is left than may be, and both torques were measured in a run that turns."""
+    """Whether more is left than may be, or something without a name explains it (of few runs, a gain that drifts and a
+    lever may stand for one that does not), and both torques were measured in a run that turns."""
     both = any(run.has >= TORQUES and not run.locked for run in selected.fitted_runs)
-    return selected.loud and both
+    return both and (selected.loud or bool(confounders_in(selected.solution)))
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:

@@ -321,5 +321,4 @@ def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signal
     added |= in_stand_ins(added, piece, dt, run.locked, "t" in run.has)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
     derived = _derived(c, run.smoother)
-    rubs = rubbing(piece, piece.gear) if run.load_unread else 0.0
-    return replace(piece, **{**c, **derived, "torque": derived["torque"] - piece.gear.torque_zero + rubs})
+    return replace(piece, **{**c, **derived, "torque": piece.torque + flat(added.get("tau_l", np.zeros(piece.t.size)))})

@@ -74,10 +74,13 @@ def in_stand_ins(added: Mapping[str, Array], piece: Signals, dt: float, locked: 
 
 
 def rewound(piece: Signals, known: Known) -> Signals:
-    """With the torque of the wind-up, and the spring it was told by, as far as the gear is `known` by now."""
+    """With the torque of the wind-up, as far as the gear is `known` by now; of a spring that no free run has wound up
+    the K by which that was told."""
     told = wound(piece.theta_m, piece.theta_l, piece.tau_m, piece.ratio, known, piece.dt)
     if told is None or not np.isfinite(piece.tau_l).all():
         return replace(piece, gear=known)
-    gear = replace(known, K=told.K)
+    gear = known if known.B_sp else replace(known, K=told.K)
     rate = flat_rate(told.torque, piece.dt, 1)
-    return replace(piece, gear=gear, tau_l=told.torque, torque=flat(told.torque), torque_rate=rate)
+    return replace(
+        piece, gear=gear, tau_l=told.torque, torque=flat(told.bent), torque_rate=rate, stiffness=told.local
+    )

@@ -25,10 +25,13 @@ SOFTEST, STIFFEST = 0.3, 3.0  # of the declared K: further off, and the motor wi
 @dataclass(frozen=True)
 class Wound:
     """The torque T of a lock test [N·m], (n,), and the spring's K [N·m/rad] by which it was told: as steep as the
-    motor's torque says, so that both are in the motor's units."""
+    motor's torque says, so that both are in the motor's units. `bent` (n,) is the torque by a spring that may bend, as
+    a cubic: what effects go by, for one that hardens by a fifth winds a fifth less. `local` (n,) is its slope."""
 
     torque: Array
     K: float
+    bent: Array
+    local: Array
 
 
 def wound(theta_m: Array, theta_l: Array, tau_m: Array, ratio: float, gear: Known, dt: float) -> Wound | None:
@@ -41,9 +44,20 @@ def wound(theta_m: Array, theta_l: Array, tau_m: Array, ratio: float, gear: Know
     if n < FEWEST or not (np.isfinite(phi).all() and np.isfinite(tau_m).all() and np.ptp(phi) > NOTHING):
         return None
     middle = float(np.mean(phi[sliding]))
-    held = (phi - middle) * (1.0 - ratio * slope)  # the lever by which the torque reaches the motor
-    columns = np.stack([held[sliding], np.sign(rate[sliding]), np.ones(n)], 1)
-    (K, _, rest), *_ = np.linalg.lstsq(columns, ratio * tau_m[sliding], rcond=None)
+    x = phi - middle
+    lever = 1.0 - ratio * slope  # by which the torque reaches the motor
+    beside = np.stack([np.sign(rate[sliding]), np.ones(n)], 1)
+
+    def told(*powers: Array) -> Array:
+        columns = np.hstack([np.stack([p * lever for p in powers], 1)[sliding], beside])
+        found, *_ = np.linalg.lstsq(columns, ratio * tau_m[sliding], rcond=None)
+        return np.asarray(found)
+
+    K, _, rest = told(x)
     if not SOFTEST < K / gear.K < STIFFEST:
         return None
-    return Wound(np.asarray(K * (phi - middle) + rest), float(K))
+    most = float(np.max(np.abs(x)))
+    u = x / most
+    a, b, c, _, level = told(u, u**2, u**3)
+    bent, local = level + u * (a + u * (b + u * c)), (a + u * (2.0 * b + u * 3.0 * c)) / most
+    return Wound(K * x + rest, float(K), bent, local)
