@@ -81,6 +81,4 @@ def rewound(piece: Signals, known: Known) -> Signals:
         return replace(piece, gear=known)
     gear = known if known.B_sp else replace(known, K=told.K)
     rate = flat_rate(told.torque, piece.dt, 1)
-    return replace(
-        piece, gear=gear, tau_l=told.torque, torque=flat(told.bent), torque_rate=rate, stiffness=told.local
-    )
+    return replace(piece, gear=gear, tau_l=told.torque, torque=flat(told.bent), torque_rate=rate, stiffness=told.local)
