@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,11 @@ import pytest
 
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.stand_ins import in_stand_ins
+from rig.analysis.tracing.runs.recording import record
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded
 from rig.analysis.tracing.selection.held_out import unseen
+from rig.analysis.tracing.trace import trace
+from rig.runfile.run import Run
 from tests.analysis.tracing.test_few_channels import reduced
 from tests.contract.test_effects import motion
 
@@ -58,3 +62,39 @@ def test_in_lock_tests_the_motor_holds_what_the_wind_up_says(tmp_path: Path, sha
     locked = {key: float(np.std(e)) for key, e in left.items() if p.eq.runs[key[0]].locked}
     assert [channel for _, channel in locked] == ["M", "M"]
     assert max(locked.values()) < 1.5 * p.measured.noise.sigma["M"], locked
+
+
+RUBS = {"tau_cl": 0.5, "B_l": 2.0}
+
+
+def test_effects_go_by_what_the_bearings_take_and_the_equations_by_the_inertia_alone() -> None:
+    s = motion()
+    plain, rubbing = (reloaded(s, known, None, timed=True) for known in (s.gear, replace(s.gear, **RUBS)))
+    np.testing.assert_array_equal(rubbing.tau_l, plain.tau_l)
+    np.testing.assert_allclose(rubbing.torque - plain.torque, 0.5 * s.way + 2.0 * s.omega_l, atol=1e-12)
+
+
+@pytest.mark.parametrize(("drop", "goes_by"), [(("tau_l",), True), ((), False), (("tau_l", "tau_m"), False)])
+def test_a_run_goes_by_it_where_nobody_read_the_torque_and_its_noise_has_none_of_it(
+    tmp_path: Path, shared: Path, drop: tuple[str, ...], goes_by: bool
+) -> None:
+    name = "speed_200rpm_1"
+    run = record(Run.open(reduced(tmp_path, shared / "cases" / "open-1", (name,), drop) / name), 0.0)
+    (bare,) = run.pieces
+    (knows,) = run.knowing(replace(bare.gear, **RUBS)).pieces
+    more = 0.5 * bare.way + 2.0 * bare.omega_l
+    np.testing.assert_allclose(knows.torque - bare.torque, more if goes_by else 0.0 * more, atol=1e-12)
+    (noisy,) = run.knowing(knows.gear).noisier(1).pieces
+    (noise,) = run.noisier(1).pieces
+    np.testing.assert_allclose(noisy.torque - knows.torque, noise.torque - bare.torque, atol=1e-12)
+
+
+@pytest.mark.slow
+def test_a_kinematic_error_that_shrinks_is_as_large_as_by_a_torque_sensor(tmp_path: Path, shared: Path) -> None:
+    truth = json.loads((shared / "cases" / "TRUTH.json").read_text())["open-2"]["parameters"]
+    loaded = [f"load_{load}nm_{i}" for load in ("2.5", "5", "20") for i in (1, 2)]
+    found = trace(reduced(tmp_path, shared / "cases" / "open-2", (*RUNS, *loaded), ("tau_l",)))
+    assert found.verdict.effects == ("load_dependent_kinematic_error",)
+    told = {p.name: p.value for p in found.effects[0].parameters}
+    assert told["A_inf"] == pytest.approx(truth["lke_inf"], abs=0.015), "without friction in T it is 0.04 too high"
+    assert told["T_c"] == pytest.approx(truth["lke_tau"], rel=0.1)

@@ -40,6 +40,19 @@ def test_the_wind_up_tells_the_torque_and_its_zero_is_where_the_motor_holds_noth
     assert told.torque == pytest.approx(torque, abs=0.1)
 
 
+def test_a_spring_that_hardens_by_a_quarter_tells_the_torque_that_effects_go_by(rng: np.random.Generator) -> None:
+    wound_up = np.linspace(-40.0, 40.0, 4001) / K
+    torque, *read = swung(rng)
+    hardening = 0.25 * K / wound_up[-1] ** 2  # N·m/rad³
+    phi = np.interp(torque, K * wound_up + hardening * wound_up**3, wound_up)
+    read[0] = N * (phi + GEAR.kinematic_error.value(read[0]))
+    told = wound(*read, N, GEAR, DT)
+    assert told
+    assert told.bent == pytest.approx(torque, abs=0.25)
+    assert np.abs(told.torque - torque).max() > 1.0, "a straight one does not"
+    assert told.local == pytest.approx(K + 3 * hardening * phi**2, rel=0.04)
+
+
 @pytest.mark.parametrize(("stiffness", "told"), [(K / 5, False), (K / 1.2, True), (1.2 * K, True), (5 * K, False)])
 def test_a_spring_that_was_declared_a_little_off_is_told_as_it_is_and_another_is_none(
     rng: np.random.Generator, stiffness: float, told: bool

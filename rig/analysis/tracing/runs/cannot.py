@@ -20,6 +20,7 @@ ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a star
 ROWS: Final = 3.0  # a period, at least
 PASSED: Final = 2.1  # standard deviations of the low-pass: there a tenth is left
 ANY: Final = 1000  # order
+ANGLES: Final = {"theta_m", "theta_l"}
 
 SENSORS: Final = {
     "t": "No run has a time column: rows have no known distance, so that inertias, damping and every effect of speed, "
@@ -53,9 +54,10 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
 def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     if "tau_l" in has or not runs:
         return []
+    rubs = "is told by the angle it winds the spring up by" if has >= ANGLES else "counts as the motor's"
     return [
-        f"No shaft torque: it was taken from {_loaded_by(runs[0])}; friction of the load counts as the "
-        "motor's, a torque sensor's own errors cannot be seen, and where the motor turns back nothing is compared."
+        f"No shaft torque: it was taken from {_loaded_by(runs[0])}; friction of the load {rubs}, "
+        "a torque sensor's own errors cannot be seen, and where the motor turns back nothing is compared."
         + (WOUND if any(run.is_wound for run in runs) else "")
     ]
 
@@ -158,12 +160,14 @@ def together(runs: Sequence[Recording]) -> tuple[tuple[str, ...], ...]:
     """Baseline parameters that stand before the same column, or nearly.
 
     B_m and B_ml, and B_l with B_ml, stand before the same speed in equations 6 and 7 whatever is run; the load's
-    friction counts as the motor's where no torque is measured between them.
+    friction counts as the motor's where nothing is measured between them: neither a torque nor the angle it winds the
+    spring up by.
     """
     moving = [run for run in runs if run.procedure != "standstill"]
     found: list[tuple[str, ...]] = [("B_m", "B_ml"), ("B_l", "B_ml")]
-    if "tau_l" not in frozenset().union(*(run.has for run in runs)):
-        found += [("B_m", "B_l"), ("tau_c", "tau_cl")]
+    has = frozenset().union(*(run.has for run in runs))
+    if "tau_l" not in has:
+        found += [("B_m", "B_l")] + ([] if has >= ANGLES else [("tau_c", "tau_cl")])
     if moving and one_way(moving):
         found += [("tau_c", "tau_0"), ("tau_cl", "tau_l0")]
     if moving and one_speed(moving):
