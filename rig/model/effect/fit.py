@@ -17,17 +17,29 @@ Shape = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Fit:
-    """What the data say of one effect: coefficients (k,), then shape (s,); covariance (k+s, k+s) of both together."""
+    """What the data say of one effect: coefficients (k,), then shape (s,); covariance (k+s, k+s) of both together.
+    `beside_series` (k+s+2n, k+s+2n) is that of both and of the cosines and sines, in turn, of the kinematic error that
+    is `known`: a share of it is known no better than what stays of it."""
 
     coefficients: Array
     shape: Shape
     covariance: Array
     known: Known
     ratio: float
+    beside_series: Array | None = None
 
     def half_width(self, gradient: Array) -> float:
-        """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,)."""
-        return float(Z95 * np.sqrt(max(0.0, float(gradient @ self.covariance @ gradient))))
+        """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,), or by them
+        and the series' cosines and sines in turn (k+s+2n,), of which nothing is uncertain where that is not told."""
+        size = len(self.covariance)
+        if gradient.size == size or self.beside_series is None:
+            return _half(gradient[:size], self.covariance)
+        size = min(gradient.size, len(self.beside_series))
+        return _half(gradient[:size], self.beside_series[:size, :size])
+
+
+def _half(gradient: Array, covariance: Array) -> float:
+    return float(Z95 * np.sqrt(max(0.0, float(gradient @ covariance @ gradient))))
 
 
 @dataclass(frozen=True)

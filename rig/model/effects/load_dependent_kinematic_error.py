@@ -151,23 +151,43 @@ def _unloaded(fit: Fit, i: int) -> Array:
 
 
 Share = tuple[float, Array]
-"""A share that stays, and its gradient by coefficients and shape (k+s,)."""
+"""A share that stays, and its gradient by coefficients, shape and the series' cosines and sines in turn (k+s+2n,)."""
 
 
 def _stays(fit: Fit) -> Share:
-    """1/(1 + c), c the share that goes away over the one that stays."""
-    gradient = np.zeros(fit.coefficients.size + len(fit.shape))
-    gradient[0] = -1.0 / (1.0 + fit.coefficients[0]) ** 2
-    return float(1.0 / (1.0 + fit.coefficients[0])), gradient
+    """1/(1 + c), c the share that goes away over the one that stays; of the largest order, |p|/|p + c·p_0|, which p is
+    p_0."""
+    c = fit.coefficients[0]
+    gradient, first = _flat(fit)
+    gradient[0] = -1.0 / (1.0 + c) ** 2
+    waves = np.array([_wave(fit.known.kinematic_error, n) for n in ORDERS])
+    largest = int(np.argmax(np.hypot(*waves.T)))
+    size = max(float(np.hypot(*waves[largest])), NONE)
+    _put(gradient, first, ORDERS[largest], waves[largest] / size**2 * c / (1.0 + c) ** 2)
+    return float(1.0 / (1.0 + c)), gradient
+
+
+def _flat(fit: Fit) -> tuple[Array, int]:
+    """A gradient of zeros, and where in it the series begins."""
+    first = fit.coefficients.size + len(fit.shape)
+    return np.zeros(first + 2 * len(fit.known.kinematic_error.a)), first
+
+
+def _put(gradient: Array, first: int, order: int, wave: Array) -> None:
+    """Into a gradient, that by the cosine and sine of one order, where the series reaches so far."""
+    at = first + 2 * (order - 1)
+    if at < gradient.size:
+        gradient[at : at + 2] = wave
 
 
 def _stays_of(fit: Fit, i: int) -> Share:
     """|p|/|p + g| of the i-th of ORDERS, p what stays of it and g what goes away."""
-    whole = _unloaded(fit, i)
+    whole, stays = _unloaded(fit, i), np.array(_wave(fit.known.kinematic_error, ORDERS[i]))
     size = max(float(np.hypot(*whole)), NONE)
-    share = float(np.hypot(*_wave(fit.known.kinematic_error, ORDERS[i]))) / size
-    gradient = np.zeros(fit.coefficients.size + len(fit.shape))
+    share = float(np.hypot(*stays)) / size
+    gradient, first = _flat(fit)
     gradient[[i, i + len(ORDERS)]] = -share * whole / size**2
+    _put(gradient, first, ORDERS[i], stays / max(float(np.hypot(*stays)), NONE) / size - share * whole / size**2)
     return share, gradient
 
 

@@ -237,6 +237,24 @@ def test_the_share_of_an_order_that_stays_is_told_with_its_interval_whatever_the
     assert not LoadDependentKinematicError().plausible(dataclasses.replace(fit, coefficients=-0.5 * gone / 4))
 
 
+@pytest.mark.parametrize("each", [0.0, EACH])
+def test_a_share_is_known_no_better_than_what_stays_where_no_load_takes_all_that_goes(each: float) -> None:
+    series = FourierSeries((0.0, 3e-5), (0.0, 4e-5))
+    known = dataclasses.replace(KNOWN, kinematic_error=series)
+    stays, goes = 5e-5, 7.5e-5  # rad, of order 2 without load, along one phase
+    gone = np.array([0.0, 4.5e-5, 0.0, 0.0, 6e-5, 0.0, 0.0]) if each else np.array([goes / stays])
+    fit = Fit(gone, (TORQUE + each, 2.0, 3e-3, 1.0), np.zeros((gone.size + 4, gone.size + 4)), known, N)
+    # both together, as slow runs tell them, are known exactly: what one has more the other has less
+    along = np.zeros(gone.size + 4 + 4)
+    along[-2:] = 1e-6 * np.array([0.6, 0.8])
+    along[[1, 4] if each else [0]] = -1e-6 * (np.array([0.6, 0.8]) if each else 1 / stays)
+    joint = np.outer(along, along)
+    fit = dataclasses.replace(fit, covariance=joint[: gone.size + 4, : gone.size + 4], beside_series=joint)
+    (share, *_) = LoadDependentKinematicError().parameters(fit)
+    assert share.value == pytest.approx(0.4)
+    assert share.ci95[1] - share.value == pytest.approx(1.96 * 1e-6 / (stays + goes), rel=1e-4)
+
+
 def test_a_cubic_spring_is_solved_exactly_and_is_its_cube_where_that_is_small() -> None:
     s, stiffness, k_3 = motion(), KNOWN.K, 2.3e9
     scale = np.sqrt(stiffness**3 / k_3)  # where the cubic part is as large as the other

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX, ORDERS, damping_of, third_rate
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, damping_of, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, prior, solve
@@ -202,7 +202,10 @@ def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = (
     """The part of coefficients and covariance that belongs to one term."""
     by, first = _spread(s, len(c), i, slopes), s.design.eq.runs[0]
     place = s.design.place(i)
-    return Fit(s.x[place], s.design.terms[i].shape, by @ c @ by.T, first.pieces[0].gear, first.ratio)
+    beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in SERIES]]])
+    joint = beside @ c @ beside.T
+    k = len(by)
+    return Fit(s.x[place], s.design.terms[i].shape, joint[:k, :k], first.pieces[0].gear, first.ratio, joint)
 
 
 def _spread(s: Solution, size: int, i: int, slopes: Sequence[tuple[int, int]]) -> Array:
