@@ -11,6 +11,7 @@ from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.floor.sidebands import sidebands
 from rig.analysis.tracing.floor.steps import explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import find_vibration
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
@@ -52,7 +53,8 @@ def find(s: Solution, parts: Split) -> Own:
     shaken = find_vibration(s, e, parts.fitted) if timed else None
     line = None
     if shaken is not None:
-        made["external_vibration"] = shaken.columns
+        beside = sidebands(eq, everywhere, [line.frequency_hz for line in shaken.lines])
+        made["external_vibration"] = joined([shaken.columns, beside])
         words["external_vibration"] = shaken.parameters()
     elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})

@@ -10,6 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.local import clock, joined
+from rig.analysis.tracing.floor.spectrum import even, over_usual
 from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STRETCHES
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
@@ -17,7 +18,6 @@ from rig.model.effects import EACH_RUN
 from rig.model.effects.external_vibration import ExternalVibration
 
 VIBRATION = EACH_RUN["external_vibration"]
-ZOOM = 4  # finer than a run's own resolution
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
 AS_ONE = 0.7  # an interference in one sensor alone has 0
 CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
@@ -132,21 +132,13 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
 
 def _heights(t: Array, e: Array, grid: Array) -> Array:
     """Power at `grid` Hz over what is usual around it."""
-    dt = float(np.median(np.diff(t)))
-    even = np.zeros(round((t[-1] - t[0]) / dt) + 1)
-    even[np.minimum(np.round((t - t[0]) / dt).astype(int), even.size - 1)] = e
-    n = ZOOM * even.size
-    power = np.abs(np.fft.rfft(even * np.hanning(even.size), n)) ** 2
-    hz = np.fft.rfftfreq(n, dt)
-    width = max(1, int(1.5 / hz[1]))  # Hz on each side make the background
-    coarse = power[: power.size // width * width].reshape(-1, width)
-    usual = np.interp(np.arange(power.size), (np.arange(len(coarse)) + 0.5) * width, np.median(coarse, axis=1))
+    hz, height = over_usual(*even(t, e))
     reach = max(1, round(0.02 / hz[1]))
-    best = power.copy()
+    best = height.copy()
     for shift in range(1, reach + 1):
-        best[shift:] = np.maximum(best[shift:], power[:-shift])
-        best[:-shift] = np.maximum(best[:-shift], power[shift:])
-    return np.asarray(np.interp(grid, hz, best / np.maximum(usual, 1e-300)))
+        best[shift:] = np.maximum(best[shift:], height[:-shift])
+        best[:-shift] = np.maximum(best[:-shift], height[shift:])
+    return np.asarray(np.interp(grid, hz, best))
 
 
 def sharpened(eq: Equations, e: Mapping[Key, Array], keys: Sequence[Key], about: float) -> float:

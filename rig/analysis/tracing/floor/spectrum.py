@@ -1,0 +1,29 @@
+"""Power of a residual by frequency, over what is usual around it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rig.model.effect import Array
+
+ZOOM = 4  # finer than a run's own resolution
+AROUND = 1.5  # Hz on each side make the background
+
+
+def even(t: Array, e: Array) -> tuple[Array, float]:
+    """Rows (n,) at times `t` s on an even grid, 0 where there is none, and its step, s."""
+    dt = float(np.median(np.diff(t)))
+    out = np.zeros(round((t[-1] - t[0]) / dt) + 1)
+    out[np.minimum(np.round((t - t[0]) / dt).astype(int), out.size - 1)] = e
+    return out, dt
+
+
+def over_usual(x: Array, dt: float) -> tuple[Array, Array]:
+    """Hz and power over the usual one, (m,) each, of `x` (n,) in steps of `dt` s."""
+    n = ZOOM * x.size
+    power = np.abs(np.fft.rfft(x * np.hanning(x.size), n)) ** 2
+    hz = np.fft.rfftfreq(n, dt)
+    width = max(1, int(AROUND / hz[1]))
+    coarse = power[: power.size // width * width].reshape(-1, width)
+    usual = np.interp(np.arange(power.size), (np.arange(len(coarse)) + 0.5) * width, np.median(coarse, axis=1))
+    return hz, power / np.maximum(usual, 1e-300)
