@@ -20,6 +20,7 @@ from rig.model.effects import EACH_RUN
 
 MOST = 12  # of one run
 NEAR = 1.0  # Hz from a line of all runs: what swells faster than once a second is no slow swell
+HIGHEST = 30.0  # order that a ripple has: of a slow motor every frequency is near one
 RESOLVED = 2.0  # turns of phase in a run by which a line has left another
 UNEVEN = 3e-3  # of an order's frequency, as a position loop holds the speed
 FINER = 40  # parts of what a run resolves: a tenth of a turn of phase from its middle to its ends
@@ -62,9 +63,8 @@ def _of_a_run(eq: Equations, key: Key, e: Array, hz: Sequence[float]) -> list[fl
 def _of_the_motor(grid: Array, turning: float, t: Array) -> npt.NDArray[np.bool_]:
     """Where whole orders of a motor stand that turns `turning` times a second: a ripple is no part of a vibration."""
     wide = np.maximum(RESOLVED / float(t[-1] - t[0]), UNEVEN * grid)
-    return np.asarray(
-        np.abs(grid - turning * np.maximum(np.round(grid / turning), 1.0)) < np.minimum(wide, turning / 4)
-    )
+    order = np.clip(np.round(grid / turning), 1.0, HIGHEST)
+    return np.asarray(np.abs(grid - turning * order) < np.minimum(wide, turning / 4))
 
 
 def _sharpened(t: Array, e: Array, about: float) -> float:

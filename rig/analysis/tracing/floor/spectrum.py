@@ -22,8 +22,8 @@ def over_usual(x: Array, dt: float) -> tuple[Array, Array]:
     """Hz and power over the usual one, (m,) each, of `x` (n,) in steps of `dt` s."""
     n = ZOOM * x.size
     power = np.abs(np.fft.rfft(x * np.hanning(x.size), n)) ** 2
-    hz = np.fft.rfftfreq(n, dt)
+    hz = np.asarray(np.fft.rfftfreq(n, dt), dtype=np.float64)
     width = max(1, int(AROUND / hz[1]))
     coarse = power[: power.size // width * width].reshape(-1, width)
     usual = np.interp(np.arange(power.size), (np.arange(len(coarse)) + 0.5) * width, np.median(coarse, axis=1))
-    return hz, power / np.maximum(usual, 1e-300)
+    return hz, np.asarray(power / np.maximum(usual, 1e-300))
