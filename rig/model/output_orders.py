@@ -40,9 +40,9 @@ def slopes(waves: Array, shape: Shape) -> Array:
     return out
 
 
-def amplitudes(fit: Fit, unit: str) -> tuple[Parameter, ...]:
-    """Amplitude and phase of every order."""
-    found = [harmonic(fit, f"order_{k:g}", unit, first=2 * i) for i, k in enumerate(orders(fit.shape))]
+def amplitudes(fit: Fit, unit: str, of: str = "") -> tuple[Parameter, ...]:
+    """Amplitude and phase of every order, and `of` what, in their names."""
+    found = [harmonic(fit, f"order_{k:g}{of}", unit, first=2 * i) for i, k in enumerate(orders(fit.shape))]
     return tuple(p for pair in found for p in pair)
 
 

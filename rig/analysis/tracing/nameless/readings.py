@@ -89,24 +89,30 @@ class SensorGainDrift(OfTheTorqueSensor):
 
 
 class TwoGains(OfTheTorqueSensor):
-    """The torque sensor's gain is another one for negative torque: it reads c·|T| too much      [taghirad1999]"""
+    """The torque sensor's gain is another one for negative torque: it reads c_1·|T| + c_2·T² too much
+
+    [taghirad1999]. In a lock test the motor's angle goes with the torque, and any stiffness that changes with that angle
+    does the same to the angles; the motor that holds it tells.
+    """
 
     name: ClassVar[str] = "two_gains"
     in_short: ClassVar[str] = "the torque sensor has two gains"
     source: ClassVar[str] = "taghirad1999"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
+    AT: Final = 50.0  # N·m, for columns of one size
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs."""
         return when(reach.pulled > SOME)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column in the reading."""
-        return {Port.READS_TAU_L: np.abs(torque_of(signals))[:, None]}
+        """Two columns in the reading."""
+        torque = torque_of(signals)
+        return {Port.READS_TAU_L: np.stack([np.abs(torque), torque**2 / self.AT], 1)}
 
     def amount(self, fit: Fit) -> Amount:
-        """Relative."""
-        return sum_of(fit, "for positive torque the gain is larger by", 200, "%")
+        """Relative, at AT."""
+        return sum_of(fit, f"at {self.AT:g} N·m the gain for positive torque is larger by", 200, "%")
 
 
 class SensorJump(OfTheTorqueSensor):

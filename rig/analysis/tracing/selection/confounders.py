@@ -131,6 +131,7 @@ CONFOUNDERS: Final = {
         TwoGains(),
         "load",
         "The torque sensor reads torque of one sign by more than of the other. No effect of the library does so.",
+        mimics=frozenset({"angle_dependent_stiffness"}),
     ),
     "two_constants": Confounder(
         TwoConstants(),
