@@ -68,4 +68,3 @@ class TorqueSensorCrosstalk(Effect):
 
 def _is_loaded(shape: Shape) -> bool:
     return len(shape) > 2 and shape[2] == TorqueSensorCrosstalk.LOADED
-

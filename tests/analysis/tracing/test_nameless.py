@@ -37,7 +37,9 @@ def test_what_differs_between_the_ways_is_even_in_them(law: Effect) -> None:
 
 def test_two_gains_are_one_gain_for_torque_of_one_sign() -> None:
     s = replace(motion(), torque=np.abs(motion().torque) + 1.0)
-    np.testing.assert_array_equal(TwoGains().columns(s, ())[Port.READS_TAU_L][:, 0], s.torque)
+    alike, more = TwoGains().columns(s, ())[Port.READS_TAU_L].T
+    np.testing.assert_array_equal(alike, s.torque)
+    np.testing.assert_allclose(more, s.torque**2 / 50.0)
 
 
 def test_friction_of_a_sector_takes_both_ways_and_a_pulley_gives_as_it_takes() -> None:
@@ -112,6 +114,31 @@ def test_readings_of_two_gains_are_told_and_not_named(
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law_said in found.law if (match := re.search(r"larger by (\S+) ± (\S+) %", law_said))]
     assert float(much[1]) == pytest.approx(DIFFER[law], abs=1.5 * float(much[2]))
+
+
+@pytest.mark.slow
+def test_a_sensor_that_reads_more_one_way_in_slow_runs_and_lock_tests_alone_is_no_stiffness_of_an_angle(
+    shared: Path, tmp_path: Path
+) -> None:
+    def square(c: Columns, began: float) -> Columns:
+        return {"tau_l": c["tau_l"] + 8e-4 * c["tau_l"] ** 2 / 40.0}
+
+    runs = ("slow_ke_1", "slow_ke_2", "lock_20_1", "lock_20_2", "lock_60_1", "lock_60_2")
+    found = spiked(tmp_path, shared / "cases" / "open-1", square, runs)
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert found.verdict.coordinate == "load"
+
+
+@pytest.mark.slow
+def test_a_sensor_that_feels_bending_by_as_much_as_it_carries_has_crosstalk(shared: Path, tmp_path: Path) -> None:
+    def bends(c: Columns, began: float) -> Columns:
+        return {"tau_l": c["tau_l"] * (1 + 0.012 * np.cos(c["theta_l"] + 0.7))}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", bends, SOME)
+    assert found.verdict.effects == ("torque_sensor_crosstalk",)
+    told = {p.name: p for p in found.effects[0].parameters}["order_1_of_the_torque_amplitude"]
+    assert told.value == pytest.approx(0.012, abs=max(4e-4, 1.5 * (told.ci95[1] - told.value)))
+    assert told.unit == "1"
 
 
 @pytest.mark.slow
