@@ -91,8 +91,8 @@ class SensorGainDrift(OfTheTorqueSensor):
 class TwoGains(OfTheTorqueSensor):
     """The torque sensor's gain is another one for negative torque: it reads c_1·|T| + c_2·T² too much
 
-    [taghirad1999]. In a lock test the motor's angle goes with the torque, and any stiffness that changes with that angle
-    does the same to the angles; the motor that holds it tells.
+    [taghirad1999]. In a lock test the motor's angle goes with the torque, and any stiffness that changes with it does
+    the same to the angles; the motor that holds it tells.
     """
 
     name: ClassVar[str] = "two_gains"
