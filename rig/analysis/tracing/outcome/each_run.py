@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Final
 
 OWN: Final = {
-    "external_vibration": "phase and amplitude of the vibration",
+    "external_vibration": "phase and amplitude of the vibration, and of what stands beside its lines there",
     "missed_counts": "instants of the steps or zero after them",
 }
 
