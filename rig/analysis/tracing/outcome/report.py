@@ -19,10 +19,10 @@ from rig.analysis.tracing.outcome.errors import errors
 from rig.analysis.tracing.outcome.free import Free, curves_of, free, with_free
 from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.laws import laws_in
-from rig.analysis.tracing.outcome.mean_drift import mean_drifts
+from rig.analysis.tracing.outcome.mean_drift import MeanDrift, mean_drifts
 from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import Floor, Found, Trace
-from rig.analysis.tracing.outcome.ripple import ripples
+from rig.analysis.tracing.outcome.ripple import Ripple, ripples
 from rig.analysis.tracing.outcome.unlike import unlike_declared
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
@@ -90,11 +90,8 @@ def report(
         next_run=conclusion.next_run,
         notes=(
             *unlike_declared(refitted, fitted_runs),
-            *beside_the_numbers(named),
-            *(p.own.notes[name] for name in named if name in p.own.notes),
-            *([one_way] if one_way else []),
-            *(r.sentence() for r in ripple),
-            *(mean.sentence() for mean in drift),
+            *_notes(p, named, one_way),
+            *_of_torques(ripple, drift),
             *p.campaign.notes,
         ),
         ripple=ripple,
@@ -106,6 +103,16 @@ def report(
         cannot=(*conclusion.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
+
+
+def _notes(p: Prepared, named: Sequence[str], one_way: str) -> list[str]:
+    """What goes with the effects that are named."""
+    mine = [p.own.notes[name] for name in named if name in p.own.notes]
+    return [*beside_the_numbers(named), *mine, *([one_way] if one_way else [])]
+
+
+def _of_torques(ripple: Sequence[Ripple], drift: Sequence[MeanDrift]) -> list[str]:
+    return [*(r.sentence() for r in ripple), *(mean.sentence() for mean in drift)]
 
 
 def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:
