@@ -70,7 +70,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
-    assert everything - laws(weights=1) == {"oval_pulley"}
+    assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}
     drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
     assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
     assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
@@ -127,6 +127,15 @@ def test_a_sensor_that_reads_more_one_way_in_slow_runs_and_lock_tests_alone_is_n
     found = spiked(tmp_path, shared / "cases" / "open-1", square, runs)
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
     assert found.verdict.coordinate == "load"
+
+
+@pytest.mark.slow
+def test_a_torque_sensor_whose_scale_is_off_is_told_with_how_much(shared: Path, tmp_path: Path) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", lambda c, began: {"tau_l": 1.05 * c["tau_l"]}, SOME)
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert found.verdict.sentence == CONFOUNDERS["sensor_scale"].sentence
+    (much,) = [match for said in found.law if (match := re.search(r"too much is (\S+) ± (\S+) %", said))]
+    assert float(much[1]) == pytest.approx(100 * (1 - 1 / 1.05), abs=max(0.1, 1.5 * float(much[2])))
 
 
 @pytest.mark.slow

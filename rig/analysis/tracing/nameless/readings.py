@@ -88,6 +88,29 @@ class SensorGainDrift(OfTheTorqueSensor):
         return sum_of(fit, "in 1000 s the gain changes by", 100, "%")
 
 
+class SensorScale(OfTheTorqueSensor):
+    """The scale of the torque sensor is off: it reads c·T too much, by what weights and the motor say [taghirad1999]
+
+    In the angles that is another stiffness; a weight that was declared and a load that was weighed know of nothing.
+    """
+
+    name: ClassVar[str] = "sensor_scale"
+    in_short: ClassVar[str] = "the scale of the torque sensor is off"
+    source: ClassVar[str] = "taghirad1999"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where different weights tell."""
+        return when(reach.weights > 1)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_L: torque_of(signals)[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Of the reading."""
+        return sum_of(fit, "of what it reads too much is", 100, "%")
+
+
 class TwoGains(OfTheTorqueSensor):
     """The torque sensor's gain is another one for negative torque: it reads c_1·|T| + c_2·T² too much
 

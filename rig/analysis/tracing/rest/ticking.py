@@ -126,6 +126,8 @@ def _of_the_clock(eq: Equations, e: Mapping[Key, Array], spectra: Mapping[Key, S
     if not made_of_it and (not others or float(np.mean([heights[key] for key in others])) < SEEN):
         return False
     alike = [key for key in e if key not in others]
+    if not alike:  # the median lies between two groups of runs, and tells of neither
+        return False
     rows = sum(e[key].size for key in alike)
     by_time = sum(float(np.abs(np.exp(-1j * TURN * hz * clock(eq, key)) @ e[key]) ** 2) / e[key].size for key in alike)
     angles = [eq.rows[key].theta_m for key in alike]

@@ -18,6 +18,7 @@ from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
+from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.signs import refuse_odd_torques
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
@@ -86,7 +87,7 @@ def read_campaign(folder: Path) -> Campaign:
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, name)
-    for sort in (_odd, _lacking, _same_gear, _odd_torques, _odd_balances):
+    for sort in (_copies, _odd, _lacking, _same_gear, _odd_torques, _odd_balances):
         runs, odd = sort(runs)
         out += odd
     runs, carrying = weighed(runs)
@@ -180,6 +181,11 @@ def _gave_way(run: Recording) -> str:
 def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Runs whose angles are not what the others' are are left out."""
     return _apart(runs, {r.name: said for r in runs if (said := odd_angles(r)) is not None})
+
+
+def _copies(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """Of runs with the same rows all but the first are left out."""
+    return _apart(runs, same_rows(runs))
 
 
 def _odd_torques(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:

@@ -21,6 +21,7 @@ from rig.analysis.tracing.nameless.readings import (
     SensorGainDrift,
     SensorJump,
     SensorRipple,
+    SensorScale,
     SensorWaves,
     TwoConstants,
     TwoGains,
@@ -126,6 +127,12 @@ CONFOUNDERS: Final = {
         "with it; a spring that is not linear explains less, and no effect of the library explains it.",
         mimics=frozenset({"nonlinear_stiffness"}),
         searched=False,
+    ),
+    "sensor_scale": Confounder(
+        SensorScale(),
+        "load",
+        "The torque sensor reads another torque than the weights that were declared make and the motor holds, in "
+        "proportion to it: its scale, or theirs, is off. No effect of the library does so.",
     ),
     "two_gains": Confounder(
         TwoGains(),
