@@ -104,7 +104,8 @@ def _left_out(columns: Mapping[str, Array | None], kept: int) -> str:
     name = max(holes, key=lambda n: np.count_nonzero(holes[n]))
     missing, size = holes[name], holes[name].size
     count, first, last = np.count_nonzero(missing), int(missing.argmax()), size - 1 - int(missing[::-1].argmax())
-    reasons = [f"{name} has no value in {count} of them (row {first} to {last})"] if count else []
+    where = f"row {first}" if first == last else f"{count} of them (row {first} to {last})"
+    reasons = [f"{name} has no value in {where}"] if count else []
     if count < size - kept:
         reasons.append("an angle was missing, stale or frozen, or the guard had tripped")
     return f"{size - kept} of {size} rows left out: {'; else '.join(reasons)}."

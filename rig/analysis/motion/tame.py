@@ -74,7 +74,12 @@ class Tame:
         absurd = [some.start + np.flatnonzero(np.abs(values[some]) > most) for some in stretches(values.size)]
         count = sum(rows.size for rows in absurd)  # infinite too; NaN compares false
         if count:
-            self.notes.append(f"{count} values of {name} are infinite or absurdly large: taken as missing.")
+            first = int(np.concatenate(absurd)[0])
+            words = f"{count} values of {name} are" if count > 1 else f"One value of {name} is"
+            self.notes.append(
+                f"{words} infinite or absurdly large: taken as missing ({values[first]:.3g} in row {first}; expected "
+                f"up to {most:.0e})."
+            )
             values = values.copy()
             values[np.concatenate(absurd)] = np.nan
         if name in READ:

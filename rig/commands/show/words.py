@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from rig.report.numbers import counted
+
 
 def peak(event: dict[str, Any]) -> str:
     """Peak to peak over the last whole motor turn."""
@@ -13,7 +15,7 @@ def peak(event: dict[str, Any]) -> str:
 
 def late(event: dict[str, Any]) -> str:
     """How late the loop wakes."""
-    missed = f"{event.get('missed') or 0} cycles missed"
+    missed = f"{counted(event.get('missed') or 0, 'cycle')} missed"
     if event.get("lateness_p50_us") is None:
         return f"virtual clock, {missed}"
     return f"late p50 {event['lateness_p50_us']} µs, p99 {event['lateness_p99_us']} µs, {missed}"

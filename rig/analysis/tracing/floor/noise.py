@@ -70,9 +70,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         if not found:
             found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
             found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
-            words = (
-                f"neighbouring turns or strokes of {len(found)} runs compared at equal motor angle, no repeats there"
-            )
+            many = f"{len(found)} run{'' if len(found) == 1 else 's'}"
+            words = f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
         if not found:
             continue
         far = outlying(eq, found)

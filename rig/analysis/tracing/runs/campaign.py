@@ -163,7 +163,7 @@ def _read(run: Run, start: float) -> Recording | Said:
 def _unfit(made: Recording) -> str:
     """Why a run that can be read is none for a trace; "" where it is one."""
     if not made.pieces:
-        return "no 0.1 s of it without a gap"
+        return "it has no stretch without a gap that is long enough for the low-pass, some tenths of a second"
     turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
     if made.locked and (why := _gave_way(made)):
         return why

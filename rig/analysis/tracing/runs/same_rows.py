@@ -13,9 +13,12 @@ from rig.analysis.tracing.runs.recording import Recording
 
 
 def same_rows(runs: Sequence[Recording]) -> dict[str, str]:
-    """Why a run is left out, by its name: the first of those with the same rows stays."""
+    """Why a run is left out, by its name: the first of those with the same rows stays. None where nobody says when any
+    run began: what a plant without noise does twice has the same rows."""
     first: dict[bytes, str] = {}
     out: dict[str, str] = {}
+    if not any(run.start for run in runs):
+        return out
     for run in runs:
         seen = first.setdefault(_rows(run), run.name)
         if seen != run.name:

@@ -93,7 +93,9 @@ def told(curves: Curves) -> list[str]:
             continue
         (name, share), (other, less), *_ = sorted(rows, key=lambda r: -r[1])
         if share < TELLING:
-            out.append(f"{channel.name}: no coordinate predicts half of the excess; {name} comes closest, {share:.0%}.")
+            verb = "come" if " and " in name else "comes"
+            near = f"; {name} {verb} closest, {share:.0%}" if share >= FAINT else ""
+            out.append(f"{channel.name}: no coordinate predicts half of the excess{near}.")
         else:
             also = f"; {other}: {less:.0%}" if less >= RIVAL * share else ""
             verb = "predict" if " and " in name else "predicts"
