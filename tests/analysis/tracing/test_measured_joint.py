@@ -53,9 +53,11 @@ def test_friction_of_an_order_that_was_put_in_is_given_back(shared: Path, tmp_pa
 @pytest.mark.slow
 @pytest.mark.long
 def test_a_large_runout_is_named_beside_a_rest(shared: Path, tmp_path: Path) -> None:
-    verdict = traced(spiked(imported(tmp_path), tmp_path / "spiked", runout, 2e-3))["verdict"]
-    assert verdict["status"] == "unknown_effect"
-    assert set(verdict["effects"]) == ARM | {"output_once_per_rev"}
+    d = traced(spiked(imported(tmp_path), tmp_path / "spiked", runout, 2e-3))
+    assert set(d["verdict"]["effects"]) == ARM | {"output_once_per_rev"}
+    # where nine tenths are explained the verdict may be either; what stays stands in the document and in the report
+    assert d["verdict"]["status"] in ("unknown_effect", "explained")
+    assert max(d["residual"]["over_floor_after"].values()) > 2.0
 
 
 @pytest.mark.long
