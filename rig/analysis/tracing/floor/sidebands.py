@@ -23,7 +23,7 @@ NEAR = 1.0  # Hz from a line of all runs: what swells faster than once a second 
 HIGHEST = 30.0  # order that a ripple has: of a slow motor every frequency is near one
 RESOLVED = 2.0  # turns of phase in a run by which a line has left another
 UNEVEN = 3e-3  # of an order's frequency, as a position loop holds the speed
-FINER = 40  # parts of what a run resolves: a tenth of a turn of phase from its middle to its ends
+FINER = 40  # parts of what a run resolves: an eightieth of a turn of phase from its middle to its ends
 
 
 def sidebands(eq: Equations, e: Mapping[Key, Array], hz: Sequence[float]) -> dict[Key, Array]:
