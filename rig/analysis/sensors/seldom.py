@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion, Source
 from rig.core.channels import Flag
+from rig.core.rows import stretches
 
 OFTEN = 0.5  # of the rows with a new reading: from there on a reading is held for a row now and then, no more
 
@@ -16,13 +18,18 @@ def said_seldom(run: Source, motion: Motion) -> str:
     flags, t = run.column("flags"), motion.t
     if flags is None or t is None or t.size < 2 or run.column("tau_l") is None:
         return ""
-    held = (np.nan_to_num(flags).astype(np.int64) & int(Flag.STALE_TAU)) > 0
-    fresh = int(np.count_nonzero(~held))
+    fresh = sum(_fresh(flags[some]) for some in stretches(flags.size))
     duration = float(t[-1] - t[0])
-    if fresh > OFTEN * held.size or not fresh or duration <= 0.0:
+    if fresh > OFTEN * flags.size or not fresh or duration <= 0.0:
         return ""
     rate = fresh / duration
     return (
-        f"The shaft torque is new in {fresh} of {held.size} rows, {rate:.3g} times a second, and held between them: "
+        f"The shaft torque is new in {fresh} of {flags.size} rows, {rate:.3g} times a second, and held between them: "
         f"what is in it above {rate / 2:.3g} Hz is not seen."
     )
+
+
+def _fresh(flags: Array) -> int:
+    """How many of some rows have a new reading of the shaft torque."""
+    stale = np.nan_to_num(flags).astype(np.int64) & int(Flag.STALE_TAU)
+    return int(np.count_nonzero(stale == 0))
