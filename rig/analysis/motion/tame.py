@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.findings.result import Array
+from rig.analysis.motion.at_the_end import MOST, at_ends, ends
 from rig.analysis.motion.lone import lone
 from rig.analysis.motion.source import Source, increases
 from rig.core.channels import CHANNEL
@@ -84,6 +85,8 @@ class Tame:
             values[np.concatenate(absurd)] = np.nan
         if name in READ:
             values = self._without_lone(name, values)
+        if name == "tau_l":
+            values = self._within_range(name, values)
         if name in TORQUES and self._reads_nothing(name, values):
             self.notes.append(
                 f"{name} is exactly 0 in all {values.size} rows: nobody measured it, so it counts as absent."
@@ -101,6 +104,23 @@ class Tame:
             return True
         theta_m = None if self.procedure == COASTS else self.column("theta_m")
         return theta_m is not None and float(np.nanmax(theta_m) - np.nanmin(theta_m)) > TURNED
+
+    def _within_range(self, name: str, values: Array) -> Array:
+        """Readings at the end of a sensor's range are missing, and said; all, where they are many."""
+        found = ends(values, self.column("theta_m"))
+        if not found:
+            return values
+        count = sum(end.count for end in found)
+        where = " and ".join(f"{end.value:.4g}" for end in found)
+        whole = count > MOST * values.size
+        self.notes.append(
+            f"{name} ends at {where} {CHANNEL[name].unit}, in {count} of {values.size} rows, while the motor goes on: "
+            f"the end of a range, {'so it was not used' if whole else 'taken as missing'}."
+        )
+        out = room(values.size)
+        out[:] = np.nan if whole else values
+        out[at_ends(values, found)] = np.nan
+        return out
 
     def _without_lone(self, name: str, values: Array) -> Array:
         """Single readings far off their neighbours are missing, and said."""

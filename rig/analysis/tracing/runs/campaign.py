@@ -215,8 +215,13 @@ def _lacking(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
             without = [r for r in mine if name not in r.knows]
             if 2 * len(without) < len(mine):
                 said = f"it has no {words}, which {len(mine) - len(without)} of {len(mine)} runs of its kind have"
-                wrong |= {r.name: said for r in without}
+                wrong |= {r.name: "; ".join([said, *_of_channel(r, name)]) for r in without}
     return _apart(runs, wrong)
+
+
+def _of_channel(run: Recording, name: str) -> list[str]:
+    """What was noted of a channel when the run was read: why it has none."""
+    return [note.rstrip(".") for note in run.notes if name != "t" and note.startswith(name)]
 
 
 def _same_sensors(runs: list[Recording]) -> list[Recording]:
