@@ -28,6 +28,9 @@ class Ruling(NamedTuple):
 
 
 TWIN = "Computed by the digital twin of the rig. No gear was measured."
+IN_PART = (
+    "Some of its runs were computed by the digital twin of the rig and others were not: no figure here is a gear’s."
+)
 ELSEWHERE = "Recorded by other software and read in. What its files do not say is unknown here."
 
 

@@ -39,10 +39,14 @@ class Provenance:
     traced_utc: str = ""
 
     @property
+    def backends(self) -> set[str]:
+        """What the manifests say their runs were recorded with."""
+        return {str(m.get("backend")) for m in self.manifests.values()}
+
+    @property
     def backend(self) -> str | None:
         """What all manifests agree on; None where they do not."""
-        said = {str(m.get("backend")) for m in self.manifests.values()}
-        return said.pop() if len(said) == 1 else None
+        return self.backends.pop() if len(self.backends) == 1 else None
 
     @property
     def software(self) -> list[tuple[str, str]]:

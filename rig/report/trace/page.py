@@ -115,6 +115,8 @@ def drawn(trace: Trace) -> dict[str, Array]:
 def _origin(trace: Trace, source: Provenance) -> Origin:
     """Of the campaign: simulated when any run is, else what its manifests agree on."""
     found = run_words.origin("sim" if trace.simulated else source.backend)
+    if trace.simulated and len(source.backends) > 1:
+        found = found._replace(sentence=run_words.IN_PART)
     return found._replace(run=f"Trace of {words.runs_read(trace)}, {found.word.lower()}")
 
 

@@ -149,3 +149,11 @@ def test_a_torque_that_was_computed_is_said_to_be() -> None:
     assert "tau_l is no reading of a shaft sensor but “joint torque, computed" in said
     assert computed_torque(source("torque sensor between gear and load", "tau_l")) == []
     assert computed_torque(source("computed", "tau_m")) == []
+
+
+def test_what_is_below_zero_for_certain_is_said_to_be_so_and_not_left_open() -> None:
+    odd = (*BASELINE[:1], parameter("J_m", -3.5e-4, 0.5e-4, "kg·m²"), parameter("J_l", 0.7, 7.0, "kg·m²"))
+    below, left = not_told(odd, [run(9.6)])
+    assert below.startswith("J_m (-0.00035 kg·m², 95 % -0.0004 to -0.0003) came out below zero")
+    assert "J_l" in left
+    assert "J_m" not in left

@@ -262,6 +262,15 @@ def test_simulated_runs_are_called_so_whatever_their_manifests_say() -> None:
     assert "SIMULATED" not in measured.words
 
 
+def test_runs_of_the_twin_among_others_are_said_to_be_some_of_them() -> None:
+    mixed = Provenance({"slow_ke_1": {"backend": "sim"}, "slow_ke_2": {"backend": "imported"}})
+    alone = Provenance({"slow_ke_1": {"backend": "sim"}, "slow_ke_2": {"backend": "sim"}})
+    trace = bare(replace(made_up.explained(), simulated=True))
+    assert "Some of its runs were computed by the digital twin" in read(trace, mixed).words
+    assert "No gear was measured." not in read(trace, mixed).words
+    assert "No gear was measured." in read(trace, alone).words
+
+
 def test_manifests_that_disagree_leave_the_origin_unknown() -> None:
     source = Provenance({"a": {"backend": "can"}, "b": {"backend": "imported"}})
     assert "ORIGIN UNKNOWN" in read(bare(replace(made_up.explained(), simulated=False)), source).words

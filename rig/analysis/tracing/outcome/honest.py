@@ -71,7 +71,14 @@ def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]
             f"No run turns slowly enough for its rows to show orders above {most} of the kinematic error: they were "
             "fitted, for what they take from the others, and are not given."
         )
-    if left := left_open(found):
+    # B_sp is what is left of a lag, which a filter of either channel makes of either sign
+    below = [p for p in left_open(found) if p.ci95[1] < 0 and p.name != "B_sp"]
+    if below:
+        out.append(
+            f"{in_words(below)} came out below zero, as in no gear: something takes its place in these runs, and what "
+            "is added to it leans on that."
+        )
+    if left := [p for p in left_open(found) if p not in below]:
         out.append(
             f"The fitted runs do not determine {in_words(left)}: by them it may be zero or below, and in every gear "
             "it is above."

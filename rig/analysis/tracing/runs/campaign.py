@@ -15,6 +15,7 @@ from rig.analysis.motion.one_rig import refuse_other_gears
 from rig.analysis.tracing.runs.balance import odd_balances
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
+from rig.analysis.tracing.runs.mixed import mixed
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
@@ -92,7 +93,7 @@ def read_campaign(folder: Path) -> Campaign:
         out += odd
     runs, carrying = weighed(runs)
     out += carrying
-    notes = unfit + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
+    notes = unfit + mixed(opened) + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))

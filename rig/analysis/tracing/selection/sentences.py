@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.rest.home import Home
 from rig.model.effects import CATALOGUE
@@ -19,6 +20,16 @@ def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") 
         f"The model lacks {in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
         f"to {after:.2f} times the floor."
     )
+
+
+def nothing(read: Sequence[str], after: float) -> str:
+    """That nothing is missing in the channels that were `read`, by letter: of the others nothing is said."""
+    leaves = f"the baseline leaves {after:.2f} times the floor on held-out runs."
+    unread = [CHANNEL[c].name for c in WHOLE if c not in read]
+    if not read or not unread:
+        return f"Nothing is missing: {leaves}"
+    of = _listed([CHANNEL[c].name for c in read])
+    return f"Nothing is missing in the {of}: {leaves} Of the {_listed(unread)} these runs show nothing."
 
 
 def of_the_rest(best: Home, total: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
-from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
@@ -20,7 +20,7 @@ from rig.analysis.tracing.selection.hidden import hidden
 from rig.analysis.tracing.selection.inseparable import inseparable
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.selection.sentences import in_words, lacks, of_the_rest
+from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART, QUIET
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
@@ -170,7 +170,7 @@ def _lives(where: Sequence[Home]) -> tuple[str, ...]:
 def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Conclusion:
     """Nothing loud remains."""
     if not names:
-        sentence = f"Nothing is missing: the baseline leaves {after:.2f} times the floor on held-out runs."
+        sentence = nothing([c for c in WHOLE if any(key[1] == c for key in p.held_out.floors)], after)
         return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
     if twins := inseparable(names, frozenset().union(*(run.has for run in p.eq.runs))):
