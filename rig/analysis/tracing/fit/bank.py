@@ -63,6 +63,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
         has=frozenset().union(*(run.knows for run in runs)),
         runs=len(runs),
         backwards=_lesser(way),
+        turned_both_ways=min(_most_turns(runs, 1.0), _most_turns(runs, -1.0)),
         pulled=_lesser(np.concatenate([p.torque * np.abs(p.torque) for p in pieces])),
         weights=len({round(float(np.nanmean(p.tau_ext)), 2) for p in pieces}),
     )
@@ -76,6 +77,12 @@ def torque_noise(eq: Equations) -> float:
         if any(np.isfinite(p.torque).any() for p in noisy.pieces)
     )
     return max(map(float, made), default=0.0)
+
+
+def _most_turns(runs: Sequence[Recording], way: float) -> float:
+    """Most output turns that one of `runs` goes that `way`, 0 where none does or nobody read the angle."""
+    gone = [np.concatenate([p.theta_l[p.way * way > 0] for p in run.pieces]) for run in runs]
+    return max((float(np.ptp(x)) for x in gone if x.size and np.isfinite(x).all()), default=0.0) / (2 * np.pi)
 
 
 def _lesser(x: Array) -> float:

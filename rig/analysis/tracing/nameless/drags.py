@@ -70,11 +70,12 @@ class SectorDrag(Nameless):
     in_short: ClassVar[str] = "the load's friction changes along the output's turn"
     source: ClassVar[str] = "armstrong1994"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
+    FAR: Final = 0.3  # of the way of the run that goes farthest: where it goes one way alone nothing is told
     ORDERS: Final = (1, 2, 3, 4, 5, 6)  # a sector of a quarter of a radian still has half its height
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where the motor goes both ways: friction that does not turn with the way is a weight."""
-        return when(reach.backwards > SOME)
+        """One, where the output goes as far back as forth: friction that does not turn with the way is a weight."""
+        return when(reach.backwards > SOME and reach.turned_both_ways > self.FAR * reach.load_turns)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order."""

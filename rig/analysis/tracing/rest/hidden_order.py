@@ -22,6 +22,7 @@ from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
 
 WHOLE_ORDER: Final = 0.05  # how far from a whole number
+SOME: Final = 0.5  # of the runs: with fewer that were repeated, neighbouring turns make the floor of most
 NOTHING: Final = 0.01  # mean square over the floor's, of what is rounding alone: made-up numbers have no noise
 
 
@@ -30,7 +31,8 @@ def hidden_order(
 ) -> Home | None:
     """The order of an angle that takes most of the unseen residuals, with its share of them; None where repeats tell
     the floor, or none takes enough."""
-    if repeats(eq.runs, sorted({i for i, _ in fitted})):
+    runs = sorted({i for i, _ in fitted})
+    if 2 * len(repeats(eq.runs, runs)) > SOME * len(runs):
         return None
     found = [home for channel in WHOLE for home in _in_channel(eq, fitted, unseen, floors, channel)]
     best = max(found, key=lambda home: home.share, default=None)

@@ -22,7 +22,7 @@ from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
 from rig.analysis.tracing.rest.readings import Reading, in_columns, nothing, powers, waves
 from rig.analysis.tracing.rest.unknown import smooth_term
-from rig.analysis.tracing.thresholds import FORETOLD, WANDERS
+from rig.analysis.tracing.thresholds import FORETOLD, PLAIN_ENOUGH, WANDERS
 from rig.core.units import TURN
 from rig.model.effect import Array
 
@@ -32,6 +32,7 @@ MOST: Final = 20_000  # of them: eight hours; each costs a fit
 HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
 FEWEST: Final = 4  # runs
 LARGEST: Final = 2.0  # order of a two-lobed wave generator, the largest of its kinematic error
+BESIDE_ZEROS: Final = 0.05  # of the square of the floor: less than that zeros of runs may leave by chance
 ALIKE: Final = 1.5  # highest over lowest speed of runs that are told by each other
 
 SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (
@@ -79,7 +80,11 @@ def _in_channel(
     bare = foretold(Home("time", channel, 0.0, read=in_columns(nothing)))
     homes = [replace(home, share=foretold(home) - bare) for home in _readings(train, channel)]
     best = max(homes, key=lambda home: home.share, default=None)
-    return best if best is not None and best.share > FORETOLD else None
+    if best is None or best.share > FORETOLD:
+        return best
+    left = 1 - bare  # zeros of runs follow a wave that is slower than they are long, and leave little of it
+    nearly_all = best.share > PLAIN_ENOUGH * left and left * (before - n) > BESIDE_ZEROS * n
+    return replace(best, share=best.share / left) if nearly_all else None
 
 
 def _readings(train: Rest, channel: str) -> list[Home]:

@@ -26,6 +26,8 @@ AS_WELL = 0.98  # of its height the whole order beside it must have to be said i
 NEAR = 41  # orders tried beside the best one of the grid: to a fortieth of a cycle in all
 SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the shortest of runs
 DAY = 40  # quarter waves of SLOWEST that a campaign must take: in two minutes a slow wave is a trend
+ONE_SPEED = 0.2  # of it: what a triangle's turning points take from a mean
+NEARLY_ALL = 0.8  # of the power
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
 LOADS = 8  # levels of torque
@@ -126,19 +128,25 @@ def line(r: Rest, channel: str) -> Home | None:
     return Home("time_periodic", channel, part, frequency_hz=float(np.median([f for f, _, _ in best])))
 
 
-def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among: Callable[[Rest], Index]) -> Home:
+def by_the_clock(
+    h: Halves, channel: str, sense: Callable[[Rest], Array], among: Callable[[Rest], Index]
+) -> Home | None:
     """What comes and goes with the time, of any form that all runs share: a pump, a brake that rubs against the
     `sense` of the motion, or what breathes under load and is as large as that: apart `among` what it depends on. Every
-    run has a phase of its own, as clocks that are read to the second leave it.
+    run has a phase of its own, as clocks that are read to the second leave it. None where it is in runs of one speed
+    alone, and comes as often as their motor goes round: then nothing tells it from a place on the motor.
     """
     r = h.rest
     t, e = r.at["time"], r.e * r.worth * sense(r)
     size = int(4 * _longest(r) / STEP)  # to a quarter of what the longest run can tell apart
     hz = np.fft.rfftfreq(size, STEP)
-    power = np.zeros(hz.size)
-    for run in np.unique(r.run):
-        power += np.abs(np.fft.rfft(_stepped(t[r.run == run], e[r.run == run]), size)) ** 2
-    f = float(hz[int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power, 0.0)))])
+    runs = np.unique(r.run)
+    power = np.stack([np.abs(np.fft.rfft(_stepped(t[r.run == run], e[r.run == run]), size)) ** 2 for run in runs])
+    place = int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power.sum(0), 0.0)))
+    f = float(hz[place])
+    speeds = np.array([float(np.mean(np.abs(r.at["speed"][r.run == run]))) for run in runs])
+    if _as_the_motor_turns(f, speeds, power[:, place], 1 / _longest(r)):
+        return None
 
     def phase(rest: Rest) -> Index:
         own, signed = np.zeros(rest.e.size), rest.e * rest.worth * sense(rest)
@@ -148,6 +156,17 @@ def by_the_clock(h: Halves, channel: str, sense: Callable[[Rest], Array], among:
         return both(turned(TURN * f * rest.at["time"] + own, PHASES), among(rest))
 
     return Home("time_periodic", channel, score(h, phase(r)) / h.total, frequency_hz=f, read=in_bins(phase))
+
+
+def _as_the_motor_turns(f: float, speeds: Array, power: Array, apart: float) -> bool:
+    """Whether `f`, Hz, is a whole number of times the rate at which the motor turns, but for `apart` Hz, in those runs
+    that have nearly all `power`, (runs,), of it; `speeds` rad/s, (runs,)."""
+    loudest = float(speeds[int(np.argmax(power))])
+    alike = np.abs(speeds - loudest) < ONE_SPEED * loudest
+    if loudest <= 0 or power[alike].sum() < NEARLY_ALL * power.sum():
+        return False
+    rate = loudest / TURN
+    return abs(f - max(round(f / rate), 1) * rate) < apart
 
 
 def by_the_day(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home | None:

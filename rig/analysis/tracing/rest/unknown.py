@@ -113,8 +113,8 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     if not h.rest.timed:
         return []
     slow = [by_the_day(h, channel, sense) for sense in SENSES]
-    found = [home for home in (seen, *slow) if home is not None]
-    return found + [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
+    beating = [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
+    return [home for home in (seen, *slow, *beating) if home is not None]
 
 
 def _of_the_output(found: Home, r: Rest) -> Home:

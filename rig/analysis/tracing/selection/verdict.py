@@ -12,7 +12,9 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
+from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, Confounder, confounders_in
@@ -29,6 +31,7 @@ SAME_ORDER: Final = 0.05  # of a turn
 # a torque along the output's turn in one way only, as of a cable that tightens, is half of it a weight and half of it
 # friction along that turn
 ONE_WAY: Final[Mapping[str, frozenset[str]]] = {"sector_drag": frozenset({"gravity_unbalance"})}
+HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
@@ -86,7 +89,14 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
     where = [WHERE_IT_TURNS_BACK]
     if line is not None or p.held_out.loud(elsewhere, one):
-        where = home(p.eq, {key: s.residual(key) for key in s.keys}, floors)
+        left = {key: s.residual(key) for key in s.keys}
+        where = home(p.eq, left, floors)
+        # what waves with the clock differs from run to run as well, and shows there first
+        if where[0].coordinate == "time" and (wave := in_the_floor(p.eq, left, after, {**floors, **p.held_out.floors})):
+            where = [wave, *where] if wave.frequency_hz else where
+        # an order that is none of the gear's is in the floor of neighbouring turns, and shows elsewhere by its traces
+        if where[0].share < HALF and (order := hidden_order(p.eq, left, after, {**floors, **p.held_out.floors})):
+            where = [order, *where] if order.share > where[0].share else where
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where
