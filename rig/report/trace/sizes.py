@@ -27,7 +27,7 @@ def said(p: Parameter) -> str:
     """Value with 95 % interval and unit, in words where the fit has none."""
     if (p.ci95[1] - p.ci95[0]) / 2 > WILD * max(abs(p.value), 1.0):
         return "not determined"
-    if p.unit == "rad" and 0 < abs(p.value) < FINE:
+    if p.unit == "rad" and 0 < max(abs(p.value), (p.ci95[1] - p.ci95[0]) / 2) < FINE:
         return estimate(p.value / ARCSEC, (p.ci95[0] / ARCSEC, p.ci95[1] / ARCSEC), "arcsec")
     if p.unit in MILLI and 0 < max(abs(p.value), (p.ci95[1] - p.ci95[0]) / 2) < SMALL:
         return estimate(p.value * 1e3, (p.ci95[0] * 1e3, p.ci95[1] * 1e3), MILLI[p.unit])

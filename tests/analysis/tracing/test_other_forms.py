@@ -12,6 +12,7 @@ from rig.model.effect import Array, Fit, Port
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
 from rig.model.effects.presliding_friction import BRISTLES, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
+from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import DRIVEN, FLANGE, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
 
@@ -56,6 +57,20 @@ def test_of_elements_all_the_friction_is_told_and_the_way_after_which_one_slips(
     fit = Fit(np.array([0.01, 0.02, 0.0, 0.01]), (MOTOR, 0.5, ELEMENTS), np.zeros((7, 7)), KNOWN, N)
     told = {p.name: p.value for p in PreslidingFriction().parameters(fit)}
     assert told == pytest.approx({"tau_presliding": 0.04, "x_0": 0.5 * (0.01 * 0.2 + 0.02 * 0.6 + 0.01 * 5.4) / 0.04})
+
+
+def test_a_ripple_may_saturate_alike_whichever_way_the_torque_points() -> None:
+    """r·cos(6·θ_m)·τ/(1 + |τ|/0.8), to 1.2 N·m; a field that the torque turns takes one way more and the other less."""
+    t = 1e-3 * np.arange(6000)
+    torque = 1.2 * np.sin(np.pi * t / 1.5)
+    s = dataclasses.replace(motion(n=t.size), t=t, theta_m=7.0 * t, omega_m=np.full(t.size, 7.0), tau_m=torque)
+    ripple = np.cos(42.0 * t + 0.4) * torque / (1.0 + np.abs(torque) / 0.8)
+    effect = TorqueRipple()
+    of = {law: effect.columns(s, (6.0, law))[Port.MOTOR_TORQUE] for law in (effect.REACTING, effect.SATURATING)}
+    assert left(of[effect.SATURATING], ripple) < 0.05
+    assert left(of[effect.REACTING], ripple) > 0.12
+    fit = Fit(np.array([0.01, 0.0, -0.004, 0.0]), (6.0, effect.SATURATING), np.zeros((6, 6)), KNOWN, N)
+    assert [p.name for p in effect.parameters(fit)][2] == "order_6_saturating_amplitude"
 
 
 def test_a_gap_may_be_wider_at_one_angle() -> None:
