@@ -28,7 +28,7 @@ class Effect(ABC):
     glosses: ClassVar[Mapping[str, str]] = {}  # what its parameters are, by name; see rig/model/gloss.py
     source: ClassVar[str]  # key in rig/model/references.py, with the equation where there is one
     shape_names: ClassVar[tuple[str, ...]] = ()
-    adds: ClassVar[frozenset[str]] = frozenset()  # parameters of which several terms of it make one sum
+    adds: ClassVar[frozenset[str]] = frozenset()  # parameters that several terms of it have `together`
     remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
     backbone: ClassVar[bool] = False  # a loop in torque against wind-up has a mean curve that looks like it
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
@@ -85,6 +85,11 @@ class Effect(ABC):
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
         return False
+
+    def together(self, values: Sequence[float | None]) -> float | None:
+        """One of those that it `adds`, from what every term says of it by itself, None where it says nothing: the sum;
+        None where nothing can be said of all."""
+        return sum(value for value in values if value is not None)
 
     def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
         """Cosine and sine of an order of θ̃_p that each coefficient adds to the baseline's without load, (2, k) or, of

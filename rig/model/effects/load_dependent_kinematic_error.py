@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar, Final
 
@@ -46,6 +46,7 @@ class LoadDependentKinematicError(Effect):
     source: ClassVar[str] = "ghorbel2001, Fig. 9"
     shape_names: ClassVar[tuple[str, ...]] = ("of", "T_c", "lag", "delta")
     loose: ClassVar[tuple[bool, ...]] = (False, True, True, False)
+    adds: ClassVar[frozenset[str]] = frozenset({"A_inf", *(f"A_inf_order_{n}" for n in ORDERS)})
     LAG: Final = 3e-3  # s, to start the refit from: a few periods of tooth contact
     LAGS: Final = (1e-4, 0.5)  # s
     FEW: Final = (1.5, 3.0, 6.0)  # N·m, of the laws the refit takes on from there
@@ -86,6 +87,11 @@ class LoadDependentKinematicError(Effect):
             parameter("T_c", fit.shape[1], fit.half_width(unit[k + 1]), "N·m"),
             self._lag(fit.shape[2], fit.half_width(unit[k + 2])),
         )
+
+    def together(self, values: Sequence[float | None]) -> float | None:
+        """What stays is the same in each: 1/(1 + Σ(1/A_∞ − 1)); nothing of an order that one has no share of."""
+        shares = [value for value in values if value]
+        return 1.0 / (1.0 + sum(1.0 / share - 1.0 for share in shares)) if len(shares) == len(values) else None
 
     def _lag(self, lag: float, half: float) -> Parameter:
         """One too short for the rows to tell may be any from none to the shortest they do tell."""

@@ -15,6 +15,7 @@ from rig.analysis.tracing.fit.model import Design, Part, fit, normal
 from rig.analysis.tracing.fit.parameters import Told, joined
 from rig.model.effect import Fit
 from rig.model.effects import CATALOGUE
+from rig.model.fourier import FourierSeries
 
 K, B_SP = 7160.0, 7.0
 HZ = (13.3, 6.7)
@@ -82,6 +83,25 @@ def test_two_loops_make_one_loss_with_the_interval_of_their_sum() -> None:
     half = 1.96 * 2 * each
     assert alone.ci95[1] - alone.value == pytest.approx(half, rel=1e-3)
     assert both.ci95[1] - both.value == pytest.approx(half * np.sqrt(0.02), rel=1e-3)
+
+
+def test_two_laws_of_a_shrinking_error_leave_one_share_with_the_interval_of_both() -> None:
+    law, each = CATALOGUE["load_dependent_kinematic_error"], 0.02
+    series = FourierSeries((0.0, 3e-4), (0.0, 1e-4))
+    known = SimpleNamespace(kinematic_error=series)
+    c = each**2 * np.array([[1.0, -0.9], [-0.9, 1.0]])  # of what goes away either is known worse than their sum
+    terms = []
+    for i, (size, t_c) in enumerate(((0.4, 2.0), (0.3, 12.0))):
+        by = np.zeros((5, 2))
+        by[0, i] = 1.0
+        fit = Fit(np.array([size]), (0.0, t_c, 3e-3, 1.0), by @ c @ by.T, known, 50.0)  # type: ignore[arg-type]
+        terms.append(Told(law, fit, by))
+    told = {p.name: p for p in joined(terms, c)}
+    assert told["A_inf"].value == pytest.approx(1 / 1.7)
+    half = 1.96 * each * np.sqrt(2 * (1 - 0.9)) / 1.7**2
+    assert told["A_inf"].ci95[1] - told["A_inf"].value == pytest.approx(half, rel=1e-3)
+    assert "A_inf_2" not in told
+    assert told["T_c_2"].value == pytest.approx(12.0)
 
 
 def test_a_loss_under_load_holds_that_of_a_loop_as_wide_everywhere() -> None:
