@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
+import numpy as np
+
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
@@ -12,6 +14,7 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
@@ -27,6 +30,7 @@ from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MO
 from rig.model.effect import Array
 from rig.model.effects import LIBRARY
 
+DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
 SAME_ORDER: Final = 0.05  # of a turn
 # a torque along the output's turn in one way only, as of a cable that tightens, is half of it a weight and half of it
 # friction along that turn
@@ -60,7 +64,7 @@ def decide(
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         inside = None if names else hidden(p, s, after, floors)
-        return inside or _settled(p, names, found, *_falls(p, before, after))
+        return inside or _drifting(p, s, names, floors) or _settled(p, names, found, *_falls(p, before, after))
     where = _where(p, s, after, floors, one)
     known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
     mostly = done > MOSTLY and total < 2 * EXPLAINED and max((score.left for score in scores), default=0.0) < AMISS
@@ -119,6 +123,17 @@ def _confounded(confounder: Confounder, names: tuple[str, ...]) -> Conclusion:
     names = tuple(name for name in names if name not in ONE_WAY.get(confounder.effect.name, ()))
     verdict = Verdict(Status.UNKNOWN, names, (), confounder.coordinate, None, None, confounder.sentence)
     return Conclusion(verdict, None, (confounder.coordinate,), along(confounder.coordinate))
+
+
+def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
+    """Nothing is above the floor, but the zeros of the runs drift, by more than it; None where they do not. Names stand
+    beside it."""
+    drift = drifting_zeros(s, p.split.fitted, p.split.held_out)
+    if drift is None or abs(drift.size) < DRIFTS * np.median([x for (_, c), x in floors.items() if c == "A"]):
+        return None
+    return Conclusion(
+        Verdict(Status.UNKNOWN, names, (), "time", None, None, drift.sentence()), None, ("time",), along("time")
+    )
 
 
 def _standing(

@@ -1,0 +1,111 @@
+"""Zeros of runs that follow the campaign's time: a bracket that warms, an encoder whose electronics do.
+
+Every run may have a zero of its own, so that such a drift is in no residual; but zeros that wander foretell nothing,
+and zeros that drift are foretold by the time: those of unseen runs by a curve through the fitted ones'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.offsets import offset
+from rig.core.units import ARCSEC
+from rig.model.effect import MEASURED, Array
+
+FITTED: Final = 6  # runs that turn freely, at least
+UNSEEN: Final = 4
+LEFT: Final = 0.3  # of the scatter of the unseen zeros about their mean: zeros of one drift leave a twentieth
+PLAINER: Final = 0.5  # of what any other thing leaves that may shift a zero: speeds may have been taken in turn
+SHORTEST: Final = 0.03  # time constant, of the whole time
+LONGEST: Final = 3.0  # beyond, it is a straight line
+TRIED: Final = 24  # of them
+WAY: Final = 0.1  # of the scatter of all speeds, torques: less of it is no condition
+
+
+@dataclass(frozen=True)
+class DriftingZeros:
+    """By how much the zeros of the runs differ in all [rad], the time constant [s], and what of the scatter of unseen
+    zeros is foretold."""
+
+    size: float
+    time_constant: float
+    foretold: float
+
+    def sentence(self) -> str:
+        """What is said of it."""
+        return (
+            f"The zeros of the angles drift through the campaign, by {abs(self.size) / ARCSEC:.3g} arcsec in all with "
+            f"a time constant near {self.time_constant:.2g} s: a curve over the time through those of the fitted runs "
+            f"foretells {self.foretold:.0%} of how far apart those of unseen runs lie. Every run has a zero of its "
+            "own, so that no error shows it, and no effect of the library explains it."
+        )
+
+
+def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> DriftingZeros | None:
+    """The drift of θ̃'s zeros; None where they follow no time, or another thing as well, or where the wind-up that
+    shifts them was not measured."""
+    eq = s.design.eq
+    mine, others = (_free(eq, runs) for runs in (fitted, unseen))
+    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+        return None
+    zeros, wanted = (np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others))
+    times, later = (_times(eq, runs) for runs in (mine, others))
+    span = float(np.ptp(np.concatenate([times, later])))
+    spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
+    if span <= 0 or spread == 0:
+        return None
+    curves = [(tau, _foretold(_falling(times, tau), _falling(later, tau), zeros)) for tau in _constants(span)]
+    tau, (guess, fit, own) = min(curves, key=lambda c: c[1][2])
+    left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
+    rival = min(_rivals(eq, mine, zeros), default=np.inf)
+    if left > LEFT * spread or own > PLAINER * rival:
+        return None
+    size = float(fit[1]) * float(np.ptp(_falling(np.concatenate([times, later]), tau)[:, 1]))
+    return DriftingZeros(size, tau, 1 - (left / spread) ** 2)
+
+
+def _free(eq: Equations, runs: Sequence[int]) -> list[int]:
+    return [i for i in runs if (i, "A") in eq.rows and not eq.runs[i].locked]
+
+
+def _times(eq: Equations, runs: Sequence[int]) -> Array:
+    """When each was taken, s."""
+    return np.array([np.mean([p.t[0] + p.t[-1] for p in eq.runs[i].pieces]) / 2 for i in runs])
+
+
+def _constants(span: float) -> Array:
+    return np.geomspace(SHORTEST * span, LONGEST * span, TRIED)
+
+
+def _falling(t: Array, tau: float) -> Array:
+    """A constant and what falls with that time constant, (n, 2)."""
+    return np.stack([np.ones(t.size), np.exp(-t / tau)], 1)
+
+
+def _foretold(z: Array, there: Array, zeros: Array) -> tuple[Array, Array, float]:
+    """By columns `z` (n, k) of the fitted zeros what those of `there` (m, k) should be, the coefficients, and RMS of
+    what is left."""
+    x = np.asarray(np.linalg.lstsq(z, zeros, rcond=None)[0], dtype=np.float64)
+    return there @ x, x, float(np.sqrt(np.mean((zeros - z @ x) ** 2)))
+
+
+def _rivals(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
+    """RMS left of the zeros by their other reasons: speed and torque with their sizes, and a step at any time."""
+    speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs])
+    torque = np.array([eq.runs[i].mean_torque for i in runs])
+    found = []
+    for x in (speed, torque):
+        if np.std(x) > WAY * np.mean(np.abs(x)):
+            z = np.stack([np.ones(x.size), x, np.abs(x)], 1)
+            found.append(_foretold(z, z, zeros)[2])
+    begun = np.argsort(_times(eq, runs))
+    for at in range(1, zeros.size):
+        z = np.stack([np.ones(zeros.size), np.arange(zeros.size) >= at], 1)
+        found.append(_foretold(z, z, zeros[begun])[2])
+    return found

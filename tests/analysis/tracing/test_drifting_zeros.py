@@ -1,0 +1,86 @@
+"""Zeros of runs that follow the time are told from those that wander, step, or go with a condition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest import drifting_zeros as module
+from rig.analysis.tracing.rest.drifting_zeros import DriftingZeros, drifting_zeros
+from rig.model.effect import MEASURED
+
+RUNS, LASTS, EVERY = 24, 20.0, 80.0  # s
+TIMES = EVERY * np.arange(RUNS) + LASTS / 2
+SPEEDS = np.tile([10.0, 30.0, -20.0, 40.0], RUNS // 4)  # rad/s
+WANDER, SIZE, TAU = 1e-6, 1.2e-4, 700.0  # rad, rad, s
+
+
+def found(
+    monkeypatch: pytest.MonkeyPatch, zeros: Sequence[float], speeds: np.ndarray = SPEEDS, has: frozenset[str] = MEASURED
+) -> DriftingZeros | None:
+    """Of runs with those zeros [rad], every third of them unseen."""
+    runs = [
+        SimpleNamespace(
+            locked=False,
+            has=has,
+            mean_torque=0.5 * np.sign(speed),
+            pieces=[SimpleNamespace(t=np.array([t - LASTS / 2, t + LASTS / 2]), omega_m=np.full(2, speed))],
+        )
+        for t, speed in zip(TIMES, speeds, strict=True)
+    ]
+    s: Any = SimpleNamespace(
+        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows={(i, "A") for i in range(RUNS)}))
+    )
+    monkeypatch.setattr(module, "offset", lambda _, run, channel: zeros[run])
+    unseen = range(1, RUNS, 3)
+    return drifting_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
+
+
+def wander(rng: np.random.Generator) -> np.ndarray:
+    return WANDER * rng.standard_normal(RUNS)
+
+
+def test_zeros_that_warm_up_are_told_with_their_size_and_time(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    drift = found(monkeypatch, wander(rng) - SIZE * np.exp(-TIMES / TAU))
+    assert drift
+    assert abs(drift.size) == pytest.approx(SIZE * (np.exp(-TIMES[0] / TAU) - np.exp(-TIMES[-1] / TAU)), rel=0.05)
+    assert drift.time_constant == pytest.approx(TAU, rel=0.25)
+    assert drift.foretold > 0.98
+    assert "no effect of the library" in drift.sentence()
+
+
+def test_zeros_that_go_on_drifting_evenly_are_told(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
+    drift = found(monkeypatch, wander(rng) + 5e-8 * TIMES)
+    assert drift
+    assert abs(drift.size) == pytest.approx(5e-8 * np.ptp(TIMES), rel=0.1)
+
+
+def test_zeros_that_wander_are_not_told(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
+    assert not any(found(monkeypatch, 50.0 * wander(rng)) for _ in range(100))
+    walks = [np.cumsum(10.0 * wander(rng)) for _ in range(100)]
+    assert sum(found(monkeypatch, walk) is not None for walk in walks) < 5
+
+
+def test_zeros_that_step_once_are_another_thing(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
+    for at in (3, 9, 15, 21):
+        assert found(monkeypatch, wander(rng) + SIZE * (np.arange(RUNS) >= at)) is None
+
+
+def test_zeros_that_go_with_the_speed_are_another_thing(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    rising = np.linspace(10.0, 50.0, RUNS)  # taken in turn: by the time as well
+    assert found(monkeypatch, wander(rng) + 1e-6 * rising, rising) is None
+
+
+def test_without_a_torque_sensor_wind_up_shifts_a_zero_as_well(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    zeros = wander(rng) - SIZE * np.exp(-TIMES / TAU)
+    assert found(monkeypatch, zeros, has=MEASURED - {"tau_l"}) is None
