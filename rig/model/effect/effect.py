@@ -86,10 +86,9 @@ class Effect(ABC):
         """True when a fit ended where the campaign shows nothing of the law itself, a resonance above its band."""
         return False
 
-    def together(self, values: Sequence[float | None]) -> float | None:
-        """One of those that it `adds`, from what every term says of it by itself, None where it says nothing: the sum;
-        None where nothing can be said of all."""
-        return sum(value for value in values if value is not None)
+    def together(self, name: str, fits: Sequence[Fit]) -> float:
+        """One of those that it `adds`, of several terms: the sum of what each says of it by itself."""
+        return float(sum(p.value for fit in fits for p in self.parameters(fit) if p.name == name))
 
     def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
         """Cosine and sine of an order of θ̃_p that each coefficient adds to the baseline's without load, (2, k) or, of

@@ -88,10 +88,15 @@ class LoadDependentKinematicError(Effect):
             self._lag(fit.shape[2], fit.half_width(unit[k + 2])),
         )
 
-    def together(self, values: Sequence[float | None]) -> float | None:
-        """What stays is the same in each: 1/(1 + Σ(1/A_∞ − 1)); nothing of an order that one has no share of."""
-        shares = [value for value in values if value]
-        return 1.0 / (1.0 + sum(1.0 / share - 1.0 for share in shares)) if len(shares) == len(values) else None
+    def together(self, name: str, fits: Sequence[Fit]) -> float:
+        """Of an order, or of the largest without load: what stays, which is the same in each, over that and all that
+        goes away, which may cancel."""
+        known = fits[0].known
+        stays = {n: np.array(_wave(known.kinematic_error, n)) for n in ORDERS}
+        gone = {n: sum(self.unloaded(n, known, fit.shape) @ fit.coefficients for fit in fits) for n in ORDERS}
+        sizes = {n: float(np.hypot(*(stays[n] + gone[n]))) for n in ORDERS}
+        order = max(sizes, key=lambda n: sizes[n]) if name == "A_inf" else int(name.rpartition("_")[2])
+        return float(np.hypot(*stays[order])) / max(sizes[order], NONE)
 
     def _lag(self, lag: float, half: float) -> Parameter:
         """One too short for the rows to tell may be any from none to the shortest they do tell."""

@@ -167,48 +167,32 @@ def joined(terms: Sequence[Told], c: Array) -> tuple[Parameter, ...]:
                 name = f"{p.name}_{sum(n.startswith(p.name) for n in out) + 1}"
                 out[name] = replace(p, name=name)
     if len(terms) > 1:
-        made = {name: _together(name, out[name].unit, terms, c) for name in out if name in terms[0].effect.adds}
-        whole = {name: p for name, p in made.items() if p is not None}
-        out = {name: whole.get(name, p) for name, p in out.items() if name not in made or name in whole}
+        out |= {name: _together(name, out[name].unit, terms, c) for name in out if name in terms[0].effect.adds}
     return tuple(out.values())
 
 
-def _together(name: str, unit: str, terms: Sequence[Told], c: Array) -> Parameter | None:
-    """A figure that terms of one effect have together; None where they have none."""
-    figures = [_figure(term, name, term.fit) for term in terms]
-    total = terms[0].effect.together(figures)
-    if total is None:
-        return None
+def _together(name: str, unit: str, terms: Sequence[Told], c: Array) -> Parameter:
+    """A figure that terms of one effect have together."""
     along = np.zeros(len(c))
     for i, term in enumerate(terms):
-        if figures[i] is not None:
-            along += _slope(term.effect, figures, i) * (_gradient(term, name) @ term.by)
+        along += _gradient(name, terms, i) @ term.by
+    total = terms[0].effect.together(name, [term.fit for term in terms])
     return parameter(name, total, Z95 * float(np.sqrt(max(0.0, float(along @ c @ along)))), unit)
 
 
-def _slope(effect: Effect, figures: Sequence[float | None], i: int) -> float:
-    """Of what terms have together by the figure of one of them."""
-    here = figures[i] or 0.0
-    step = STEP * (abs(here) or 1.0)
-    ends = [effect.together([*figures[:i], here + sign * step, *figures[i + 1 :]]) for sign in (1.0, -1.0)]
-    return ((ends[0] or 0.0) - (ends[1] or 0.0)) / (2 * step)
-
-
-def _figure(term: Told, name: str, fit: Fit) -> float | None:
-    return next((p.value for p in term.effect.parameters(fit) if p.name == name), None)
-
-
-def _gradient(term: Told, name: str) -> Array:
-    """Of a figure by coefficients and shape (k + s,), by central differences of what the effect makes of them."""
-    fit = term.fit
-    at = np.concatenate([fit.coefficients, fit.shape])
-    k, out = fit.coefficients.size, np.zeros(at.size)
-    loose = np.concatenate([np.ones(k, bool), np.array(term.effect.loose or (False,) * len(fit.shape), bool)])
+def _gradient(name: str, terms: Sequence[Told], i: int) -> Array:
+    """Of a figure of all `terms` by coefficients and shape of one (k + s,), by central differences of what the effect
+    makes of them."""
+    effect, fits = terms[i].effect, [term.fit for term in terms]
+    at = np.concatenate([fits[i].coefficients, fits[i].shape])
+    k, out = fits[i].coefficients.size, np.zeros(at.size)
+    loose = np.concatenate([np.ones(k, bool), np.array(effect.loose or (False,) * len(fits[i].shape), bool)])
     for j in np.flatnonzero(loose):
         step = STEP * (abs(at[j]) or float(np.abs(at[:k]).max()))
         ends = [at + sign * step * (np.arange(at.size) == j) for sign in (1.0, -1.0)]
-        there = [replace(fit, coefficients=x[:k], shape=tuple(x[k:])) for x in ends]
-        out[j] = ((_figure(term, name, there[0]) or 0.0) - (_figure(term, name, there[1]) or 0.0)) / (2 * step)
+        moved = [replace(fits[i], coefficients=x[:k], shape=tuple(x[k:])) for x in ends]
+        there = [effect.together(name, [*fits[:i], fit, *fits[i + 1 :]]) for fit in moved]
+        out[j] = (there[0] - there[1]) / (2 * step)
     return out
 
 
