@@ -68,6 +68,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
 
     everything = laws()
     assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
+    assert everything - laws(turned_both_ways=0.1) == {"sector_drag"}  # of a turn: a weight does as much one way
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
     assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}

@@ -95,14 +95,24 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     if line is not None or p.held_out.loud(elsewhere, one):
         left = {key: s.residual(key) for key in s.keys}
         where = home(p.eq, left, floors)
-        # what waves with the clock differs from run to run as well, and shows there first
-        if where[0].coordinate == "time" and (wave := in_the_floor(p.eq, left, after, {**floors, **p.held_out.floors})):
-            where = [wave, *where] if wave.frequency_hz else where
-        # an order that is none of the gear's is in the floor of neighbouring turns, and shows elsewhere by its traces
-        if where[0].share < HALF and (order := hidden_order(p.eq, left, after, {**floors, **p.held_out.floors})):
-            where = [order, *where] if order.share > where[0].share else where
+        where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors}) if where else where
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
+    return where
+
+
+def _in_the_floor_too(
+    p: Prepared, where: list[Home], left: Mapping[Key, Array], after: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> list[Home]:
+    """The same behind what the floor itself has of it. What waves with the clock makes runs differ as well, and shows
+    there first; an order that is none of the gear's is in the floor of neighbouring turns, and elsewhere only by its
+    traces."""
+    if where[0].coordinate == "time":
+        wave = in_the_floor(p.eq, left, after, floors)
+        return [wave, *where] if wave is not None and wave.frequency_hz else where
+    if where[0].share < HALF:
+        order = hidden_order(p.eq, left, after, floors)
+        return [order, *where] if order is not None and order.share > where[0].share else where
     return where
 
 
