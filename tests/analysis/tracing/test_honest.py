@@ -114,6 +114,7 @@ def run_without_torque(rpm: float) -> Any:
     return found
 
 
+NOTHING = Verdict(Status.NOTHING, (), (), None, None, None, "")
 FLOORS = Errors(70.0, None, 60.0, 20.626, None, 1.5)
 GRAVITY = Candidate(
     "gravity_unbalance",
@@ -132,13 +133,18 @@ def test_a_candidate_that_removes_all_of_one_channel_is_dismissed_with_what_it_l
     )
 
 
-def test_one_beside_a_name_or_that_leaves_nothing_keeps_its_reason() -> None:
+def test_one_beside_a_name_or_that_has_a_reason_keeps_it_and_no_other_is_without() -> None:
     explained = Verdict(Status.EXPLAINED, ("lost_motion",), (), None, None, None, "")
     unknown = Verdict(Status.UNKNOWN, (), (), "load", None, None, "")
     quiet = Candidate("a", 1.0, GRAVITY.why, {"tau_l": 1.6})
     weak = Candidate("b", 1.0, "alone it removes 48 % of it, 60 % would be asked for", {"tau_l": 30.0})
     assert dismissed([GRAVITY], explained, FLOORS) == (GRAVITY,)
-    assert dismissed([quiet, weak], unknown, FLOORS) == (quiet, weak)
+    better, none = (dismissed([quiet, weak], verdict, FLOORS) for verdict in (unknown, NOTHING))
+    assert better[0].why.endswith(
+        "; it does not explain all, or not as well as what the verdict tells, so that it is not named"
+    )
+    assert none[0].why.endswith("; there is too little of it to name anything")
+    assert better[1] == none[1] == weak
 
 
 def test_a_torque_that_was_computed_is_said_to_be() -> None:
