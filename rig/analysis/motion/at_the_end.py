@@ -16,9 +16,7 @@ from rig.core.rows import stretches
 
 FEWEST: Final = 20  # readings of the one value: the top of a wave is reached now and then
 SHARE: Final = 1e-3  # of the rows, at least
-LEVELS: Final = (
-    10  # the next values on the way in, each read now and then; a coarse sensor has fewer, and rests on each
-)
+LEVELS: Final = 10  # the next values on the way in, read now and then; a coarse sensor has fewer, and rests on each
 OFTENER: Final = 8.0  # times as often as any of them: noise and the top of a wave come to 3
 GOES_ON: Final = 0.05  # of the motor's way in the run, meanwhile: a torque that is held rests with its motor
 MOST: Final = 0.05  # of the rows: of a course without its tops no more is left than a bias

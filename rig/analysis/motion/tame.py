@@ -118,8 +118,8 @@ class Tame:
             f"the end of a range, {'so it was not used' if whole else 'taken as missing'}."
         )
         out = room(values.size)
-        out[:] = np.nan if whole else values
-        out[at_ends(values, found)] = np.nan
+        out[:] = values
+        out[slice(None) if whole else at_ends(values, found)] = np.nan
         return out
 
     def _without_lone(self, name: str, values: Array) -> Array:

@@ -46,7 +46,8 @@ class Provenance:
     @property
     def backend(self) -> str | None:
         """What all manifests agree on; None where they do not."""
-        return self.backends.pop() if len(self.backends) == 1 else None
+        said = self.backends
+        return said.pop() if len(said) == 1 else None
 
     @property
     def software(self) -> list[tuple[str, str]]:

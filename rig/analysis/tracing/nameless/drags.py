@@ -74,7 +74,7 @@ class SectorDrag(Nameless):
     ORDERS: Final = (1, 2, 3, 4, 5, 6)  # a sector of a quarter of a radian still has half its height
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where the output goes as far back as forth: friction that does not turn with the way is a weight."""
+        """One, where the output goes far both ways: friction that does not turn with the way is a weight."""
         return when(reach.backwards > SOME and reach.turned_both_ways > self.FAR * reach.load_turns)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
