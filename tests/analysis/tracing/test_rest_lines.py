@@ -24,5 +24,9 @@ def test_what_is_as_loud_at_another_speed_follows_the_clock() -> None:
     assert not _as_the_motor_turns(0.16, np.array([SLOW, SLOW, 20.0]), np.array([5.0, 4.0, 5.0]), APART)
 
 
+def test_of_a_motor_so_slow_that_every_frequency_is_near_a_multiple_nothing_is_said() -> None:
+    assert not _as_the_motor_turns(0.161, np.full(3, SLOW), np.ones(3), 0.05)
+
+
 def test_runs_in_which_the_motor_rests_turn_no_more_often_than_never() -> None:
     assert not _as_the_motor_turns(0.16, np.zeros(3), np.ones(3), APART)

@@ -156,8 +156,8 @@ class Told:
 
 def joined(terms: Sequence[Told], c: Array) -> tuple[Parameter, ...]:
     """Figures of all terms of one effect, of which `c` (p, p) is the covariance: what it `adds` is one figure, with
-    the interval of all of them, for two terms of one effect are seldom independent; of the others that have the same name the
-    second is numbered."""
+    the interval of all of them, for two terms of one effect are seldom independent; of the others that have the same
+    name the second is numbered."""
     out: dict[str, Parameter] = {}
     for term in terms:
         for p in term.effect.parameters(term.fit):

@@ -28,6 +28,7 @@ SLOWEST = 1 / 12.0  # Hz of what comes and goes by the clock: some times in the 
 DAY = 40  # quarter waves of SLOWEST that a campaign must take: in two minutes a slow wave is a trend
 ONE_SPEED = 0.2  # of it: what a triangle's turning points take from a mean
 NEARLY_ALL = 0.8  # of the power
+TOLD = 0.1  # of the motor's rate, what a run tells apart: a fifth of all frequencies is near a multiple by chance
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
 LOADS = 8  # levels of torque
@@ -166,6 +167,8 @@ def _as_the_motor_turns(f: float, speeds: Array, power: Array, apart: float) -> 
     if loudest <= 0 or power[alike].sum() < NEARLY_ALL * power.sum():
         return False
     rate = loudest / TURN
+    if apart > TOLD * rate:  # any frequency is near one of its multiples: that says nothing
+        return False
     return abs(f - max(round(f / rate), 1) * rate) < apart
 
 
