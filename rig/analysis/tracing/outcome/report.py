@@ -25,9 +25,9 @@ from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import Ripple, ripples
 from rig.analysis.tracing.outcome.unlike import unlike_declared
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
-from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.selection.candidates import candidates
 from rig.analysis.tracing.selection.confounders import confounders_in

@@ -142,8 +142,8 @@ def _sums(r: Rest, at: Index, fitted: Rows, size: int) -> _Sums:
     all_of, out = r.whole, np.flatnonzero(~fitted)
     less, runs = all_of.wide[out], all_of.runs.size if r.own_zeros else 0
     gram = all_of.gram - less.T @ less
-    by_bin = _added(at, size + 1, r.worth) @ all_of.wide
-    by_run = (all_of.by_run - _added(all_of.run[out], all_of.runs.size, np.ones(out.size)) @ less)[:runs]
+    by_bin = added(at, size + 1, r.worth) @ all_of.wide
+    by_run = (all_of.by_run - added(all_of.run[out], all_of.runs.size, np.ones(out.size)) @ less)[:runs]
     crossed = np.bincount(at * runs + all_of.run, r.worth, (size + 1) * runs)[: (size + 1) * runs]
     table = crossed.reshape(size + 1, runs).astype(float)
     count = np.asarray(np.bincount(at, r.worth**2, size + 1), dtype=np.float64)
@@ -153,7 +153,7 @@ def _sums(r: Rest, at: Index, fitted: Rows, size: int) -> _Sums:
     return _Sums(normal, right, columns[:size], by_bin[:size, -2], count[:size], at.size - out.size)
 
 
-def _added(at: Index, size: int, worth: Array) -> csr_matrix:
+def added(at: Index, size: int, worth: Array) -> csr_matrix:
     """Adds up rows (n,) by where they are, each as often as it is worth, (size, n)."""
     return csr_matrix((worth, (at, np.arange(at.size))), shape=(size, at.size))
 

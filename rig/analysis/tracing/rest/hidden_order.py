@@ -12,13 +12,15 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.rest.binned import Halves, folds
+from rig.analysis.tracing.rest.foretold import unseen_beside
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import square
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.readings import in_columns, nothing
-from rig.analysis.tracing.rest.unknown import MOST, smooth_term
+from rig.analysis.tracing.rest.unknown import MOST
 from rig.analysis.tracing.thresholds import LOUD_LINE
+from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
 
 WHOLE_ORDER: Final = 0.05  # how far from a whole number
@@ -34,9 +36,18 @@ def hidden_order(
     runs = sorted({i for i, _ in fitted})
     if 2 * len(repeats(eq.runs, runs)) > SOME * len(runs):
         return None
-    found = [home for channel in WHOLE for home in _in_channel(eq, fitted, unseen, floors, channel)]
-    best = max(found, key=lambda home: home.share, default=None)
-    return best if best is not None and best.share > LOUD_LINE else None
+
+    def best(channel: str) -> Home | None:
+        found = _in_channel(eq, fitted, unseen, floors, channel)
+        return max(found, key=lambda home: home.share, default=None)
+
+    def share(channel: str) -> float:
+        home = best(channel)
+        return home.share if home else 0.0
+
+    # how it was read does not go from one process to another: of the channel that has one it is looked for again
+    most, channel = max(zip(each(share, WHOLE), WHOLE, strict=True))
+    return best(channel) if most > LOUD_LINE else None
 
 
 def _in_channel(
@@ -50,9 +61,10 @@ def _in_channel(
     tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
     # both angles are nearly one: what comes back with a turn of the output comes back a whole number of times in it
     tried += [home for sense in SENSES if _is_whole(home := best_order(h, "load_angle", channel, sense))]
+    beside = unseen_beside(eq, fitted, unseen, floors, channel)
 
     def left(home: Home) -> float:
-        return square(smooth_term(eq, fitted, unseen, floors, replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
+        return square(beside.without(replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
 
     bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
     if bare < NOTHING * sum(unseen[key].size for key in keys):

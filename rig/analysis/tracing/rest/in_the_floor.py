@@ -17,11 +17,11 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.neighbours import neighbours
 from rig.analysis.tracing.rest.binned import solved
+from rig.analysis.tracing.rest.foretold import unseen_beside
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest, rest
 from rig.analysis.tracing.rest.lines import SENSES, SLOWEST
 from rig.analysis.tracing.rest.readings import Reading, in_columns, nothing, powers, waves
-from rig.analysis.tracing.rest.unknown import smooth_term
 from rig.analysis.tracing.thresholds import FORETOLD, PLAIN_ENOUGH, WANDERS
 from rig.core.units import TURN
 from rig.model.effect import Array
@@ -72,9 +72,10 @@ def _in_channel(
     train = rest(eq, fitted, still, channel)
     if train is None or np.unique(train.run).size < FEWEST:
         return None
+    beside = unseen_beside(eq, fitted, unseen, still, channel)
 
     def foretold(home: Home) -> float:
-        after, _ = square(smooth_term(eq, fitted, unseen, still, home), still, keys)
+        after, _ = square(beside.without(home), still, keys)
         return (before - max(after, n)) / (before - n)
 
     bare = foretold(Home("time", channel, 0.0, read=in_columns(nothing)))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.chebyshev import chebvander
 
-from rig.analysis.tracing.rest.binned import Halves, binned, solved
+from rig.analysis.tracing.rest.binned import Halves, added, binned, solved
 from rig.analysis.tracing.rest.joined import Index, Rest
 from rig.model.effect import Array
 
@@ -19,6 +19,7 @@ Reading = Callable[[Rest, Rows], Array]
 
 WAVES = 6  # orders of the motor angle: most of the paper's kinematic error
 DRIFT = 8  # degree: half an oscillation a sixteenth of a campaign
+ROUNDED = 1e-10  # of a column's square: more than what rounding leaves of one that is even within each run
 POWERS = 5  # of an angle gone: a cable's spring, its slack, its end
 
 
@@ -41,17 +42,38 @@ def in_columns(columns: Callable[[Rest], Array]) -> Reading:
         """Coefficients of `rows` (n,), for all."""
         z = columns(r)
         good = np.asarray(np.isfinite(z).all(1))
-        z = np.hstack([r.over_the_floor(np.where(good[:, None], z, 0.0)), r.z])
+        z = r.over_the_floor(z if good.all() else np.where(good[:, None], z, 0.0))
         fitted = rows & good
-        e = r.e
-        if r.own_zeros:
-            z, e = z - means(r, fitted, z), e - means(r, fitted)
-        normal = z[fitted].T @ z[fitted]
-        first = z.shape[1] - r.z.shape[1]
-        normal[first:, first:] += r.known * int(fitted.sum())
-        return np.asarray(z @ solved(normal, z[fitted].T @ e[fitted]))
+        normal, right, mean = _normal(r, z, fitted)
+        k = z.shape[1]
+        normal[k:, k:] += r.known * int(fitted.sum())
+        x = solved(normal, right)
+        return np.asarray(z @ x[:k] + r.z @ x[k:] - (mean @ x)[r.whole.run])
 
     return read
+
+
+def _normal(r: Rest, z: Array, fitted: Rows) -> tuple[Array, Array, Array]:
+    """Of columns `z` (n, k) and the baseline's over the rows `fitted`: normal matrix (k + p, k + p) and right side,
+    about the means of runs where these have zeros of their own; and those means by run (r, k + p). What all rows of the
+    baseline come to is known: those left out are taken off it."""
+    all_of, out = r.whole, np.flatnonzero(~fitted)
+    less = all_of.wide[out]
+    here = np.where(fitted[:, None], z, 0.0)
+    across = here.T @ all_of.wide
+    gram = np.block([[here.T @ here, across], [across.T, all_of.gram - less.T @ less]])
+    runs = all_of.runs.size
+    by_run = np.hstack(
+        [
+            added(all_of.run, runs, np.ones(r.e.size)) @ here,
+            all_of.by_run - added(all_of.run[out], runs, np.ones(out.size)) @ less,
+        ]
+    )
+    mean = by_run / np.maximum(by_run[:, -1:], 1.0) if r.own_zeros else np.zeros_like(by_run)
+    about = gram - mean.T @ by_run
+    p = gram.shape[0] - 2
+    about[np.diag_indices(p)] += ROUNDED * np.diag(gram)[:p]
+    return about[:p, :p], about[:p, p], mean[:, :p]
 
 
 def nothing(r: Rest) -> Array:
@@ -62,9 +84,9 @@ def nothing(r: Rest) -> Array:
 def means(r: Rest, rows: Rows, of: Array | None = None) -> Array:
     """Mean over those `rows` of each run, of the rest (n,) or of columns (n, k), at every row; 0 without any."""
     values = (r.e if of is None else of).reshape(r.e.size, -1)
-    runs, run = np.unique(r.run, return_inverse=True)
-    seen = np.maximum(np.bincount(run[rows], minlength=runs.size), 1)
-    made = [np.bincount(run[rows], column[rows], minlength=runs.size) / seen for column in values.T]
+    run, runs = r.whole.run, r.whole.runs.size
+    seen = np.maximum(np.bincount(run, rows, minlength=runs), 1)
+    made = [np.bincount(run, np.where(rows, column, 0.0), minlength=runs) / seen for column in values.T]
     return np.stack(made, 1)[run].reshape((r.e if of is None else of).shape)
 
 

@@ -194,36 +194,3 @@ def _loudest(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float])
         return rests[first], first
     other = max(left, key=lambda c: left[c])
     return straightened(rests[other]), other
-
-
-def smooth_term(
-    eq: Equations, fitted: Mapping[Key, Array], unseen: Mapping[Key, Array], floors: Mapping[Key, float], found: Home
-) -> dict[Key, Array]:
-    """Held-out residuals without what that coordinate foretells, as read in the fitted runs, and without zeros that are
-    their own beside it."""
-    out = dict(unseen)
-    train, test = rest(eq, fitted, floors, found.channel), rest(eq, unseen, floors, found.channel)
-    if train is None or test is None:
-        return out
-    both = Rest(
-        np.concatenate([train.e, test.e]),
-        np.concatenate([train.run, test.run]),
-        {k: np.concatenate([train.at[k], test.at[k]]) for k in train.at},
-        train.dt,
-        np.concatenate([train.z, test.z]),
-        train.known,
-        found.own_zeros,
-        train.timed,
-        worth=np.concatenate([train.worth, test.worth]),
-        offset=np.concatenate([train.offset, test.offset]),
-    )
-    if found.read is None:
-        return out
-    guess = found.read(both, np.arange(both.e.size) < train.e.size)[train.e.size :]
-    start = 0
-    for key in [k for k in unseen if k[1] == found.channel]:
-        n = unseen[key].size
-        left = unseen[key] - eq.without_local(key, guess[start : start + n]) * floors[key]
-        out[key] = left - np.mean(left) if found.own_zeros else left
-        start += n
-    return out
