@@ -15,6 +15,7 @@ import numpy.typing as npt
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.floor.spectrum import on_even_grid
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
 from rig.analysis.tracing.workers import each
 from rig.core.units import TURN
@@ -121,12 +122,7 @@ def _resonance(eq: Equations) -> float:
 
 def even_grid(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
     """The residual on an even grid (zero where a row is left out), its step [s], and the place of each row."""
-    t = clock(eq, key)
-    dt = float(np.median(np.diff(t)))
-    place = np.round((t - t[0]) / dt).astype(int)
-    even = np.zeros(int(place[-1]) + 1)
-    even[place] = e
-    return even, dt, place
+    return on_even_grid(clock(eq, key), e)
 
 
 def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | None:

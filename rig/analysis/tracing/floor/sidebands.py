@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.floor.local import clock
-from rig.analysis.tracing.floor.spectrum import even, over_usual
+from rig.analysis.tracing.floor.spectrum import on_even_grid, over_usual
 from rig.analysis.tracing.thresholds import LINE
 from rig.model.effect import Array
 from rig.model.effects import EACH_RUN
@@ -50,7 +50,7 @@ def _of_a_run(eq: Equations, key: Key, e: Array, hz: Sequence[float]) -> list[fl
     z = np.hstack([np.ones((e.size, 1)), *(_columns(eq, key[0], one)[key[1]] for one in hz)])
     while len(found) < MOST:
         left = e - z @ np.linalg.lstsq(z, e, rcond=None)[0]
-        grid, heights = over_usual(*even(t, left))
+        grid, heights = over_usual(*on_even_grid(t, left)[:2])
         near = (np.min(np.abs(np.subtract.outer(grid, hz)), axis=1) < NEAR) & ~_of_the_motor(grid, turning, t)
         if not near.any() or heights[near].max() < LINE:
             break

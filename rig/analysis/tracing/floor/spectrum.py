@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.model.effect import Array
 
@@ -10,12 +11,13 @@ ZOOM = 4  # finer than a run's own resolution
 AROUND = 1.5  # Hz on each side make the background
 
 
-def even(t: Array, e: Array) -> tuple[Array, float]:
-    """Rows (n,) at times `t` s on an even grid, 0 where there is none, and its step, s."""
+def on_even_grid(t: Array, e: Array) -> tuple[Array, float, npt.NDArray[np.int64]]:
+    """Rows (n,) at times `t` s on an even grid, 0 where there is none, its step, s, and the place of each row (n,)."""
     dt = float(np.median(np.diff(t)))
-    out = np.zeros(round((t[-1] - t[0]) / dt) + 1)
-    out[np.minimum(np.round((t - t[0]) / dt).astype(int), out.size - 1)] = e
-    return out, dt
+    place = np.minimum(np.round((t - t[0]) / dt).astype(np.int64), round((t[-1] - t[0]) / dt))
+    out = np.zeros(int(place[-1]) + 1)
+    out[place] = e
+    return out, dt, place
 
 
 def over_usual(x: Array, dt: float) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.floor.local import clock, joined
-from rig.analysis.tracing.floor.spectrum import even, over_usual
+from rig.analysis.tracing.floor.spectrum import on_even_grid, over_usual
 from rig.analysis.tracing.thresholds import LINE, LINE_RUNS, LINE_SPEEDS, STRETCHES
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
@@ -132,7 +132,7 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
 
 def _heights(t: Array, e: Array, grid: Array) -> Array:
     """Power at `grid` Hz over what is usual around it."""
-    hz, height = over_usual(*even(t, e))
+    hz, height = over_usual(*on_even_grid(t, e)[:2])
     reach = max(1, round(0.02 / hz[1]))
     best = height.copy()
     for shift in range(1, reach + 1):
