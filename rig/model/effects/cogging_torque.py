@@ -21,6 +21,7 @@ class CoggingTorque(Effect):
     )
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
+    comes_round: ClassVar[bool] = True
     loose: ClassVar[tuple[bool, ...]] = (False,)
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:

@@ -23,6 +23,7 @@ class PositionDependentFriction(Effect):
     )
     source: ClassVar[str] = "tuttle1992"
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
+    comes_round: ClassVar[bool] = True
     loose: ClassVar[tuple[bool, ...]] = (False,)
     ORDERS: Final = (
         1.0,

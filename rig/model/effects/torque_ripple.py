@@ -36,6 +36,7 @@ class TorqueRipple(Effect):
     }
     source: ClassVar[str] = "ghorbel2001"
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction")
+    comes_round: ClassVar[bool] = True
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     MOST: Final = 2.0  # rad/(N·m), of the motor's torque
     REACTS: Final = (*range(1, 13), 18, 24, 30, 36)  # orders large enough for the current to change them

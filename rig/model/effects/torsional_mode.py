@@ -60,6 +60,7 @@ class TorsionalMode(Effect):
     FURTHEST: Final = 1.6  # of the band: a flange shows below its resonance as well
     OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
+    LIGHTEST: Final = 0.1  # of all that turns, what is left on a motor: its rotor at least
     APART: Final = 3.0  # times: how far the two a flange tells its frequency by may differ, as 1/ω² and as a peak
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -174,11 +175,13 @@ class TorsionalMode(Effect):
 
     def plausible(self, fit: Fit) -> bool:
         """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared; a flange
-        slows the load as its frequency says."""
+        slows the load as its frequency says; a motor has a rotor of its own."""
         inertia, *others = fit.coefficients[:2]
         if fit.shape[0] == FLANGE:
             told = fit.coefficients[2] * (2.0 * np.pi * fit.shape[1]) ** 2
             return bool(min(fit.coefficients[:2]) > 0 and 1.0 / self.APART < told < self.APART)
         if fit.shape[0] == HUB:
             return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
+        if fit.shape[0] == MOTOR and fit.known.J_m < self.LIGHTEST * (fit.known.J_m + inertia):
+            return False  # an encoder's lines in a run that turns steadily: nothing accelerates, and J_m is told by them
         return bool(inertia > 0 and all(x > 0 for x in others))

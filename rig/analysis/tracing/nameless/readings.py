@@ -191,7 +191,8 @@ class SensorCurve(OfTheTorqueSensor):
 
 
 class Droop(Nameless):
-    """The torque constant falls with the current: the torque told is c·τ_m·|τ_m| too high      [krause2013]
+    """The torque constant falls with the current: the torque told is c_2·τ_m·|τ_m| + c_3·τ_m³ too high, as iron begins
+    to saturate and as it goes on to      [krause2013]
 
     Under a steady load it is what friction would be that grows with the square of it, but it gives as it takes.
     """
@@ -205,9 +206,13 @@ class Droop(Nameless):
         return when(_is_told(reach))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column in the reading."""
+        """Two columns in the reading."""
         torque = np.nan_to_num(signals.tau_m)
-        return {Port.READS_TAU_M: (torque * np.abs(torque))[:, None]}
+        return {Port.READS_TAU_M: np.stack([torque * np.abs(torque), torque**3], 1)}
+
+    def amount(self, fit: Fit) -> Amount:
+        """At 1 N·m, both together."""
+        return sum_of(fit, "at 1 N·m the torque told is too high by", 1e3, "mN·m")
 
 
 class ConstantDrift(Nameless):

@@ -182,7 +182,7 @@ CONFOUNDERS: Final = {
     "droop": Confounder(
         Droop(),
         "load",
-        "The motor's torque falls short of what is told, with the square of it, forth and back alike: its torque "
+        "The motor's torque falls short of what is told, by more than in proportion, forth and back alike: its torque "
         "constant may droop. No effect of the library explains it.",
         mimics=frozenset({"load_dependent_friction"}),
     ),

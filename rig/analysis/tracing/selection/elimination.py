@@ -16,6 +16,7 @@ from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
 from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN, SHADOW
 from rig.core.quantiles import Z95
+from rig.core.units import TURN
 from rig.model.effect import Parameter, Reach
 
 
@@ -24,7 +25,7 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
     d = unseen(s, at)
     while True:
         scored = scores(s, d, at)
-        failing = [x for x in scored if not _may_stand(x, scored) or not _can_be(s, x.name)]
+        failing = [x for x in scored if not (_may_stand(x, scored) and _can_be(s, x.name) and _comes_round(d, x))]
         if not failing:
             return s, d, scored
         # what spoils a channel spoils the others' sizes with it
@@ -48,6 +49,14 @@ def _in_the_shadow(one: HeldOutScore, scored: Sequence[HeldOutScore]) -> bool:
     channels = {c for _, c in one.ground}
     larger = [x for x in scored if x.size > SHADOW * one.size and channels & {c for _, c in x.ground}]
     return bool(larger) and not one.fairly
+
+
+def _comes_round(d: Design, one: HeldOutScore) -> bool:
+    """Whether a wave of the motor's angle goes through one whole cycle in the runs it acts most in: over the few
+    degrees that a locked motor turns it is any curve, and what a torque constant loses under load goes by its name."""
+    orders = [term.shape[0] for term in d.terms if term.name == one.name and term.effect.comes_round]
+    turns = [float(np.ptp(d.eq.rows[key].theta_m)) / TURN for key in one.ground]
+    return not orders or not turns or max(orders) * max(turns) >= 1.0
 
 
 def _put_right(s: Solution) -> Solution:
