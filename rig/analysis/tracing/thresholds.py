@@ -42,6 +42,7 @@ MOST: Final = 10  # terms: a rig with more effects than that is not explained by
 SMALLEST: Final = 0.35  # of the floor, RMS where it matters most: smaller ones move no error by 6 %
 PLAIN_TO_SEE: Final = 0.7  # the same where the baseline alone is at the floor: half of a floor's variance
 VOUCHED_FOR: Final = 0.5  # the same where repeats tell how much of it chance makes: it moves an error by an eighth
+SEEN: Final = 1.2  # the same of a fitted run that it makes half as loud again, unseen ones following in what they have
 QUIET: Final = 1.1  # RMS over floor: a floor from a dozen repeats is not known better
 REAL: Final = 0.6  # of its own sum of squares an effect must take away on unseen runs; 1 when it is what it says
 UNREAL: Final = 1.4  # the same from above: unseen runs want it a fifth larger than the seen ones did, so it is not that

@@ -183,5 +183,5 @@ class TorsionalMode(Effect):
         if fit.shape[0] == HUB:
             return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
         if fit.shape[0] == MOTOR and fit.known.J_m < self.LIGHTEST * (fit.known.J_m + inertia):
-            return False  # an encoder's lines in a run that turns steadily: nothing accelerates, and J_m is told by them
+            return False  # lines of an encoder in runs that turn steadily: nothing accelerates, and they tell J_m
         return bool(inertia > 0 and all(x > 0 for x in others))

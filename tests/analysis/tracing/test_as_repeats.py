@@ -104,6 +104,22 @@ def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:
     assert not HeldOutScore("load_dependent_friction", 1.2, 1.4, 0.8, 1.0, (), harm=1.2, as_repeats=True).named
 
 
+def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeats_vouch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A drive that warms has cooled down by the time of every run that is held out."""
+    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
+
+    def certain(**said: Any) -> bool:
+        score = HeldOutScore("thermal_friction_drift", 1.2, 0.45, 0.97, 0.9, (), **said)
+        found: Any = SimpleNamespace(scores=[score], solution=None, loud=False)
+        return selected.is_certain(found)
+
+    assert certain(as_repeats=True, seen=3.9)
+    assert not certain(as_repeats=True, seen=0.9)
+    assert not certain(seen=3.9)
+
+
 def test_what_repeats_vouch_for_may_be_smaller_where_nothing_is_above_the_floor(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -12,7 +12,7 @@ import pytest
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.selection import score as held_out_score
 from rig.analysis.tracing.selection.elimination import unresolved
-from rig.analysis.tracing.selection.score import HeldOutScore, overall, unsteadiness
+from rig.analysis.tracing.selection.score import HeldOutScore, Unsteadiness, overall, unsteadiness
 from rig.model.effect import Parameter
 from rig.model.effects.torsional_mode import TorsionalMode
 from tests.contract.test_effects import REACH
@@ -27,7 +27,7 @@ def solved(
     shown: dict[Any, float] | None = None,
     parts: int = 1,
     spoilt: float = 0.0,
-) -> tuple[float, float, int]:
+) -> Unsteadiness:
     """Unsteadiness of an effect of fitted size 1 whose true size in each block is `true` (a number, or row by row), and
     how many show it; `shown`: its RMS there; `spoilt`: RMS of what sensor noise makes of it."""
     f = {k: (shown or {}).get(k, 1.0) * rng.standard_normal(4000) for k in KEYS}
@@ -77,8 +77,8 @@ def test_stretches_of_a_lone_run_tell_what_runs_would(rng: np.random.Generator) 
     """A size that grows along the one run has its mean in it, and another one in every eighth of it."""
     lone = dict.fromkeys(KEYS, 0.0) | {KEYS[0]: 1.0}  # the others hardly show it
     grows = np.linspace(0.0, 2.0, 4000)
-    whole, _, runs = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone)
-    stretched, _, stretches = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone, parts=8)
+    whole, _, runs, _ = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone)
+    stretched, _, stretches, _ = solved(rng, dict.fromkeys(KEYS, grows), 0.1, lone, parts=8)
     assert (whole < 0.1, runs) == (True, 1)
     assert (stretched > 0.5, stretches) == (True, 8)
     assert solved(rng, dict.fromkeys(KEYS, 1.0), 0.1, lone, parts=8)[0] < 0.02

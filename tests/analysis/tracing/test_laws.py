@@ -497,6 +497,13 @@ def test_a_resonance_is_one_whose_frequency_is_known(half: float, is_one: bool) 
     assert TorsionalMode().is_scaled(found, REACH) == is_one
 
 
+@pytest.mark.parametrize(("inertia", "is_one"), [(0.5, True), (5.0, True), (40.0, False)])
+def test_a_motor_keeps_a_rotor_of_its_own_beside_what_hangs_on_it(inertia: float, is_one: bool) -> None:
+    """In times of what is left of J_m; lines of an encoder had made forty of it."""
+    on_the_motor = Fit(np.array([inertia * KNOWN.J_m]), (1.0, 60.0, 0.03, 0.0), np.eye(5) * 1e-12, KNOWN, N)
+    assert TorsionalMode().plausible(on_the_motor) is is_one
+
+
 def test_orders_of_a_modulated_spring_together_are_those_of_each_alone() -> None:
     s, effect = motion(), AngleDependentStiffness()
     together = effect.columns(s, (TOGETHER, 1.0, MOTOR))

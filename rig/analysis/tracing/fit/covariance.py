@@ -12,6 +12,8 @@ from rig.core.quantiles import Z95
 from rig.model.effect import Array
 
 PIECES = 4  # of a run and channel: each many correlation times long
+CORRECTED = 2.0  # times a variance, at most, for coefficients that took on some of it: in half a dozen runs there are
+# as many of them as clusters, each of thousands of rows, and next to nothing would be known
 FEW = 12  # runs: with fewer their pieces are left out instead, each many correlation times long
 FREEDOM = 2.0  # degrees, and no fewer: of one run alone the runs say nothing
 LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be told by the others
@@ -57,7 +59,7 @@ def scatter(s: Solution) -> Array:
             meat[np.ix_(at, at)] += np.outer(u, u)
             clusters += 1
     bread = inverse(s.gram)
-    return np.asarray(bread @ meat @ bread * clusters / max(1, clusters - d.size))
+    return np.asarray(bread @ meat @ bread * min(clusters / max(1, clusters - d.size), CORRECTED))
 
 
 def _part(n: int, i: int, of: int) -> slice:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,7 +48,8 @@ class HeldOutScore:
     same within the channel where it is worst. `harm` is by how much the worst channel is worse with it, `anywhere` the
     largest ratio that remains in a channel in which it acts at all, `overall` its RMS over the floor over all runs of
     the channel it does most in. `runs` fitted ones show it, or so many stretches of a lone one, between which its size
-    differs by `stretched`. `as_repeats`: runs want sizes that differ by no more than those of repeats do."""
+    differs by `stretched`. `as_repeats`: runs want sizes that differ by no more than those of repeats do. `seen` is its
+    RMS over the floor in the fitted run that has most of it."""
 
     name: str
     share: float
@@ -63,6 +65,7 @@ class HeldOutScore:
     runs: int = SEVERAL
     stretched: float = 0.0
     as_repeats: bool = False
+    seen: float = 0.0
 
     @property
     def named(self) -> bool:
@@ -129,9 +132,9 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
     own = sum(size[key] ** 2 * whole[key].size for key in ground)
     true = float((before - after) / own)
     held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
-    unsteady, apart = max(held[0], seen[0]), max(held[1], seen[1])
+    unsteady, apart = max(held.whole, seen.whole), max(held.apart, seen.apart)
     alone = len({run for run, _ in s.design.y}) < SEVERAL
-    stretched, shown = _in_stretches(s, rest, at.seen) if alone else (0.0, seen[2])
+    stretched, shown = _in_stretches(s, rest, at.seen) if alone else (0.0, seen.shown)
     # at reversals stands what no effect that acts while the motor turns can be held to
     acts = [[k for k in size if k[1] == c] for c in CHANNELS if c != "R" or {"R"} == {k[1] for k in size}]
     return HeldOutScore(
@@ -149,6 +152,7 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         shown,
         stretched,
         (at.calm or not at.loud(whole, MISSING)) and as_repeats(s, rest, d, at),
+        seen.most,
     )
 
 
@@ -166,8 +170,8 @@ def overall(work: Mapping[Key, float], d: Design) -> float:
 def _in_stretches(s: Solution, rest: Solution, floors: Mapping[Key, float]) -> tuple[float, int]:
     """How much the size differs from stretch to stretch of one or two fitted runs, and how many show it: in one long
     log they are what several runs would be. Of all channels together: what is left in another one wanders."""
-    unsteady, _, shown = unsteadiness(s, rest, s.design, floors, STRETCHES)
-    return unsteady, shown
+    found = unsteadiness(s, rest, s.design, floors, STRETCHES)
+    return found.whole, found.shown
 
 
 def harm(at: HeldOut, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> float:
@@ -181,19 +185,27 @@ def harm(at: HeldOut, bare: Mapping[Key, Array], whole: Mapping[Key, Array]) -> 
     return max(found)
 
 
-def unsteadiness(
-    s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int = 1
-) -> tuple[float, float, int]:
-    """How much an effect's size differs from run to run: RMS, relative, weighted by what it does there, what noise
-    makes of it taken off; over all channels, and in the worst of those it does a fair part of its work in. And how many
-    runs show it plainly. `rest` is the fit without the effect. With `parts`, of stretches of each run instead.
+class Unsteadiness(NamedTuple):
+    """RMS, relative, weighted by what an effect does in a run, what noise makes of it taken off: over all channels, and
+    in the worst of those it does a fair part of its work in. How many runs show it plainly, and its RMS over the floor
+    in the one that has most of it."""
+
+    whole: float
+    apart: float
+    shown: int
+    most: float
+
+
+def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int = 1) -> Unsteadiness:
+    """How much an effect's size differs from run to run. `rest` is the fit without the effect. With `parts`, of
+    stretches of each run instead.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
     like an effect has its size from a compromise between runs; a real one has the same in each. Sensor noise is in
     both, and is taken off: one reading's noise in f and in e says nothing of a size.
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
-    shown = set()
+    shown, most = set(), 0.0
     noise = noise_in(s, rest)
     for key, part, f, e in done(s, rest, d, floors, parts):
         square, along = (e.size / floors[key] ** 2 * x for x in noise(key))
@@ -204,9 +216,10 @@ def unsteadiness(
             work[key[1]] += own
         if own > SMALLEST**2 * e.size:
             shown.add((key[0], part))
+            most = max(most, float(np.sqrt(own / e.size)))
     total = sum(work.values())
     fair = [c for c in CHANNELS if total and work[c] > FAIR * total]
     apart = max((np.sqrt(max(spread[c], 0.0) / work[c]) for c in fair), default=0.0)
     # a channel it hardly shows in says nothing of it: what is left there is something else's
     whole = np.sqrt(max(sum(spread[c] for c in fair), 0.0) / max(sum(work[c] for c in fair), 1e-300))
-    return float(whole), float(apart), len(shown)
+    return Unsteadiness(float(whole), float(apart), len(shown), most)

@@ -36,6 +36,7 @@ from rig.analysis.tracing.thresholds import (
     NAMED,
     PLAIN_TO_SEE,
     QUIET,
+    SEEN,
     VOUCHED_FOR,
 )
 from rig.model.effect import Array, Parameter, Reach
@@ -170,7 +171,8 @@ def is_certain(selected: Selected) -> bool:
 
 
 def _is_plain_to_see(score: HeldOutScore) -> bool:
-    return score.fairly and score.size > (VOUCHED_FOR if score.as_repeats else PLAIN_TO_SEE)
+    vouched = score.as_repeats and (score.size > VOUCHED_FOR or score.seen > SEEN)
+    return score.fairly and (score.size > PLAIN_TO_SEE or vouched)
 
 
 def is_calm(p: Prepared) -> bool:
