@@ -23,6 +23,7 @@ class NonlinearStiffness(Effect):
     name: ClassVar[str] = "nonlinear_stiffness"
     in_short: ClassVar[str] = "soft wind-up, cubic or piecewise K1/K2/K3"
     glosses: ClassVar[Mapping[str, str]] = {
+        "extra_compliance": "c, by how much the spring gives more below about T_0",
         "K_near_zero": "K near zero torque",
         "T_0": "torque about which the spring gets as stiff as K",
         "k_3": "cubic part of the spring T = K·φ + k_3·φ³",
@@ -55,15 +56,16 @@ class NonlinearStiffness(Effect):
         return {Port.WIND_UP: (np.sign(signals.torque) * more)[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Stiffness near zero and at high torque, and where it changes; k_3 of a cubic spring."""
+        """Its size, the extra compliance; stiffness near zero and where it changes; k_3 of a cubic spring."""
         if fit.shape[0] == CUBIC:
             return (self._k_3(fit),)
         c, high = fit.coefficients[0], fit.known.K
         near = 1.0 / (1.0 / high + c)
         by_c, by_t = np.zeros(fit.covariance.shape[0]), np.zeros(fit.covariance.shape[0])
-        by_c[0], by_t[-1] = -(near**2), 1.0
+        by_c[0], by_t[-1] = 1.0, 1.0
         return (
-            parameter("K_near_zero", near, fit.half_width(by_c), "N·m/rad"),
+            parameter("extra_compliance", c, fit.half_width(by_c), "rad/(N·m)"),
+            parameter("K_near_zero", near, near**2 * fit.half_width(by_c), "N·m/rad"),
             parameter("T_0", fit.shape[1], fit.half_width(by_t), "N·m"),
         )
 

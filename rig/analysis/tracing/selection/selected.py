@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.leaning import carrying
@@ -116,7 +118,7 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     be any beside an unknown rest, unless something is left to explain that is not with them. Of two that stand in for
     each other either may be the one that can go: the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
-    most = max((score.overall for score in selected.scores), default=0.0)
+    most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
     vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
     insignificant = [
         score
