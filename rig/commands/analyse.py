@@ -46,6 +46,7 @@ def run(args: argparse.Namespace) -> int:
     limits = limits_of(args.limits)
 
     def analyse_one(folder: Path) -> Exit:
+        """One of them, by the limits that are made for it."""
         mine = limits_for(folder, limits)
         if len(folders) == 1:  # nothing else it could be meant for
             refuse_not_given(procedure_in(folder), {n: x for n, x in limits.items() if x is not None})

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from rig.catalogue.compare import Comparison, Difference, Line, Mark, compare
 from rig.catalogue.figures import Figure
 from rig.catalogue.row import Row
 from rig.catalogue.sameness import point, words
-from rig.commands.list_ import say
-from rig.runfile.writing import writing
+from rig.commands.told import tell
 
 SHOWN = {
     Mark.CHANGED: "CHANGED, more than reproducibility ({limit})",
@@ -35,20 +33,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Tables on stdout, or JSON; and the page."""
-    found = compare(args.runs, args.among)
-    if args.json:
-        print(json.dumps(found.as_json(), allow_nan=False, indent=1))
-    else:
-        for line in lines(found):
-            say(line)
-    if args.html is not None:
-        from rig.report.comparison.page import write
+    return tell(compare(args.runs, args.among), args, lines, _page)
 
-        with writing(args.html, "--html"):
-            write(args.html, found)
-        if not args.json:
-            print(f"page {args.html}")
-    return 0
+
+def _page(path: Path, found: Comparison) -> None:
+    from rig.report.comparison.page import write
+
+    write(path, found)
 
 
 def lines(found: Comparison) -> list[str]:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from rig.catalogue.figures import WORDS
 from rig.catalogue.trend import Series, Spot, Trend, trend
-from rig.commands.list_ import say
-from rig.runfile.writing import writing
+from rig.commands.told import tell
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,20 +21,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """A table per gear, procedure and operating point, or JSON; and the page."""
-    found = trend(args.root, args.figure, args.gear)
-    if args.json:
-        print(json.dumps(found.as_json(), allow_nan=False, indent=1))
-    else:
-        for line in lines(found):
-            say(line)
-    if args.html is not None:
-        from rig.report.comparison.trend_page import write
+    return tell(trend(args.root, args.figure, args.gear), args, lines, _page)
 
-        with writing(args.html, "--html"):
-            write(args.html, found)
-        if not args.json:
-            print(f"page {args.html}")
-    return 0
+
+def _page(path: Path, found: Trend) -> None:
+    from rig.report.comparison.trend_page import write
+
+    write(path, found)
 
 
 def lines(found: Trend) -> list[str]:

@@ -88,12 +88,7 @@ def report(
         before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.held_out, final), simulated, 1),
         next_run=conclusion.next_run,
-        notes=(
-            *unlike_declared(refitted, fitted_runs),
-            *_notes(p, named, one_way),
-            *_of_torques(ripple, drift),
-            *p.campaign.notes,
-        ),
+        notes=(*unlike_declared(refitted, fitted_runs), *_notes(p, named, one_way, ripple, drift)),
         ripple=ripple,
         mean_drift=drift,
         curve=curve,
@@ -105,14 +100,13 @@ def report(
     )
 
 
-def _notes(p: Prepared, named: Sequence[str], one_way: str) -> list[str]:
-    """What goes with the effects that are named."""
+def _notes(
+    p: Prepared, named: Sequence[str], one_way: str, ripple: Sequence[Ripple], drift: Sequence[MeanDrift]
+) -> list[str]:
+    """What goes with the effects that are named, with torques by order and by day, and with the campaign."""
     mine = [p.own.notes[name] for name in named if name in p.own.notes]
-    return [*beside_the_numbers(named), *mine, *([one_way] if one_way else [])]
-
-
-def _of_torques(ripple: Sequence[Ripple], drift: Sequence[MeanDrift]) -> list[str]:
-    return [*(r.sentence() for r in ripple), *(mean.sentence() for mean in drift)]
+    torques = [*(r.sentence() for r in ripple), *(mean.sentence() for mean in drift)]
+    return [*beside_the_numbers(named), *mine, *([one_way] if one_way else []), *torques, *p.campaign.notes]
 
 
 def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:
