@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.verdict import _beside_a_law as beside_a_law
 from rig.analysis.tracing.selection.verdict import _confounded as confounded
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import _share as share
@@ -89,3 +90,14 @@ def test_a_torque_in_one_way_only_is_no_weight_beside_a_friction() -> None:
     assert named.verdict.effects == ("cogging_torque",)
     other = confounded(CONFOUNDERS["oval_pulley"], ("gravity_unbalance",))
     assert other.verdict.effects == ("gravity_unbalance",)
+
+
+@pytest.mark.parametrize(("own", "stand"), [
+    (("external_vibration",), ("external_vibration", "hysteretic_stiffness")), ((), ("hysteretic_stiffness",)),
+])  # fmt: skip
+def test_a_vibration_of_all_runs_stands_beside_a_law_that_leaves_nothing(
+    own: tuple[str, ...], stand: tuple[str, ...]
+) -> None:
+    """It has no score on unseen runs, for every run has its own phase of it."""
+    names = ("external_vibration", CLEAN.name, PLAIN.name)
+    assert beside_a_law("load", names, [CLEAN, PLAIN], {PLAIN.name}, own) == stand

@@ -59,8 +59,9 @@ def decide(
     loud = p.held_out.loud(after, one, bool(names)) or line is not None
     plain = {score.name for score in scores if score.plain}
     if confounders := [confounder for confounder in confounders_in(s) if not loud or confounder.effect.name in plain]:
-        # what such a law has wrong of its form is chased by names as well: those alone stand that are plain to see
-        return _confounded(confounders[0], _standing(confounders[0].coordinate, names, scores, plain, told=False))
+        own = () if loud else p.own.made.keys()
+        stand = _beside_a_law(confounders[0].coordinate, names, scores, plain, own)
+        return _confounded(confounders[0], stand)
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         inside = None if names else hidden(p, s, after, floors)
@@ -156,6 +157,16 @@ def _standing(
     sure = {score.name for score in scores if score.whatever_the_floor}
     clean = _beside(coordinate, [name for name in names if (name not in amiss if told else name in sure)])
     return tuple(name for name in names if name in plain or name in clean)
+
+
+def _beside_a_law(
+    coordinate: str, names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str], own: Collection[str]
+) -> tuple[str, ...]:
+    """Names that stand beside a law without one: what such a law has wrong of its form is chased by names as well, so
+    that those alone stand that are plain to see; and what runs have each of its `own`, where nothing is left that it
+    might have taken on."""
+    stand = _standing(coordinate, names, scores, plain, told=False)
+    return tuple(name for name in names if name in stand or name in own)
 
 
 def _of_the_same_order(s: Solution, rest: Home) -> set[str]:
