@@ -55,8 +55,9 @@ def _comes_round(d: Design, one: HeldOutScore) -> bool:
     """Whether a wave of the motor's angle goes through one whole cycle in the runs it acts most in: over the few
     degrees that a locked motor turns it is any curve, and what a torque constant loses under load goes by its name."""
     orders = [term.shape[0] for term in d.terms if term.name == one.name and term.effect.comes_round]
-    turns = [float(np.ptp(d.eq.rows[key].theta_m)) / TURN for key in one.ground]
-    return not orders or not turns or max(orders) * max(turns) >= 1.0
+    turned = [float(np.ptp(d.eq.rows[key].theta_m)) for key in one.ground]
+    known = [angle / TURN for angle in turned if np.isfinite(angle)]
+    return not orders or not known or max(orders) * max(known) >= 1.0
 
 
 def _put_right(s: Solution) -> Solution:
