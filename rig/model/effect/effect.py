@@ -33,6 +33,7 @@ class Effect(ABC):
     backbone: ClassVar[bool] = False  # a loop in torque against wind-up has a mean curve that looks like it
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
     comes_round: ClassVar[bool] = False  # a wave of the motor's angle, the order of which is its first shape parameter
+    of_reading: ClassVar[str] = ""  # the torque it is a function of, and whose reading it corrects: tau_m or torque
     each_run: ClassVar[bool] = False  # every run has coefficients of its own: a phase, an instant
     modes_apart: ClassVar[float] = np.inf  # of its first loose shape parameter: so much higher, a term is another mode
     loose: ClassVar[tuple[bool, ...]] = ()  # which shape parameters a refit may move; the others are chosen, not fitted

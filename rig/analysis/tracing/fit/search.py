@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS
 from rig.analysis.tracing.fit.equations import Key, Term
 from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, without
+from rig.analysis.tracing.fit.own_reading import leaves_most
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
 from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
@@ -181,7 +182,9 @@ def _worth(s: Solution) -> float:
 
 def possible(s: Solution, term: Term, coefficients: Array) -> bool:
     """Whether signs and sizes are such an effect's."""
-    return term.effect.plausible(as_fit(s, term, coefficients))
+    if not term.effect.plausible(as_fit(s, term, coefficients)):
+        return False
+    return leaves_most(s.design.eq, sorted({run for run, _ in s.design.y}), term, coefficients)
 
 
 def as_fit(s: Solution, term: Term, coefficients: Array) -> Fit:

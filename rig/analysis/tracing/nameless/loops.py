@@ -78,6 +78,7 @@ class SensorLoop(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_loop"
     in_short: ClassVar[str] = "the torque sensor has hysteresis"
     source: ClassVar[str] = "kuhnen2003"
+    of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     remembers: ClassVar[bool] = True
     WIDTHS: Final = (0.5, 1.5, 4.0, 10.0, 25.0)  # N·m, half: from the swing of a slow run to that of a lock test

@@ -73,6 +73,7 @@ class SensorGainDrift(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_gain_drift"
     in_short: ClassVar[str] = "the torque sensor's gain changes through the campaign"
     source: ClassVar[str] = "taghirad1999"
+    of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t", "tau_l"}
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -97,6 +98,7 @@ class SensorScale(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_scale"
     in_short: ClassVar[str] = "the scale of the torque sensor is off"
     source: ClassVar[str] = "taghirad1999"
+    of_reading: ClassVar[str] = "torque"
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where different weights tell."""
@@ -121,6 +123,7 @@ class TwoGains(OfTheTorqueSensor):
     name: ClassVar[str] = "two_gains"
     in_short: ClassVar[str] = "the torque sensor has two gains"
     source: ClassVar[str] = "taghirad1999"
+    of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     AT: Final = 50.0  # N·m, for columns of one size
 
@@ -147,6 +150,7 @@ class SensorJump(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_jump"
     in_short: ClassVar[str] = "the torque sensor jumps where the torque turns round"
     source: ClassVar[str] = "taghirad1999"
+    of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     TURN: Final = 1.0  # N·m: within what runs without load swing by
 
@@ -173,6 +177,7 @@ class SensorCurve(OfTheTorqueSensor):
     name: ClassVar[str] = "sensor_curve"
     in_short: ClassVar[str] = "the torque sensor is not linear"
     source: ClassVar[str] = "taghirad1999"
+    of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l", "tau_m"}
     AT: Final = 50.0  # N·m, for columns of one size
 
@@ -200,6 +205,7 @@ class Droop(Nameless):
     name: ClassVar[str] = "droop"
     in_short: ClassVar[str] = "the torque constant falls with the current"
     source: ClassVar[str] = "krause2013"
+    of_reading: ClassVar[str] = "tau_m"
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where something else tells the torque."""
@@ -222,6 +228,7 @@ class ConstantDrift(Nameless):
     name: ClassVar[str] = "constant_drift"
     in_short: ClassVar[str] = "the torque constant changes through the campaign"
     source: ClassVar[str] = "krause2013"
+    of_reading: ClassVar[str] = "tau_m"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -243,6 +250,7 @@ class TwoConstants(Nameless):
     name: ClassVar[str] = "two_constants"
     in_short: ClassVar[str] = "the motor has two torque constants"
     source: ClassVar[str] = "krause2013"
+    of_reading: ClassVar[str] = "tau_m"
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs, and something else tells it."""

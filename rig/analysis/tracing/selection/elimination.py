@@ -10,7 +10,7 @@ from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
-from rig.analysis.tracing.fit.search import ROUNDS, as_fit, reduced
+from rig.analysis.tracing.fit.search import ROUNDS, as_fit, possible, reduced
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
@@ -75,9 +75,9 @@ def _can_be(s: Solution, name: str) -> bool:
     """Whether the terms of an effect have the signs and sizes such an effect can have, now that all are fitted; where
     they make one sum, whether that has."""
     d = s.design
-    fits = [(t, as_fit(s, t, s.x[d.place(i)])) for i, t in enumerate(d.terms) if t.name == name]
-    sums = [p.value for t, f in fits for p in t.effect.parameters(f) if p.name in t.effect.adds]
-    return sum(sums) > 0 if len(fits) > 1 and sums else all(t.effect.plausible(f) for t, f in fits)
+    found = [(t, s.x[d.place(i)]) for i, t in enumerate(d.terms) if t.name == name]
+    sums = [p.value for t, c in found for p in t.effect.parameters(as_fit(s, t, c)) if p.name in t.effect.adds]
+    return sum(sums) > 0 if len(found) > 1 and sums else all(possible(s, t, c) for t, c in found)
 
 
 def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: Reach) -> list[str]:
