@@ -17,10 +17,11 @@ from rig.campaign.planner import Campaign
 from rig.core.errors import HdrigError, NotReady, RecorderError, UsageError
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble, Rigging
 from rig.runfile.manifest import contents, parse, sync_folder, told, utc_now, write_atomic
-from rig.runfile.process import is_being_made, this_process
+from rig.runfile.process import is_being_made, sole_writer, this_process
 
 NAME = "campaign.json"
 SCHEMA = "hdrig.campaign/1"
+PATIENCE = 5.0  # s for another one that is about to go on with the same campaign to say so
 SETTLED = ("done", "skipped")  # statuses a resumed campaign leaves alone
 KINDS: dict[str, type[Change]] = {k.__name__: k for k in (HangWeight, LockOutput, FreeOutput, Reassemble)}
 
@@ -128,14 +129,16 @@ class Journal:
             self.close(status, sentence)
 
     def reopen(self) -> None:
-        """Go on with it in this process. Raises NotReady while another one does, and when it cannot be written."""
-        if is_being_made(self.book):
-            pid = self.book["process"]["pid"]
-            raise NotReady(f"{self.folder} is being made by process {pid}; stop that first")
-        self.book |= {"status": "running", "sentence": "", "process": this_process()}
-        self._before = self.book["rig_time_s"]
-        self.book["sessions"].append(utc_now())
-        self._save(NotReady)
+        """Go on with it in this process, from where it stands by now. Raises NotReady while another one does, and when
+        it cannot be written."""
+        with told(NotReady, f"{self.folder} cannot be opened"), sole_writer(self.folder, PATIENCE):
+            now = read_journal(self.folder).book  # two may have read it before either went on
+            if is_being_made(now):
+                raise NotReady(f"{self.folder} is being made by process {now['process']['pid']}; stop that first")
+            self.book |= now | {"status": "running", "sentence": "", "process": this_process()}
+            self._before = self.book["rig_time_s"]
+            self.book["sessions"].append(utc_now())
+            self._save(NotReady)
 
     def _save(self, kind: type[HdrigError] = RecorderError) -> None:
         data = json.dumps(self.book, indent=1, ensure_ascii=False).encode(errors="replace") + b"\n"

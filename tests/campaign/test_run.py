@@ -211,6 +211,16 @@ def test_a_campaign_that_is_being_made_is_not_taken_up_by_another_process(tmp_pa
         take_up(read_journal(journal.folder))
 
 
+def test_of_two_that_read_a_stopped_campaign_one_alone_goes_on_with_it(tmp_path: Path) -> None:
+    stopped = new_journal(tmp_path, campaign(REST), "virtual", [])
+    stopped.close("stopped", "stopped by the operator")
+    first, second = read_journal(stopped.folder), read_journal(stopped.folder)
+    take_up(first)
+    with pytest.raises(NotReady, match="is being made by process"):
+        take_up(second)
+    assert len(read_journal(stopped.folder).book["sessions"]) == 2
+
+
 def test_a_folder_that_is_no_campaign_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is not a campaign folder"):
         read_journal(tmp_path)

@@ -16,7 +16,7 @@ DEGREES: Final = 360 / TURN
 STEP: Final = 2e-3  # relative, of a step that is a count in degrees: 57 counts are 5e-3 off
 SPEED: Final = 0.05  # the same of a speed: one held by a constant torque is a few per cent off
 UNLIKE: Final = 0.1  # how far the ratio must be from 57.3 before a speed says anything: it might be the output's
-FASTEST: Final = 20_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000
+FASTEST: Final = 15_000.0  # rpm of the motor, mean: strain-wave gears end at 14 000, and 300 rpm in degrees are 17 000
 ROWS: Final = 200_000  # looked at, those first: a unit is the same all along, and a run may have a day of rows
 
 
