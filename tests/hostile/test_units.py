@@ -49,7 +49,7 @@ def longer(c: Columns) -> Columns:
             "θ_m moves in steps of 0.005493 rad, 57.3 times the declared count of 9.59e-05 rad",
         ),
         (degrees, {"conditions": {"speed_rpm": 75.6}}, "57.3 times the declared speed_rpm 75.6"),
-        (lambda c: degrees(longer(c)), {}, "the motor turns at 2.166e+04 rpm, expected below 20000 rpm"),
+        (lambda c: degrees(longer(c)), {}, "the motor turns at 2.166e+04 rpm, expected below 15000 rpm"),
         (times("theta_m", 180 / np.pi), {}, "θ_m seems to be in degrees, expected rad"),
         (times("theta_l", 180 / np.pi), {}, "θ_l seems to be in degrees, expected rad"),
         (times("theta_l", -1.0), {}, "θ_l goes -1 of θ_m/50, expected 1: one of the angles has the other sign"),
