@@ -13,6 +13,7 @@ from rig.analysis.tracing.rest.bursts import burst, loudest_burst
 
 RATE = 120.0  # rows per second
 KEY = (0, "M")
+STEP = 6.3e-4  # rad, of a motor encoder of 10 000 counts
 
 
 @pytest.fixture
@@ -20,7 +21,7 @@ def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Equations of runs whose clocks are given by `times`."""
     times: dict[Any, np.ndarray] = {}
     monkeypatch.setattr(bursts, "clock", lambda eq, key: times[key])
-    return SimpleNamespace(times=times)
+    return SimpleNamespace(times=times, runs=[SimpleNamespace(ratio=50.0, step_m=STEP, step_l=0.0)] * 3)
 
 
 def noise(eq: Any, rng: np.random.Generator, seconds: float, key: tuple[int, str] = KEY) -> np.ndarray:
@@ -53,6 +54,16 @@ def test_of_a_short_run_nothing_is_known(eq: Any, rng: np.random.Generator) -> N
     e = noise(eq, rng, 5.0)
     e[120:240] *= 20.0
     assert burst(eq, KEY, e) is None
+
+
+@pytest.mark.parametrize(("counts", "told"), [(0.4, False), (1.5, True)])
+def test_a_coarse_encoder_that_rests_between_two_counts_is_no_burst(
+    eq: Any, rng: np.random.Generator, counts: float, told: bool
+) -> None:
+    key = (0, "A")
+    e = 1e-3 * noise(eq, rng, 30.0, key) / 2  # 1 µrad
+    e[int(9 * RATE) : int(12 * RATE)] += counts * STEP / 50
+    assert (burst(eq, key, e) is not None) is told
 
 
 def test_reversals_are_left_out_and_the_loudest_is_told(eq: Any, rng: np.random.Generator) -> None:

@@ -45,10 +45,16 @@ def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
         return None
     usual = float(np.median(levels))
     over = float(np.sqrt(np.mean(e**2))) / max(usual, 1e-300)
-    loud = np.flatnonzero(levels > BURST * usual)
+    loud = np.flatnonzero(levels > max(BURST * usual, _rounded(eq, key)))
     if over < BURST_RUN or not loud.size:
         return None
     return Burst(key, float(t[loud[0]]), float(t[loud[-1]]) + LENGTH, over)
+
+
+def _rounded(eq: Equations, key: Key) -> float:
+    """What a reading at rest may be off by, rad: half a count of both encoders stays as long as nothing turns."""
+    run, channel = eq.runs[key[0]], key[1]
+    return 0.5 * (run.step_m / run.ratio + run.step_l) if channel == "A" else 0.0
 
 
 def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array]:
