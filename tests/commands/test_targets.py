@@ -72,6 +72,16 @@ def test_an_empty_path_is_refused_and_never_the_folder_one_is_in(
     assert "an empty path, as of a shell variable that is not set; expected a name" in capsys.readouterr().err
 
 
+def test_a_gear_file_for_a_folder_that_is_not_there_is_not_worked_for(
+    run: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["identify", run, "-o", str(tmp_path / "nope" / "gear.toml")]) == Exit.USAGE
+    said = capsys.readouterr()
+    assert f"there is no folder {tmp_path / 'nope'}; name another place with -o" in said.err
+    assert said.out == ""
+    assert "identify:" not in said.err  # nothing was thought about
+
+
 @pytest.mark.parametrize("verb", [["tune"], ["devices", "--channel", "can0"]])
 def test_a_bench_file_that_could_not_be_written_is_not_worked_for(
     verb: list[str], capsys: pytest.CaptureFixture[str]
