@@ -118,6 +118,7 @@ def motion_of(run: Source) -> Motion | None:
     if theta_m is None:
         return None
     t, flags = run.column("t"), run.column("flags")
+    theta_m = _once(theta_m, theta_l, t, notes)
     theta_m, theta_l = _taken_anew(theta_m, theta_l, float(run.ratio), t, notes)
     rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
     if rows is not None:
@@ -131,6 +132,28 @@ def motion_of(run: Source) -> Motion | None:
     notes += gaps.words
     breaks = tuple(sorted({*breaks, *gaps.before.tolist()}))
     return Motion(float(run.ratio), theta_m, theta_l, t, rows, breaks, tuple(notes))
+
+
+def _once(theta_m: Array, theta_l: Array | None, t: Array | None, notes: list[str]) -> Array:
+    """The motor's angle [rad], (n,), missing in rows that are the one before once more, time and all."""
+    if t is None:
+        return theta_m
+    columns = [t, theta_m] if theta_l is None else [t, theta_m, theta_l]
+    again = np.concatenate([_as_before(columns, some) for some in stretches(theta_m.size)] or [np.zeros(0, np.int64)])
+    if not again.size:
+        return theta_m
+    notes.append(f"{again.size} of {theta_m.size} rows have time and angles of the row before: taken once.")
+    out = room(theta_m.size)
+    out[:] = theta_m
+    out[again] = np.nan
+    return out
+
+
+def _as_before(columns: Sequence[Array], some: slice) -> Rows:
+    """Rows of that stretch in which no column differs from the row before."""
+    start = max(some.start - 1, 0)
+    same = np.all([np.diff(column[start : some.stop]) == 0 for column in columns], axis=0)
+    return np.asarray(np.flatnonzero(same) + start + 1)
 
 
 def _taken_anew(
