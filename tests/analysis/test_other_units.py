@@ -48,5 +48,5 @@ def test_the_unit_of_an_angle_is_told_by_its_step_by_the_declared_speed_and_by_w
     assert "57.3 times the declared count" in (replace(right, step=COUNT * DEGREES).in_degrees or "")
     coarse = replace(right, step=0.0)
     assert "57.3 times the declared speed_rpm" in (replace(coarse, rpm=300.0 * DEGREES).in_degrees or "")
-    assert "expected below 20000 rpm" in (replace(coarse, said_rpm=0.0, rpm=22_918.0).in_degrees or "")
+    assert "expected below 15000 rpm" in (replace(coarse, said_rpm=0.0, rpm=22_918.0).in_degrees or "")
     assert replace(coarse, rpm=None).in_degrees is None
