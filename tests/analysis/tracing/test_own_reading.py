@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.own_reading import OF_IT, leaves_most
+from rig.analysis.tracing.fit.own_reading import TAKEN, leaves_most
 from rig.analysis.tracing.nameless.readings import Droop, SensorScale
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.model.effect import Port
@@ -38,7 +38,7 @@ def test_a_constant_that_droops_leaves_most_of_the_torque_and_of_its_changes(
 
 
 def test_a_scale_that_is_off_by_all_of_it_is_none(rng: np.random.Generator) -> None:
-    for off, leaves in ((OF_IT / 2, True), (1.0, False)):
+    for off, leaves in ((0.9 * TAKEN, True), (1.0, False)):
         assert leaves_most(equations(rng), [0], Term(SensorScale(), ()), np.array([off])) is leaves
 
 

@@ -14,8 +14,9 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Term
 from rig.model.effect import Array, Port, Signals
 
-OF_IT: Final = 0.1  # of the reading, RMS: iron that saturates takes as much, sensors are off by less
-OF_ITS_CHANGES: Final = 0.3  # of what it changes by within a run: a part that goes with its cube changes thrice as fast
+# of the reading, and of what it changes by within a run, RMS: a scale may be off by so much, and a part that goes with
+# the square or the cube of a torque changes two and three times as fast as it grows
+TAKEN: Final = 0.3
 READ_AT: Final = {"tau_m": Port.READS_TAU_M, "torque": Port.READS_TAU_L}
 
 
@@ -28,7 +29,7 @@ def leaves_most(eq: Equations, runs: Sequence[int], term: Term, coefficients: Ar
         grams, squares = _sums(piece, term)
         taken += np.einsum("i,nij,j->n", coefficients, grams, coefficients)
         whole += squares
-    return bool(np.all(taken <= np.array([OF_IT, OF_ITS_CHANGES]) ** 2 * whole))
+    return bool(np.all(taken <= TAKEN**2 * whole))
 
 
 def _sums(piece: Signals, term: Term) -> tuple[Array, Array]:
