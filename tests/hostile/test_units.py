@@ -78,6 +78,21 @@ def test_one_run_in_degrees_is_left_out_by_name(tmp_path: Path) -> None:
     assert any(note.startswith("odd was left out: the motor turns at") for note in found.notes)
 
 
+def test_slow_runs_of_the_encoder_of_a_fast_one_in_degrees_are_in_degrees_too(tmp_path: Path) -> None:
+    campaign(tmp_path, lambda c: degrees(counted(c)), 3)
+    assert len(read_campaign(tmp_path).runs) == 3, "by themselves they may turn as slowly as they say"
+    campaign(tmp_path / "more", lambda c: degrees(counted(longer(c))), 1)
+    shutil.move(tmp_path / "more" / "run-0", tmp_path / "fast")
+    with pytest.raises(UsageError, match="in 4 of 4 runs that turn .*its angle seems to be in degrees"):
+        read_campaign(tmp_path)
+
+
+@pytest.mark.parametrize("factor", [1e6, 1e-5], ids=["microseconds", "days"])
+def test_a_time_in_another_unit_is_refused_and_not_left_unused(tmp_path: Path, factor: float) -> None:
+    with pytest.raises(UsageError, match="t says .* s between rows, expected 1e-07 to 60 s"):
+        read_campaign(campaign(tmp_path, times("t", factor)))
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -21,6 +21,7 @@ from rig.model.transmission_error import transmission_error
 Rows = npt.NDArray[np.int64]
 FASTEST = 1e-7  # s between rows: no encoder is read faster, so the column is not in s
 SLOWEST = 60.0  # s between rows: nothing that turns is recorded more slowly
+LOOKED_AT = 10_000  # rows, those first: a unit is the same all along, and a run may have a day of rows
 
 
 class Source(Protocol):
@@ -182,10 +183,18 @@ def _usable(t: Array | None, notes: list[str]) -> Array | None:
     if t is not None and not increases(t):
         notes.append("The time column does not increase everywhere; it was not used.")
         return None
-    if t is not None and t.size > 1 and not FASTEST <= (t[-1] - t[0]) / (t.size - 1) <= SLOWEST:
-        notes.append(f"The time column says {(t[-1] - t[0]) / (t.size - 1):.3g} s between rows; it was not used.")
+    if t is not None and (wrong := not_seconds(t)):
+        notes.append(f"The time column says {wrong}; it was not used.")
         return None
     return t
+
+
+def not_seconds(t: Array) -> str:
+    """What a time column that goes on says between rows, where that cannot be seconds; "" where it can."""
+    apart = float(np.median(np.diff(t[:LOOKED_AT]))) if t.size > 1 else 1.0
+    if FASTEST <= apart <= SLOWEST:
+        return ""
+    return f"{apart:.3g} s between rows, expected {FASTEST:g} to {SLOWEST:g} s: it seems to be in another unit"
 
 
 def _unwrapped(

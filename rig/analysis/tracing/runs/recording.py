@@ -11,7 +11,7 @@ import numpy as np
 
 from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.smallest_step import smallest_step
-from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.motion.source import Motion, Source, increases, motion_of, not_seconds
 from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
@@ -134,6 +134,7 @@ def record(whole_run: Run, start: float) -> Recording:
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)
     motion = motion_of(run)
+    _refuse_other_time(run.column("t"), motion)
     channels, breaks, holes = without_holes(_channels(run, motion), motion.breaks if motion else ())
     has = frozenset(name for name, values in channels.items() if values is not None)
     rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
@@ -200,6 +201,15 @@ def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
 def _refuse_ratio(ratio: float) -> None:
     if not RATIOS[0] <= ratio <= RATIOS[1]:
         raise UsageError(f"gear.ratio is {ratio:g}, expected {RATIOS[0]:g} to {RATIOS[1]:g}")
+
+
+def _refuse_other_time(t: Array | None, motion: Motion | None) -> None:
+    """Without its time a run would say the rest in silence: speeds and inertias are what most ask it for."""
+    if t is None or motion is None or motion.t is not None:
+        return
+    known = t[np.isfinite(t)]
+    if increases(known) and (wrong := not_seconds(known)):
+        raise UsageError(f"t says {wrong}")
 
 
 def _refuse_sparse(rows: int, dt: float) -> None:

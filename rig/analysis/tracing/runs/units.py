@@ -6,13 +6,13 @@ otherwise than 1:N. Both angles in degrees go as 1:N too: see motion/degrees.py.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Final
 
 import numpy as np
 
 from rig.analysis.motion.angle import is_another_ratio
-from rig.analysis.motion.degrees import DEGREES, Turning
+from rig.analysis.motion.degrees import DEGREES, STEP, Turning
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.units import RPM
@@ -38,11 +38,18 @@ def refuse_odd_angles(runs: Sequence[Recording], name: str) -> None:
     shown = [slopes[run.name] for run in free if _ratio(run) is not None]
     usual = float(np.median(shown)) if shown else 1.0
     with_them = {run for run, slope in slopes.items() if abs(slope - usual) < abs(slope - 1)}
+    with_them |= _of_one_encoder(free, {run.step_m for run in free if _degrees(run) is not None})
     count = len(with_them | set(odd))
     if odd and 2 * count > len(free):
         first, said = next(iter(odd.items()))
         where = f"in {count} of {len(free)} runs that turn (here {first})" if len(free) > 1 else f"in {first}"
         raise UsageError(f"{name}: {where} {said}")
+
+
+def _of_one_encoder(free: Sequence[Recording], steps: Set[float]) -> set[str]:
+    """Runs whose motor angle moves in one of those `steps`: the same encoder in the same unit. What a slow run in
+    degrees turns at is no speed out of reach, so that nothing else says it of it."""
+    return {run.name for run in free if any(step and abs(run.step_m / step - 1) < STEP for step in steps)}
 
 
 def _slope(run: Recording) -> float | None:
