@@ -83,13 +83,13 @@ def test_slow_runs_of_the_encoder_of_a_fast_one_in_degrees_are_in_degrees_too(tm
     assert len(read_campaign(tmp_path).runs) == 3, "by themselves they may turn as slowly as they say"
     campaign(tmp_path / "more", lambda c: degrees(counted(longer(c))), 1)
     shutil.move(tmp_path / "more" / "run-0", tmp_path / "fast")
-    with pytest.raises(UsageError, match="in 4 of 4 runs that turn .*its angle seems to be in degrees"):
+    with pytest.raises(UsageError, match=r"in 4 of 4 runs that turn .*its angle seems to be in degrees"):
         read_campaign(tmp_path)
 
 
 @pytest.mark.parametrize("factor", [1e6, 1e-5], ids=["microseconds", "days"])
 def test_a_time_in_another_unit_is_refused_and_not_left_unused(tmp_path: Path, factor: float) -> None:
-    with pytest.raises(UsageError, match="t says .* s between rows, expected 1e-07 to 60 s"):
+    with pytest.raises(UsageError, match=r"t says .* s between rows, expected 1e-07 to 60 s"):
         read_campaign(campaign(tmp_path, times("t", factor)))
 
 

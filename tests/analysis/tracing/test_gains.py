@@ -67,6 +67,14 @@ def test_of_what_is_left_along_the_torque_of_a_lock_test_a_gains_tolerance_is_ta
     np.testing.assert_allclose(e, loop + left * gain * torque, atol=1e-15)
 
 
+@pytest.mark.parametrize(("rows", "over", "loud"), [(15, 1.45, False), (15, 1.7, True), (500, 1.35, True)])
+def test_a_few_rows_may_be_as_far_over_the_floor_as_chance_brings_them(rows: int, over: float, loud: bool) -> None:
+    at = HeldOut((0,), {(0, "R"): 1.0}, {}, {(0, "R"): 1.2}, {})
+    e = {(0, "R"): np.full(rows, over)}
+    assert at.loud(e, 1.5, named=False) is loud
+    assert at.worst(e)[0] == pytest.approx(over), "what is told is what is left"
+
+
 class SimplePart:
     """As much of a design's part as is asked."""
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit import search
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.own_reading import TAKEN, leaves_most
 from rig.analysis.tracing.nameless.readings import Droop, SensorScale
@@ -40,6 +41,22 @@ def test_a_constant_that_droops_leaves_most_of_the_torque_and_of_its_changes(
 def test_a_scale_that_is_off_by_all_of_it_is_none(rng: np.random.Generator) -> None:
     for off, leaves in ((0.9 * TAKEN, True), (1.0, False)):
         assert leaves_most(equations(rng), [0], Term(SensorScale(), ()), np.array([off])) is leaves
+
+
+def test_a_law_that_takes_it_by_now_is_dropped_from_the_search(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It came in with less; a true effect that it made needless since is asked for again without it."""
+    droop, friction = Term(Droop(), ()), Term(CATALOGUE["load_dependent_friction"], (1.0, 1.0))
+    monkeypatch.setattr(search, "reduced", lambda d, gone: [t for i, t in enumerate(d.terms) if i not in gone])
+    monkeypatch.setattr(search, "fit", lambda terms: SimpleNamespace(design=SimpleNamespace(terms=terms)))
+    for square, dropped in ((0.05, set()), (1.0 / STEADY, {droop})):
+        places = [slice(0, 2), slice(2, 4)]
+        d = SimpleNamespace(eq=equations(rng), terms=[droop, friction], place=places.__getitem__)
+        s: Any = SimpleNamespace(design=d, x=np.array([square, 0.0, 1.0, 1.0]))
+        left, gone = search._without_greedy(s, [0])
+        assert gone == dropped
+        assert set(left.design.terms) == {droop, friction} - dropped
 
 
 def test_an_effect_of_the_gear_may_be_as_large_as_it_likes(rng: np.random.Generator) -> None:

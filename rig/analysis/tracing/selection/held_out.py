@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import chdtri
 
 from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
 from rig.analysis.tracing.fit.covariance import scatter
@@ -14,7 +15,7 @@ from rig.analysis.tracing.fit.model import Design, Solution, design, inverse
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
 from rig.analysis.tracing.selection.uncertain import beside, is_inferred
-from rig.analysis.tracing.thresholds import EXPLAINED, TURNED
+from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, TURNED
 from rig.model.effect import Array
 
 
@@ -68,15 +69,30 @@ class HeldOut:
         turned = {key: x for key, x in e.items() if key[1] == "R"}
         if named and turned and self.worst(turned)[0] < TURNED:
             e = {key: x for key, x in e.items() if key[1] != "R"}
-        most, one = self.worst(e)
+        most, one = self.beyond_chance(e)
         return most > EXPLAINED or one > single
 
     def worst(self, e: Mapping[Key, Array]) -> tuple[float, float]:
         """Largest RMS over floor of a channel, and of a single run in a channel beside what chance does to it."""
-        by_channel = [[k for k in e if k[1] == c] for c in CHANNELS]
-        return max(self.ratio(e, keys) for keys in by_channel if keys), max(
-            self.ratio(e, [k]) / self.lenient[k] for k in e
-        )
+        return max(self.ratio(e, keys) for keys in _by_channel(e)), self._worst_run(e)
+
+    def beyond_chance(self, e: Mapping[Key, Array]) -> tuple[float, float]:
+        """The same beside what chance does to the rows of a channel too, where they are few."""
+        return max(self.ratio(e, keys) / _by_chance(e, keys) for keys in _by_channel(e)), self._worst_run(e)
+
+    def _worst_run(self, e: Mapping[Key, Array]) -> float:
+        return max(self.ratio(e, [k]) / self.lenient[k] for k in e)
+
+
+def _by_channel(e: Mapping[Key, Array]) -> list[list[Key]]:
+    return [keys for c in CHANNELS if (keys := [k for k in e if k[1] == c])]
+
+
+def _by_chance(e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
+    """By how much more than others the rows of one channel may exceed the floor by chance, 1 where there are many: of
+    15 at the reversals of a third of one run 1.54 times it is no more than noise does."""
+    rows = sum(e[k].size for k in keys)
+    return max(float(np.sqrt(chdtri(rows, 1 - CHANCE) / rows)) / EXPLAINED, 1.0)
 
 
 def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> HeldOut:

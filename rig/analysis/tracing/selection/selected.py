@@ -180,7 +180,7 @@ def _is_plain_to_see(score: HeldOutScore) -> bool:
 def is_calm(p: Prepared) -> bool:
     """Whether the baseline is at the floor on the held-out runs, and no speed has a friction of its own."""
     held = unseen(p.baseline, p.held_out)
-    most, one = p.held_out.worst(p.held_out.residuals(p.baseline, held))
+    most, one = p.held_out.beyond_chance(p.held_out.residuals(p.baseline, held))
     return most < QUIET and one < MISSING and not _by_speed(p, p.baseline, held)
 
 
