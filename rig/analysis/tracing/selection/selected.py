@@ -130,9 +130,11 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
             or (score.overall < most and _is_hardly_known(words[0]))
         )
     ]
+    needless = {score.name for score in insignificant}
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
-        if (selected.loud or not fewer.loud) and len(fewer.scores) == len(selected.scores) - 1:
+        gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
+        if (selected.loud or not fewer.loud) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
 
