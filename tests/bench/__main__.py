@@ -38,14 +38,21 @@ def main() -> int:
     wanted = [row() for row in ROWS if not args.row or row.number in args.row]
     remarks = [REMARKS, f"Peers: {peers()[1]}.", *(["QUICK: the figures mean nothing."] if args.quick else [])]
     began, measured, text = head(), list[Measured](), ""
+    said = by_hand(args.table) if args.table else ""
     for row in wanted:
         measured.append(one(row, rounds))
         print("\n".join(lines_of(measured[-1])), flush=True)
         text = table([*measured, *map(pending, wanted[len(measured) :])], began, remarks)
         if args.table:
-            args.table.write_text(text, encoding="utf-8")  # after each row: who breaks off keeps what was measured
+            args.table.write_text(text + said, encoding="utf-8")  # after each row: who breaks off keeps what was measured
     print(f"\n{text}")
     return 0
+
+
+def by_hand(table: Path) -> str:
+    """What people wrote below a table, from its first heading on: it stays below the next one."""
+    text = table.read_text(encoding="utf-8") if table.exists() else ""
+    return text[text.index("\n## ") :] if "\n## " in text else ""
 
 
 def one(row: Row, rounds: Rounds) -> Measured:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from tests.bench.__main__ import by_hand
 from tests.bench.built import Unavailable
 from tests.bench.figure import AtLeast, AtMost, Figure, Shown, not_measured, ratio
 from tests.bench.rows import ROWS
@@ -38,6 +41,13 @@ def test_what_could_not_be_measured_stands_in_the_table_with_its_reason() -> Non
     (line,) = lines_of(Measured(row, [not_measured("over diffrax", AtMost(0.25), "no wheel")], 1.0, 2.0))
     assert "not measured (no wheel)" in line
     assert "≤ 0.25" in line
+
+
+def test_what_people_wrote_below_a_table_stays_below_the_next_one(tmp_path: Path) -> None:
+    table = tmp_path / "TABLE.md"
+    assert by_hand(table) == ""
+    table.write_text("# Measured\n\n| 1 |\n\n## By hand\n\nWhy.\n\n## More\n")
+    assert by_hand(table) == "\n## By hand\n\nWhy.\n\n## More\n"
 
 
 def test_rows_are_numbered_once_and_in_order() -> None:
