@@ -44,7 +44,7 @@ def main() -> int:
         print("\n".join(lines_of(measured[-1])), flush=True)
         text = table([*measured, *map(pending, wanted[len(measured) :])], began, remarks)
         if args.table:
-            args.table.write_text(text + said, encoding="utf-8")  # after each row: who breaks off keeps what was measured
+            args.table.write_text(text + said, encoding="utf-8")  # after each row: what was measured stays
     print(f"\n{text}")
     return 0
 
