@@ -71,7 +71,7 @@ def _selected(
     give_back()
     covered = tried.covered
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
-    if not quiet:
+    if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up

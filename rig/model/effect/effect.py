@@ -75,9 +75,9 @@ class Effect(ABC):
         """True when noise of a reading moves a state of its own, and does not add to its columns."""
         return False
 
-    def may_be_nothing(self, parameters: Sequence[Parameter]) -> bool:
-        """Whether its size, with its interval, may as well be zero; `parameters` as `parameters` gives them."""
-        return parameters[0].holds_zero
+    def sizes(self, parameters: Sequence[Parameter]) -> Sequence[Parameter]:
+        """Those that tell how large it is, whichever is known best; `parameters` as `parameters` gives them."""
+        return parameters[:1]
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Whether the number that scales the law (a speed, a torque, a time), with its interval, says anything of it;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Final
 
 import numpy as np
@@ -32,6 +32,8 @@ class ThermalFrictionDrift(Effect):
         "B_cold": "B_1, viscous friction of the cold drive that warming takes away",
         "t_w": "time constant of the warm-up, or of the heat that leaks",
         "beta": "β, by how much a joule of frictional heat takes it away",
+        "gone_in_10_min": "friction at 10 rad/s that the first ten minutes take away",
+        "gone_with_1_kJ": "friction at 10 rad/s that the first kilojoule of frictional heat takes away",
         "tau_per_K": "constant friction that a kelvin takes away, at 20 °C",
         "B_per_K": "viscous friction that a kelvin takes away, at 20 °C",
     }
@@ -42,6 +44,8 @@ class ThermalFrictionDrift(Effect):
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
     LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
     AT: Final = 10.0  # rad/s
+    WITHIN: Final = 600.0  # s
+    HEATED: Final = 1000.0  # J
     SCALE: Final = 40.0  # K over which an oil's viscosity falls by e at room temperature
     SCALES: Final = (12.0, 400.0)  # K
     REFERENCE: Final = 20.0  # °C
@@ -84,7 +88,7 @@ class ThermalFrictionDrift(Effect):
         return super().is_scaled(scale, reach) or scale.value > reach.duration / 2
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """What the warm-up takes away, and its time constant."""
+        """What the warm-up takes away, its time constant, and what is gone after a while of it."""
         constant, viscous, time, _, per_joule = np.eye(5)
         if fit.shape[1] == LOGGED:
             return (
@@ -97,5 +101,23 @@ class ThermalFrictionDrift(Effect):
             parameter("t_w", fit.shape[0], fit.half_width(time), "s"),
         )
         if fit.shape[1] != HEAT:
-            return cold
-        return (*cold, parameter("beta", fit.shape[2], fit.half_width(per_joule), "1/J"))
+            return (*cold, self._gone(fit))
+        return (*cold, parameter("beta", fit.shape[2], fit.half_width(per_joule), "1/J"), self._gone(fit))
+
+    def _gone(self, fit: Fit) -> Parameter:
+        """Of a warm-up that is nowhere near its end nobody can say how much it will take away in all; what it took away
+        at first is known as well as ever."""
+        t_w, law, beta = fit.shape
+        of, by, name = (
+            (beta * self.HEATED, 4, "gone_with_1_kJ") if law == HEAT else (self.WITHIN / t_w, 2, "gone_in_10_min")
+        )
+        root = 0.5 if law == SOAK else 1.0
+        cold, left = fit.coefficients[0] + self.AT * fit.coefficients[1], np.exp(-(of**root))
+        gradient = np.zeros(5)
+        gradient[:2] = (1.0 - left) * np.array([1.0, self.AT])
+        gradient[by] = cold * left * root * of**root * (1 / beta if law == HEAT else -1 / t_w)
+        return parameter(name, cold * (1.0 - left), fit.half_width(gradient), "N·m")
+
+    def sizes(self, parameters: Sequence[Parameter]) -> Sequence[Parameter]:
+        """Constant or viscous, in all or at first."""
+        return [p for p in parameters if p.name.rstrip("_0123456789") not in ("t_w", "beta")]

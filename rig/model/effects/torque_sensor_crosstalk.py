@@ -53,9 +53,9 @@ class TorqueSensorCrosstalk(Effect):
         """Amplitude and phase of every order."""
         return amplitudes(fit, "1", "_of_the_torque") if _is_loaded(fit.shape) else amplitudes(fit, "N·m")
 
-    def may_be_nothing(self, parameters: Sequence[Parameter]) -> bool:
-        """Neither once nor twice a turn: a sensor that feels bending either way has no wave once a turn."""
-        return all(size.holds_zero for size in parameters[0:3:2])
+    def sizes(self, parameters: Sequence[Parameter]) -> Sequence[Parameter]:
+        """Once or twice a turn: a sensor that feels bending either way has no wave once a turn."""
+        return parameters[0:3:2]
 
     def plausible(self, fit: Fit) -> bool:
         """No larger than what winds the gear up by LARGEST: sensors have tenths of a per cent of crosstalk, and what

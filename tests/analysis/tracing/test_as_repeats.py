@@ -15,6 +15,7 @@ from rig.analysis.tracing.selection.as_repeats import as_repeats
 from rig.analysis.tracing.selection.score import HeldOutScore
 
 CONDITIONS, ROWS = 12, 1000
+LOCKED = -1  # a condition more, whose output is
 SWINGS = np.where(np.arange(CONDITIONS) % 2, 1.0, -1.0)
 
 
@@ -28,7 +29,10 @@ def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: 
     a `lone` channel that one run of each condition has."""
     f = [rng.standard_normal(ROWS) for _ in sizes]
     left = [(size - 1.0) * one + rng.standard_normal(ROWS) for one, (_, _, size) in zip(f, sizes, strict=True)]
-    runs = [SimpleNamespace(said=condition, name=name, procedure="speed") for condition, name, _ in sizes]
+    runs = [
+        SimpleNamespace(said=condition, name=name, procedure="speed", locked=condition == LOCKED)
+        for condition, name, _ in sizes
+    ]
     once = [(i, "A") for i, run in enumerate(runs) if lone and run.name.endswith(".0")]
     return SimpleNamespace(
         y=dict.fromkeys([*((i, "M") for i in range(len(sizes))), *once]),
@@ -46,14 +50,16 @@ def said(
     repeats: int = 3,
     parts: bool = False,
     lone: bool = False,
+    locked: float = 0.0,
 ) -> bool:
     """Of an effect that every condition shows in another size by `law`, every run by `wander`; the last repeat of each
-    is unseen. With `parts` the repeats are parts of one run."""
+    is unseen. With `parts` the repeats are parts of one run, with `locked` those whose output is want so much more."""
     shown = [
         (c, f"run {c}" + (f" ({HELD_PART})" if r else "") if parts else f"run {c}.{r}", 1.0 + law * SWINGS[c] + drawn)
         for c in range(CONDITIONS)
         for r, drawn in enumerate(wander * rng.standard_normal(repeats))
     ]
+    shown += [(LOCKED, f"lock.{r}", 1.0 + locked) for r in range(repeats) if locked]
     last = [one for k, one in enumerate(shown) if k % repeats == repeats - 1]
     held = design(rng, [(c, name, size * unseen) for c, name, size in last], lone)
     fitted = design(rng, [one for k, one in enumerate(shown) if k % repeats != repeats - 1 or repeats == 1], lone)
@@ -88,6 +94,11 @@ def test_without_repeats_nothing_is_said_and_parts_of_a_run_are_none(rng: np.ran
 def test_a_channel_that_was_measured_once_in_every_condition_leaves_it_unsaid(rng: np.random.Generator) -> None:
     assert said(rng, 0.1)
     assert not said(rng, 0.1, lone=True)
+
+
+def test_what_locked_runs_want_says_nothing_of_friction(rng: np.random.Generator) -> None:
+    """A motor that creeps against a spring sticks and slips."""
+    assert said(rng, 0.1, locked=-2.0)
 
 
 def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:

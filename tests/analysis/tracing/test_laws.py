@@ -520,7 +520,7 @@ def test_crosstalk_that_is_felt_twice_a_turn_alone_is_not_nothing(twice: float, 
     """|cos θ_l|: no wave once a turn, one of 0.4 ± 0.02 N·m twice a turn."""
     effect = TorqueSensorCrosstalk()
     fit = Fit(np.array([0.0, 0.001, twice, 0.0]), (1.0, 2.0), 1e-4 * np.eye(6), KNOWN, 50.0)
-    assert effect.may_be_nothing(effect.parameters(fit)) is nothing
+    assert all(size.holds_zero for size in effect.sizes(effect.parameters(fit))) is nothing
 
 
 def test_a_lag_too_short_for_the_rows_may_be_none() -> None:

@@ -50,8 +50,8 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 
     def with_(names: list[str], loud: bool) -> Any:
-        scores = [SimpleNamespace(name=name, overall=work[name]) for name in names]
-        effect = SimpleNamespace(may_be_nothing=lambda parameters: parameters[0].holds_zero)
+        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=work[name]) for name in names]
+        effect = SimpleNamespace(sizes=lambda parameters: parameters[:1])
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
@@ -72,12 +72,12 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
     """An arm's log of seven seconds: without either the other one is no effect any more."""
     half = 0.1 if known else 0.9
     words = {name: (Parameter("size", 1.0, (1.0 - half, 1.0 + half), "rad"),) for name in ("runout", "spring")}
-    work, effect = {"weight": 47.0, "runout": 6.0, "spring": 2.0}, SimpleNamespace(may_be_nothing=lambda found: False)
+    work, effect = {"weight": 47.0, "runout": 6.0, "spring": 2.0}, SimpleNamespace(sizes=lambda found: found[:1])
     vars(effect).update(shape_names=(), loose=())
 
     def with_(names: set[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [SimpleNamespace(name=name, overall=work[name]) for name in names]
+        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=work[name]) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=True, names=names, solution=s, p=prepared())
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
@@ -104,12 +104,15 @@ def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
     def with_(names: list[str]) -> Any:
         effect = {
             name: SimpleNamespace(
-                may_be_nothing=lambda found: False, shape_names=shapes[name], loose=(True,) * len(shapes[name])
+                sizes=lambda found: found[:1], shape_names=shapes[name], loose=(True,) * len(shapes[name])
             )
             for name in names
         }
         terms = [SimpleNamespace(name=name, effect=effect[name]) for name in names]
-        scores = [SimpleNamespace(name=name, overall=9.0 if name == "play" else 5.0) for name in names]
+        scores = [
+            SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=9.0 if name == "play" else 5.0)
+            for name in names
+        ]
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
 
@@ -126,11 +129,11 @@ def test_beside_counts_that_runs_lose_no_name_stands_whose_size_is_hardly_known(
 ) -> None:
     """A spring softer by (2.2 ± 2.1)·10⁻⁶ rad/(N·m), in half of one lock test that jumped."""
     words = {"spring": (Parameter("extra_compliance", 2.2e-6, (2.2e-6 - half, 2.2e-6 + half), "rad/(N·m)"),)}
-    effect = SimpleNamespace(may_be_nothing=lambda found: found[0].holds_zero)
+    effect = SimpleNamespace(sizes=lambda found: found[:1])
 
     def with_(names: list[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [SimpleNamespace(name=name, overall=3.0) for name in names]
+        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=3.0) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=False, names=set(names), solution=s, p=prepared(*own))
 
     monkeypatch.setattr(selected, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))

@@ -16,7 +16,7 @@ from rig.analysis.tracing.rest import in_the_floor
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.selection import hidden
+from rig.analysis.tracing.selection import hidden, next_run
 from rig.analysis.tracing.selection.next_run import Alone, _as_good
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under
 
@@ -125,11 +125,25 @@ def test_an_effect_that_stays_below_the_floor_is_named_when_it_is_plain(tmp_path
 
 
 def test_a_rival_explains_as_much_and_leaves_no_more() -> None:
-    best = Alone(1000.0, 0.93, 1.0)
-    assert _as_good(Alone(990.0, 0.95, 1.1), best)
-    assert not _as_good(Alone(600.0, 0.98, 1.1), best)  # the floor is too high to show it: the evidence does
-    assert not _as_good(Alone(1700.0, 6.5, 7.2), best)  # explains more, of something else
+    fitted: Any = None
+    best = Alone(fitted, 1000.0, 0.93, 1.0)
+    assert _as_good(Alone(fitted, 990.0, 0.95, 1.1), best)
+    assert not _as_good(Alone(fitted, 600.0, 0.98, 1.1), best)  # the floor is too high to show it: the evidence does
+    assert not _as_good(Alone(fitted, 1700.0, 6.5, 7.2), best)  # explains more, of something else
     assert not _as_good(None, best)
+
+
+@pytest.mark.parametrize(("together", "instead"), [(4050.0, True), (4950.0, False)])
+def test_what_explains_as_much_of_another_channel_is_no_rival(
+    monkeypatch: pytest.MonkeyPatch, together: float, instead: bool
+) -> None:
+    """A fall of friction in the motor torque, 1000, beside what a resonance makes of the shaft torque's noise, 4000."""
+    alone: Any = SimpleNamespace(design=SimpleNamespace(terms=("law",)), gain=4000.0)
+    monkeypatch.setattr(next_run, "extended", lambda design, term, runs: (design, term))
+    monkeypatch.setattr(next_run, "fit", lambda design: SimpleNamespace(gain=together))
+    p: Any = SimpleNamespace(split=SimpleNamespace(fitted=()))
+    assert next_run._instead(p, Alone(alone, 4000.0, 0.9, 1.0), Alone(alone, 1000.0, 0.9, 1.0)) is instead
+    assert not next_run._instead(p, None, Alone(alone, 1000.0, 0.9, 1.0))
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e6])

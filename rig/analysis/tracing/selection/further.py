@@ -150,12 +150,13 @@ def without_outdone(selected: Selected, found: Found, runs: Sequence[int]) -> Se
 
 def _settles(other: Selected, stay: Collection[str]) -> bool:
     """Whether a second choice explains everything, and the numbers that scale its laws (a frequency, a torque) are
-    known to a third of themselves: more is asked of it than that they are not zero."""
+    known to a third of themselves: more is asked of it than that they are not zero, but where repeats vouch for it."""
     return not other.loud and _known(other, stay)
 
 
 def _known(other: Selected, stay: Collection[str]) -> bool:
-    new = {term.name for term in other.solution.design.terms if term.name not in stay}
+    vouched = {score.name for score in other.scores if score.as_repeats and score.fairly}
+    new = {term.name for term in other.solution.design.terms if term.name not in stay} - vouched
     known = [p for name in new for p in scales(other.solution, name, other.words)]
     return all(p.ci95[1] - p.ci95[0] < 2 * KNOWN * abs(p.value) for p in known)
 

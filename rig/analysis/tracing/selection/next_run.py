@@ -10,6 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
 from rig.analysis.tracing.outcome.result import NextRun
@@ -30,7 +31,9 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
         return (), None
     others = [r for r in found.ranking if r.term.name not in names and r.evidence > HALF * best.evidence]
     mine = _alone(p, best) if others else None
-    close = [r for r in others if mine is not None and _as_good(_alone(p, r), mine)]
+    close = [
+        r for r in others if mine is not None and _as_good(other := _alone(p, r), mine) and _instead(p, other, mine)
+    ]
     rivals = tuple(r.term.name for r in close)
     if not rivals:
         return (), None
@@ -40,9 +43,10 @@ def deciding(p: Prepared, names: Sequence[str], found: Found) -> tuple[tuple[str
 
 @dataclass(frozen=True)
 class Alone:
-    """One candidate alone beside the baseline, its shape fitted: what it explains of the fitted runs, and the RMS over
-    floor it leaves in the worst channel and the worst single run of the held-out ones."""
+    """One candidate alone beside the baseline, its shape fitted: the fit, what it explains of the fitted runs, and the
+    RMS over floor it leaves in the worst channel and the worst single run of the held-out ones."""
 
+    solution: Solution
     gain: float
     channel: float
     single: float
@@ -62,7 +66,7 @@ def _by_law(p: Prepared, law: Term) -> Alone | None:
     if term.effect.beyond(term.shape, covered) or not possible(s, term, s.x[s.design.place(0)]):
         return None
     worst = p.held_out.worst(p.held_out.residuals(s, unseen(s, p.held_out)))
-    return Alone(s.gain - p.baseline.gain, *worst)
+    return Alone(s, s.gain - p.baseline.gain, *worst)
 
 
 def _as_good(rival: Alone | None, best: Alone) -> bool:
@@ -70,6 +74,15 @@ def _as_good(rival: Alone | None, best: Alone) -> bool:
     if rival is None or rival.gain < CLOSE * best.gain:
         return False
     return rival.channel < max(QUIET, best.channel) and rival.single < max(STILL_RUN, best.single)
+
+
+def _instead(p: Prepared, rival: Alone | None, best: Alone) -> bool:
+    """Whether a rival explains what the best does: beside one that explains as much of another channel, the best has
+    all of its own left to explain."""
+    if rival is None:
+        return False
+    both = fit(extended(rival.solution.design, best.solution.design.terms[0], p.split.fitted))
+    return both.gain - rival.solution.gain < HALF * best.gain
 
 
 def _by_information(p: Prepared, best: Scored, close: Sequence[Scored]) -> NextRun | None:

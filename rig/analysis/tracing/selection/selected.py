@@ -89,6 +89,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
     p, solution = _own_kept(p, solution)
     solution, held, scores = _stood_in_for(p, (solution, held, scores), runs, covered)
+    told = solution.design.terms
     while vague := _not_told(p, solution, held, runs, covered):
         # one at a time: without it another one's law may be plain
         candidates = [score for score in scores if score.name in vague]
@@ -97,6 +98,9 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = backward_elimination(
             polished(fit(reduced(solution.design, gone)), runs, covered), p.held_out
         )
+    if len(solution.design.terms) < len(told):
+        p = _floored(p, solution, runs)
+        solution, held, scores = backward_elimination(solution, p.held_out)
     if not solution.design.terms and solution.design.eq is not p.eq:
         # what eliminated effects made of the gear, and with it of readings it stands in for, goes with them
         solution = fit(design(carrying(p.eq, ()), (), runs))
@@ -123,11 +127,11 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     insignificant = [
         score
         for score in selected.scores
-        if (words := selected.words.get(score.name))
+        if (sizes := effect[score.name].sizes(selected.words.get(score.name, ())))
         and (
             score.name in vague
-            or effect[score.name].may_be_nothing(words)
-            or (score.overall < most and _is_hardly_known(words[0]))
+            or all(size.holds_zero for size in sizes)
+            or (score.overall < most and not _vouched_for(score, most) and all(_is_hardly_known(p) for p in sizes))
         )
     ]
     needless = {score.name for score in insignificant}
@@ -137,6 +141,12 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         if (selected.loud or not fewer.loud) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _vouched_for(score: HeldOutScore, most: float) -> bool:
+    """Whether runs want one size of it, and repeats no other one: beside other effects, not beside lost counts, which
+    are another size in every run."""
+    return score.as_repeats and score.fairly and bool(np.isfinite(most))
 
 
 def _is_hardly_known(size: Parameter) -> bool:
