@@ -13,6 +13,7 @@ import pytest
 
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
+from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.law import LONG
 from rig.analysis.tracing.nameless.readings import TwoConstants, TwoGains
 from rig.analysis.tracing.outcome.result import Status
@@ -61,6 +62,18 @@ def test_the_lever_is_the_slope_of_the_error_along_the_motors_angle(law: Effect,
     np.testing.assert_allclose(made[Port.LEVER][5:-5], slope[5:-5], atol=1e-4)
 
 
+def test_an_inertia_that_changes_along_the_turn_gives_back_what_it_took() -> None:
+    """Its torque does no work over a swing but to change ½·J·ω²."""
+    t = np.linspace(0.0, 1.3, 20_001)
+    theta, omega, alpha = 2.0 * np.sin(3.0 * t), 6.0 * np.cos(3.0 * t), -18.0 * np.sin(3.0 * t)
+    s = replace(motion(n=t.size), theta_l=theta, omega_l=omega, alpha_l=alpha)
+    made = UnevenInertia().columns(s, ())[Port.LOAD_TORQUE]
+    inertia = np.stack([np.cos(theta), np.sin(theta), np.cos(2 * theta), np.sin(2 * theta)], 1)
+    kinetic = 0.5 * inertia * omega[:, None] ** 2
+    work = np.trapezoid(made * omega[:, None], t, axis=0)
+    np.testing.assert_allclose(work, kinetic[-1] - kinetic[0], atol=1e-5)
+
+
 def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     def laws(**reach: float) -> set[str]:
         covered = replace(REACH, **reach)
@@ -74,7 +87,10 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}
     drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
     assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
-    assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
+    assert everything - laws(slowest=REACH.fastest) == {
+        "error_by_speed", "spring_by_speed", "slowing_drag", "inertia_by_speed",
+    }  # fmt: skip
+    assert everything - laws(load_turns=0.1) == {"uneven_inertia"}
 
 
 def two_gains(c: Columns, began: float) -> Columns:
