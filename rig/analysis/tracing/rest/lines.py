@@ -31,6 +31,7 @@ NEARLY_ALL = 0.8  # of the power
 TOLD = 0.1  # of the motor's rate, what a run tells apart: a fifth of all frequencies is near a multiple by chance
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
+OVERTONES = (1, 2, 3)
 LOADS = 8  # levels of torque
 SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
 """As it is, and as friction shows it: the other way round on the way back."""
@@ -45,8 +46,9 @@ BY_THE_CLOCK: Sequence[tuple[Callable[[Rest], Array], Callable[[Rest], Index]]] 
 
 
 def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array]) -> Home | None:
-    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold. In any form
-    that comes back with it, where that does better: a dent in a race is a sharp one."""
+    """One harmonic of an angle, order free, against the `sense` of the motion: its share on the other fold. With its
+    overtones, or in any form that comes back with it, where that does better: a scale that is stitched is a sawtooth, a
+    dent in a race is a sharp one."""
     r = h.rest
     x = r.at[name]
     good = np.isfinite(x)
@@ -65,12 +67,14 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     k = float(near[1] if np.divide(*_height(x, e, near)) < 1 / AS_WELL else fine)
     read = in_columns(lambda rest: waves(rest.at[name], k) * sense(rest)[:, None])
     wave = Home(name, channel, share(h, read), order=k, read=read)
+    richer = in_columns(lambda rest: np.hstack([waves(rest.at[name], n * k) for n in OVERTONES]) * sense(rest)[:, None])
+    with_overtones = Home(name, channel, share(h, richer), order=k, read=richer)
 
     def phase(rest: Rest) -> Index:
         return both(turned(k * rest.at[name], PHASES), (sense(rest) + 1).astype(int))
 
     any_form = Home(name, channel, score(h, phase(r)) / h.total, order=k, read=in_bins(phase))
-    return max(wave, any_form, key=lambda home: home.share)
+    return max(wave, with_overtones, any_form, key=lambda home: home.share)
 
 
 def _highest(r: Rest, x: Array) -> float:
