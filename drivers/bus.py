@@ -65,6 +65,7 @@ class Bus:
         self.errors = 0  # error frames of the controller
         self.host_node = 0  # CANopen node number of this host, 0: it sends no heartbeat
         self.heartbeat = 0.02  # s between heartbeats of this host
+        self.mute = False  # no heartbeat of this host: a drive that did not confirm its stop is to notice that
         self.synced = NEVER  # s, when the last SYNC was sent
         self.syncs = 0  # sent so far
         self._where = (interface, channel, dict(options))
@@ -93,7 +94,7 @@ class Bus:
             raise NotReady(f"CAN bus '{self.name}' ({interface} {channel}) could not be opened: {reason}") from None
         self._poll = _poll_of(self._can)
         self.frames.clear()
-        self.dead, self.synced, self._beat = "", NEVER, NEVER
+        self.dead, self.mute, self.synced, self._beat = "", False, NEVER, NEVER
         if self.host_node and self.protocol == CANOPEN:
             self._refuse_other_host()
 
@@ -237,7 +238,7 @@ class Bus:
         if self.send(SYNC, b""):
             self.synced = now
             self.syncs += 1
-        if self.host_node and now - self._beat >= self.heartbeat:
+        if self.host_node and not self.mute and now - self._beat >= self.heartbeat:
             self._beat = now
             self.send(HEARTBEAT + self.host_node, bytes((OPERATIONAL,)))
 

@@ -66,6 +66,7 @@ class Cia402(Drive):
         self._step = TURN / place.counts_per_turn
         self._angle = Unwrapped.of(place, 1 << 32)
         self._enabled = self._connected = False
+        self._left = False  # alone, after a stop that it did not confirm
         self._last = DriveReading(NEVER, NAN, 0, NAN)
         self._scale = Scale(place)
         self._written = NEVER  # s, when
@@ -255,21 +256,31 @@ class Cia402(Drive):
         self.cut()
         if not self._connected:
             return False
-        off = confirmed_off(self.node, self._inputs, self._hold)
-        with contextlib.suppress(
-            NotReady
-        ):  # who cannot be disarmed trips by its watchdog: it is without torque already
+        if not confirmed_off(self.node, self._inputs, self._hold):
+            self._leave_alone()
+            return False
+        with contextlib.suppress(NotReady):  # who cannot be disarmed trips by its watchdog: it is without torque
             self._disarm()
-        return off
+        return True
+
+    def _leave_alone(self) -> None:
+        """It may be energised, and what we say does not reach it: its own watchdog is the last that can take the torque
+        off, and stays armed. No heartbeat feeds it, and an NMT stop is a lost connection too."""
+        self._left = self.bus.mute = True
+        self.node.stop()
 
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
         if not self._connected:
             raise NotReady("the drive is not connected")
-        if self.node.aside(self.bus.clock.now()):
+        if self._left or self.node.aside(self.bus.clock.now()):
+            self.bus.mute = False
             self.node.revive()
             self.node.start()
         reset(self.node, self._hold)
+        if self._left:
+            self._disarm()
+            self._left = False
         self.node.revive()
         self._inputs.wrong = ""
         self.trouble = ""

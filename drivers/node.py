@@ -11,7 +11,7 @@ from rig.core.devices import Identity
 from rig.core.errors import NotReady
 
 NODES = range(1, 128)
-START, PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
+START, STOP, PRE_OPERATIONAL = 0x01, 0x02, 0x80  # NMT commands
 BOOT_UP, STOPPED, OPERATIONAL, PREOP = 0x00, 0x04, 0x05, 0x7F  # NMT states in a heartbeat
 NMT_NAMES = {BOOT_UP: "boot-up", STOPPED: "stopped", OPERATIONAL: "operational", PREOP: "pre-operational"}
 SETTLE = 0.02  # s for a node that says nothing of its state to become what it was told
@@ -103,6 +103,10 @@ class Node:
         """Pre-operational: PDOs off, while it is being configured. Raises NotReady."""
         self.bus.nmt(PRE_OPERATIONAL, self.number)
         self.bus.wait(0.002, lambda: False)  # it has no answer; some nodes drop an SDO that follows at once
+
+    def stop(self) -> None:
+        """Stopped: to a drive that is a lost connection, which it has a reaction for (6007h). Never raises."""
+        self.bus.nmt(STOP, self.number)
 
     def _nmt(self, command: int, wanted: int) -> None:
         self.state = None

@@ -12,17 +12,17 @@ import math
 import queue
 from typing import Any
 
-import can
 import canopen
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
-from drivers.bus import Bus
+from drivers.bus import GONE, Bus
 from rig.core.errors import NotReady
 
 logging.getLogger("canopen").setLevel(logging.CRITICAL)  # it logs what we say in sentences
 
 NO_OBJECT = 0x06020000  # abort code
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
+LOST = (SdoCommunicationError, *GONE)  # no answer, or an adapter that takes no frame any more, by whatever error
 MISSING = object()
 
 
@@ -79,22 +79,24 @@ class Sdo:
         on what "no such object" is. Raises NotReady.
         """
         try:
+            self._refuse_dead()
             return bytes(self._client.upload(index, sub))
         except SdoAbortedError as why:
             if why.code not in UNSURE and default is not MISSING:
                 return default  # type: ignore[no-any-return]
             raise Refused(f"{self._who} refused to read {index:04X}h:{sub}: {why}") from None
-        except (SdoCommunicationError, can.CanError) as why:
+        except LOST as why:
             told = f"{self._who} does not answer (reading {index:04X}h:{sub}: {why})"
             raise NotReady(told + self._bus.silence(-math.inf)) from None
 
     def lacks(self, index: int) -> bool:
         """The node says, by the standard's own code, that there is no such object. Raises NotReady: it is silent."""
         try:
+            self._refuse_dead()
             self._client.upload(index, 0)
         except SdoAbortedError as why:
             return bool(why.code == NO_OBJECT)
-        except (SdoCommunicationError, can.CanError) as why:
+        except LOST as why:
             raise NotReady(f"{self._who} does not answer (reading {index:04X}h: {why})") from None
         return False
 
@@ -123,11 +125,12 @@ class Sdo:
     def write_if_there(self, index: int, sub: int, value: bytes) -> bool:
         """As `write`; False when the node has no such object. Raises NotReady."""
         try:
+            self._refuse_dead()
             self._client.upload(index, sub)
         except SdoAbortedError as why:
             if why.code not in UNSURE:
                 return False
-        except (SdoCommunicationError, can.CanError):
+        except LOST:
             pass  # said by the write
         self.write(index, sub, value)
         return True
@@ -140,11 +143,18 @@ class Sdo:
     def put(self, index: int, sub: int, value: bytes) -> None:
         """Write an object that is not to be read back. Raises NotReady."""
         try:
+            self._refuse_dead()
             self._client.download(index, sub, value)
         except SdoAbortedError as why:
             raise Refused(f"{self._who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
-        except (SdoCommunicationError, can.CanError) as why:
+        except LOST as why:
             raise NotReady(f"{self._who} does not answer (writing {index:04X}h:{sub}: {why})") from None
+
+    def _refuse_dead(self) -> None:
+        """canopen sends past our bus: one that has failed takes nothing more until it is opened again. Raises
+        OSError, as the adapter itself would."""
+        if self._bus.dead:
+            raise OSError(self._bus.dead)
 
     def _on_answer(self, data: bytes, t: float) -> None:
         if len(data) == 8:  # every SDO answer has; canopen breaks on others

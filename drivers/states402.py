@@ -39,9 +39,12 @@ def reset(node: Node, hold: Hold) -> None:
     for word in (DISABLE, RESET, DISABLE):
         hold(word)
         node.bus.wait(0.01, lambda: False)
-    state = state_of(node.sdo.read_uint(0x6041))
+    word = node.sdo.read_uint(0x6041)
+    state = state_of(word)
     if state.startswith("fault"):
         raise NotReady(f"{node.who} stays in {state} after a reset: {error_of(node)}")
+    if word & OPERATES:
+        raise NotReady(f"{node.who} is still energised, in '{state}', expected 'switch on disabled' after a reset")
 
 
 def error_of(node: Node) -> str:
@@ -51,7 +54,23 @@ def error_of(node: Node) -> str:
 
 
 def confirmed_off(node: Node, inputs: Inputs, hold: Hold) -> bool:
-    """By the statusword after a SYNC, the first of `inputs`: SDO answers may be late, or somebody else's."""
+    """By the statusword after a SYNC, the first of `inputs`: SDO answers may be late, or somebody else's. Where that
+    does not come, the controlword once more by SDO: a drive may take no PDOs, or lose ours on their way.
+    """
+    if _seen_off(node, inputs, hold):
+        return True
+    if node.bus.dead:
+        return False
+    if node.rebooted or node.aside(node.bus.clock.now()):
+        return _off_by_sdo(node)
+    with contextlib.suppress(NotReady):
+        node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
+        return _seen_off(node, inputs, hold)
+    return False
+
+
+def _seen_off(node: Node, inputs: Inputs, hold: Hold) -> bool:
+    """Whether a statusword says so within CONFIRM."""
     until = node.bus.clock.now() + CONFIRM
     while node.bus.clock.now() < until and not node.bus.dead:
         with contextlib.suppress(NotReady):
@@ -59,15 +78,13 @@ def confirmed_off(node: Node, inputs: Inputs, hold: Hold) -> bool:
         if not is_never(inputs.take()) and not int(inputs.values[0]) & OPERATES:
             return True
         hold(DISABLE)
-    return _off_by_sdo(node)
+    return False
 
 
 def _off_by_sdo(node: Node) -> bool:
-    """Who lives and is not operational takes no PDOs: it has rebooted, or somebody else has stopped it, enabled as it
-    may be.
+    """Who lives and is not operational takes and tells no PDOs: it has rebooted, or somebody else has stopped it,
+    enabled as it may be.
     """
-    if node.bus.dead or not (node.rebooted or node.aside(node.bus.clock.now())):
-        return False
     with contextlib.suppress(NotReady):
         node.pause()  # one that is stopped answers nothing
         node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
