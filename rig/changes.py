@@ -10,6 +10,7 @@ from rig.core.units import RPM
 from rig.instruments import Instruments
 from rig.procedures.lock_check import LockProof
 from rig.procedures.weigh import Weighing
+from rig.supervisor import UNCONFIRMED
 
 WEIGHT_SHARE = 0.05  # of the weight: masses, pulley radius, gain of the sensor
 WEIGHT_FLOOR = 0.15  # N·m: tells 0.5 N·m from nothing and from 1 N·m
@@ -24,8 +25,10 @@ PATIENCE = 30.0  # s from torque off to rest
 
 
 def wait_for_rest(instruments: Instruments) -> None:
-    """Torque off, then let time pass until neither shaft moves. Raises NotReady after 30 s, with the speed."""
-    instruments.safe()
+    """Torque off, then let time pass until neither shaft moves. Raises NotReady when the drive does not confirm that it
+    is off, and after 30 s, with the speed."""
+    if not instruments.safe():
+        raise NotReady(f"{UNCONFIRMED}: press the hard-wired stop before anybody touches the rig")
     clock, quiet, speed = instruments.clock, 0, math.inf
     give_up = clock.now() + PATIENCE
     before = instruments.look()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -39,6 +40,7 @@ class Instruments:
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
         self.offsets = (LatchOffsets(), LatchOffsets())  # of load angle and torque, against the motor angle, as told
         self._mark = 0  # flags every row carries
+        self.broken = ""  # what came out of a driver that was told to take the torque off, in words
         self._tau, self._tau_since = NAN, 0.0  # the torque sensor's last value, and when it was first that [s]
 
     @property
@@ -152,12 +154,19 @@ class Instruments:
         return self.drive.write(setpoint)
 
     def cut(self) -> None:
-        """Torque off is commanded; nothing is waited for. `safe` has it confirmed."""
-        self.drive.cut()
+        """Torque off is commanded; nothing is waited for. `safe` has it confirmed. Never raises."""
+        with contextlib.suppress(Exception):  # `safe` comes next, and says it
+            self.drive.cut()
 
     def safe(self) -> bool:
-        """Torque off, in any state, any number of times, never raises. True when the drive confirmed it."""
-        return self.drive.halt()
+        """Torque off, in any state, any number of times, never raises. True when the drive confirmed it: a driver that
+        breaks on the way has not.
+        """
+        try:
+            return self.drive.halt()
+        except Exception as error:  # noqa: BLE001  whatever it is, a trip and its words come after
+            self.broken = f"{type(error).__name__}: {error}"
+            return False
 
     def close(self) -> None:
         """Torque off first, then let go of every device."""

@@ -7,12 +7,14 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from rig.control.brake import PATIENCE
 from rig.control.setpoints import AsTorque, Setpoints
 from rig.core.channels import Flag
 from rig.core.clock import NEVER
 from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
+from rig.core.units import RPM
 from rig.guard import Guard, Trip, stale
 from rig.instruments import Instruments
 from rig.process.interrupts import Interrupts
@@ -24,6 +26,7 @@ MOSTLY = 0.5  # of the age of stale data: a program that was away for less is no
 LONG = 0.01  # s without a command: by less no gains that hold a reference lose it
 RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
+TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
 
@@ -97,8 +100,11 @@ class Loop:
                 raise
             ending = Ending("tripped", str(error), Exit.TRIPPED)  # energised and lost is more than not ready
         except BaseException as error:
-            self.instruments.safe()
-            self.supervisor.act(Act.TRIP, str(error) or repr(error))
+            why = str(error) or repr(error)
+            if not self.instruments.safe():
+                why = self._unconfirmed(why)
+                error.add_note(UNCONFIRMED)
+            self.supervisor.act(Act.TRIP, why)
             raise
         finally:
             confirmed = self.instruments.safe()
@@ -187,9 +193,16 @@ class Loop:
         self.instruments.safe()
         self._last_row(sample, asked)
         if self.supervisor.state is State.STOPPING:
-            why = f"stopped {self.interrupts.who}: brought to rest, torque off"
+            why = f"stopped {self.interrupts.who}: {self._at_rest(sample)}, torque off"
             return Ending("stopped", why, Exit.STOPPED)
         return Ending("completed", "the procedure came to its end", Exit.PASS, finding)
+
+    @staticmethod
+    def _at_rest(sample: Sample) -> str:
+        """Whether the motor was brought to rest: one that would not come is let go."""
+        if abs(sample.omega_m) < TURNS:
+            return "brought to rest"
+        return f"it still turned at {sample.omega_m / RPM:.0f} rpm after {PATIENCE:g} s of braking"
 
     def _course(self, steps: Steps, procedure: Procedure, setting: Setting) -> Steps:
         """What is stepped on with: something else once the operator has asked for a hold or a stop."""
@@ -253,9 +266,14 @@ class Loop:
         self.sink.put(sample, self.setpoints.off, self.setpoints.off, asked.theta_ref)
         self.rows += 1
 
+    def _unconfirmed(self, why: str) -> str:
+        """A reason, and that there may be torque still."""
+        broken = f" ({self.instruments.broken})" if self.instruments.broken else ""
+        return f"{why}; {UNCONFIRMED}{broken}"
+
     def _leave(self, ending: Ending, confirmed: bool) -> Ending:
         if not confirmed:
-            why = f"{ending.reason}; {UNCONFIRMED}"
+            why = self._unconfirmed(ending.reason)
             self.supervisor.act(Act.TRIP, why)
             return Ending("tripped", why, Exit.TRIPPED, ending.finding)
         if ending.status == "tripped":

@@ -16,7 +16,7 @@ from sim.noise import generator, normal
 from sim.parameters import TwinParameters
 from sim.plant import Plant, Truth
 
-NEVER = math.inf
+UNPLANNED = math.inf
 RELAX = 0.001  # s of wall time, for other processes to catch up
 WANDER_SHARE = 0.05  # of its correlation time: friction is held constant for this long at most
 CREEPING = 1e-4  # rad/s, 20 arcsec/s: nobody sees it, and after a halt the load comes to rest through it
@@ -41,11 +41,11 @@ class World(Clock):
         self._wander = normal(seed, "friction")
         self._longest = WANDER_SHARE * parameters.friction_noise_s
         self._tau = 0.0  # N·m, commanded
-        self._lapse = NEVER  # when the command lapses
+        self._lapse = UNPLANNED  # when the command lapses
         self._on_lapse: Callable[[], None] = lambda: None
         self._plans: list[tuple[float, int, Callable[[], None]]] = []
         self._order = itertools.count()
-        self._next = NEVER  # the earliest of all that will happen by itself
+        self._next = UNPLANNED  # the earliest of all that will happen by itself
 
     def now(self) -> float:
         """s since the world began."""
@@ -74,7 +74,7 @@ class World(Clock):
         time.sleep(RELAX)
         return True
 
-    def command(self, tau: float, lapse: float = NEVER, on_lapse: Callable[[], None] = lambda: None) -> None:
+    def command(self, tau: float, lapse: float = UNPLANNED, on_lapse: Callable[[], None] = lambda: None) -> None:
         """From now on the drive aims at `tau` N·m; at `lapse` s, unless commanded again, it lets go and says so."""
         self._tau, self._lapse, self._on_lapse = tau, lapse, on_lapse
         plans = self._plans
@@ -92,7 +92,7 @@ class World(Clock):
             on_lapse()
         while self._plans and self._plans[0][0] <= self.t:
             heapq.heappop(self._plans)[2]()
-        self._next = min(self._lapse, self._plans[0][0] if self._plans else NEVER)
+        self._next = min(self._lapse, self._plans[0][0] if self._plans else UNPLANNED)
 
     def load_torque(self, tau_ext: float) -> None:
         """Put `tau_ext` N·m on the load, positive drives it forward: a dead weight on a pulley. Raises UsageError."""

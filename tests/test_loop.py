@@ -107,6 +107,51 @@ def test_a_trip_is_told_once_the_torque_is_off_and_before_the_drive_confirmed_it
     assert "did not confirm" in ending.reason
 
 
+@pytest.mark.parametrize("error", [RecorderError("rows are lost"), RuntimeError("a bug")])
+def test_what_a_run_ends_with_says_when_the_stop_was_not_confirmed(error: Exception) -> None:
+    bench = Bench()
+
+    def at() -> None:
+        bench.world.confirms = False
+        raise error
+
+    with pytest.raises(type(error)) as caught:
+        bench.run(at)
+    assert bench.supervisor.state is State.FAULT
+    assert bench.supervisor.fault == f"{error}; {UNCONFIRMED}"
+    assert UNCONFIRMED in caught.value.__notes__
+
+
+def test_a_driver_that_breaks_while_it_takes_the_torque_off_has_not_confirmed_it() -> None:
+    bench = Bench()
+
+    def broken() -> bool:
+        raise BrokenPipeError(32, "Broken pipe")
+
+    def at() -> None:
+        bench.world.fault = "over-current"
+        bench.instruments.drive.halt = bench.instruments.drive.cut = broken  # type: ignore[method-assign]
+
+    ending = bench.run(at)
+    assert (ending.status, ending.exit) == ("tripped", Exit.TRIPPED)
+    assert ending.reason.endswith(f"{UNCONFIRMED} (BrokenPipeError: [Errno 32] Broken pipe)")
+    assert bench.supervisor.state is State.FAULT
+
+
+def test_a_motor_that_would_not_come_to_rest_is_not_said_to_have() -> None:
+    bench = Bench()
+
+    def at() -> None:
+        bench.interrupts.request()
+        bench.world.inertia = 5.0  # kg·m²: what braking takes off in two seconds is next to nothing
+
+    ending = bench.run(at, tau=0.35)
+    assert (ending.status, ending.exit) == ("stopped", Exit.STOPPED)
+    assert "it still turned at" in ending.reason
+    assert "rpm after 2 s of braking, torque off" in ending.reason
+    assert bench.torque_free()
+
+
 def test_one_interrupt_brings_the_motor_to_rest_before_the_torque_goes() -> None:
     bench = Bench()
     ending = bench.run(bench.interrupts.request, tau=0.35)

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 from rig.commands.folders import expand
 from rig.commands.options import bench_arguments, open_bench
-from rig.commands.person import Person
+from rig.commands.show.at_the_rig import at_the_keys
 from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.evaluation.identification import TERMS, gear_of
-from rig.process.interrupts import Interrupts
 from rig.runfile.manifest import utc_now
 from rig.session import Session
 
@@ -55,9 +54,9 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.folder import create_in
 
     with (
-        Interrupts() as interrupts,
+        at_the_keys() as (interrupts, person, observer),
         Session(
-            bench, clock, folder, interrupts, args.note, Person(interrupts), create=create_in, checks="checks"
+            bench, clock, folder, interrupts, args.note, person, create=create_in, checks="checks", observer=observer
         ) as session,
     ):
         if session.simulated and not bench.simulated:

@@ -8,19 +8,11 @@ import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 
-from rig.core.errors import Exit, HdrigError, NotReady
-from rig.core.operator import Change, Operator
+from rig.core.errors import Ended, NotReady
+from rig.core.operator import Change, ClearFault, Operator
 from rig.process.interrupts import Interrupts
 
 LOOK = 0.2  # s between two looks at Ctrl-C
-
-
-class NotMade(HdrigError):
-    """The person ended it instead."""
-
-    def __init__(self, sentence: str, exit: Exit) -> None:
-        super().__init__(sentence)
-        self.exit = exit
 
 
 def aloud(text: str) -> None:
@@ -43,10 +35,12 @@ class Person(Operator):
         self.interrupts, self.ask, self.quiet = interrupts, ask, quiet
 
     def make(self, change: Change) -> None:
-        """Raises NotReady without a terminal or when the person says no, NotMade after Ctrl-C."""
+        """Raises NotReady without a terminal or when the person says no, Ended after Ctrl-C."""
         if not sys.stdin.isatty():
             raise NotReady(f"nobody can be asked to {change.words()}: standard input is no terminal")
-        said = f"the motor is without torque. Now {change.words()}."
+        words = change.words()
+        told = f"Now {words}." if not isinstance(change, ClearFault) else f"Before that {words}."
+        said = f"the motor is without torque. {told}"
         answer = self._answer(f"{said}\nEnter when it is done, n and Enter when it cannot be:")
         if answer.strip().lower().startswith("n"):
             raise NotReady(f"the operator could not do this: {change.words()}")
@@ -63,7 +57,7 @@ class Person(Operator):
             self.ask(f"\n{question}")
             while not select.select([sys.stdin], [], [], LOOK)[0]:
                 if self.interrupts.count:
-                    raise NotMade("stopped by the operator, asked for a change by hand", self.interrupts.exit)
+                    raise Ended("stopped by the operator, asked for a change by hand", self.interrupts.exit)
             line = sys.stdin.readline()
         if not line:
             raise NotReady("standard input was closed before the change was made")

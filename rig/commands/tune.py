@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 from rig.commands.options import bench_arguments, open_bench
+from rig.commands.show.at_the_rig import at_the_keys
 from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
-from rig.process.interrupts import Interrupts
 from rig.runfile.writing import writing
 from rig.session import Session
 from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains
@@ -34,7 +34,10 @@ def run(args: argparse.Namespace) -> int:
         refuse_unwritable(args.write.parent, "--write")
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
-    with Interrupts() as interrupts, Session(bench, clock, args.out, interrupts, "tuning") as session:
+    with (
+        at_the_keys() as (interrupts, _, observer),
+        Session(bench, clock, args.out, interrupts, args.note or "tuning", observer=observer) as session,
+    ):
         if session.simulated and not bench.simulated:
             say(wired_twin(bench.file.name))
         best = find_gains(session, bench, print, say)

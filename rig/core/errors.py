@@ -57,3 +57,12 @@ def said_of(place: Path, error: HdrigError) -> str:
     if sentence.startswith(f"{place}/"):
         return sentence.removeprefix(f"{place}/")
     return f"it {sentence.removeprefix(f'{place} ')}" if sentence.startswith(f"{place} ") else sentence
+
+
+class Ended(HdrigError):
+    """A run that others build on, or a question, was ended by the guard or the operator: its exit code is the
+    command's."""
+
+    def __init__(self, sentence: str, exit: Exit) -> None:
+        super().__init__(sentence)
+        self.exit = exit

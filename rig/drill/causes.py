@@ -44,6 +44,7 @@ CAUSES: tuple[Cause, ...] = (
     Cause("SYNC lost", verb("drop", 0x080), STALE),
     Cause("drive's status lost", verb("drop", 0x181), STALE),
     Cause("drive's position lost", verb("drop", 0x281), STALE),
+    Cause("drive's commands lost", verb("drop", 0x201), MOTION, unseen=AT_REST),
     Cause("encoder's frames lost", verb("drop", 0x182), STALE),
     Cause("torque sensor's frames lost", verb("drop", 0x183), STALE),
     Cause("three SYNCs lost", verb("drop", 0x080, 3), 0.0, Expected.GO_ON),

@@ -48,7 +48,7 @@ class Interrupts:
         return "by the operator"
 
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
-        """One more request to end; also what a button calls."""
+        """One more request to end, by a signal."""
         self._signals += 2 if signum == signal.SIGQUIT else 1
 
     def hold(self) -> None:

@@ -10,7 +10,7 @@ from types import TracebackType
 
 PRIORITY = 50  # of 1 to 99: above everything ordinary, below the kernel's own threads that serve the bus
 MCL_CURRENT, MCL_FUTURE = 1, 2  # mlockall: what is in memory, and what will be
-PR_SET_TIMERSLACK = 29  # prctl: how late a sleep may end so that others can be woken with it
+PR_SET_TIMERSLACK, PR_GET_TIMERSLACK = 29, 30  # prctl: how late a sleep may end so that others can be woken with it
 SLACK = 1  # ns instead of 50 000; only ordinary scheduling looks at it
 
 
@@ -23,10 +23,13 @@ class RealTime:
     def __init__(self) -> None:
         self.granted = ""
         self._policy: tuple[int, os.sched_param] | None = None
+        self._before = 0  # ns, timer slack; 0: not known
+        self._collects = True
         self._libc = ctypes.CDLL(None, use_errno=True)
 
     def __enter__(self) -> RealTime:
         granted = [self._schedule(), self._lock(), self._slack()]
+        self._collects = gc.isenabled()
         gc.collect()
         gc.freeze()
         gc.disable()
@@ -36,8 +39,11 @@ class RealTime:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        gc.enable()
+        if self._collects:
+            gc.enable()
         gc.unfreeze()
+        if self._before > 0:
+            self._libc.prctl(PR_SET_TIMERSLACK, self._before, 0, 0, 0)
         self._libc.munlockall()
         if self._policy is not None:
             with contextlib.suppress(OSError):
@@ -59,6 +65,7 @@ class RealTime:
         return "memory locked"
 
     def _slack(self) -> str:
+        self._before = int(self._libc.prctl(PR_GET_TIMERSLACK, 0, 0, 0, 0))
         if self._libc.prctl(PR_SET_TIMERSLACK, SLACK, 0, 0, 0):
             return "timer slack as it was"
         return f"timer slack {SLACK} ns"

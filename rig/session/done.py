@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rig.core.errors import Exit, HdrigError
 from rig.core.sample import Sample
 from rig.loop import Ending
 
@@ -23,11 +22,3 @@ class Done:
 
     folder: Path
     ending: Ending
-
-
-class Ended(HdrigError):
-    """A run that others build on was ended by the guard or the operator: its exit code is the command's."""
-
-    def __init__(self, sentence: str, exit: Exit) -> None:
-        super().__init__(sentence)
-        self.exit = exit

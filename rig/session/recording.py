@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import sys
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from rig.bench import Bench
 from rig.control.setpoints import setpoints_of
-from rig.core.errors import Exit, HdrigError, RecorderError
-from rig.core.procedure import Procedure
+from rig.core.errors import Ended, Exit, HdrigError, RecorderError
+from rig.core.procedure import Procedure, Setting
 from rig.core.sample import Mode, Sample
 from rig.guard import Guard
 from rig.instruments import Instruments
@@ -19,7 +20,7 @@ from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
 from rig.recorder import Recorder
 from rig.runfile.finalise import finalise
-from rig.session.done import Done, Ended, Watch
+from rig.session.done import Done, Watch
 from rig.session.log import SessionLog
 from rig.session.observer import Begun, Observer
 from rig.supervisor import Supervisor
@@ -44,20 +45,14 @@ class Recording:
         Raises Ended when rows are lost, and what the loop raises once the drive is safe.
         """
         recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
-        recorder.start()
-        setting = self.bench.setting(lambda text: self.log.event("note", text))
-        envelope = procedure.envelope(setting)
-        guard = Guard(self.bench.limits, envelope, setting.ratio)
-        setpoints = setpoints_of(mode, setting)
-        begun = Begun(folder, procedure, envelope.duration, recorder.ring, self.timing)
-        watches = self._both(watch, self.observer.begun(begun))
-        loop = Loop(
-            self.instruments, self.supervisor, guard, recorder, self.interrupts, self.timing, watches, setpoints,
-            self.observer.tripped,
-        )  # fmt: skip
-        ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
+        ending, problem, rows = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), "", 0
         try:
-            ending = loop.run(procedure, setting)
+            recorder.start()
+            loop = self._loop(recorder, folder, procedure, mode, watch)
+            try:
+                ending = loop.run(procedure, self._setting)
+            finally:
+                rows = loop.rows
         except HdrigError as error:
             ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
             error.add_note(f"what was recorded is in {folder}")
@@ -65,12 +60,25 @@ class Recording:
         finally:
             # the loop has made the drive safe, whatever happened; only now files
             self.observer.ended(folder, ending)
-            problem = self._close(recorder, folder, ending, loop.rows)
+            problem = self._close(recorder, folder, ending, rows)
             if problem:
                 print(f"hdrig: {problem}", file=sys.stderr)
         if problem:
             raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)
+
+    @cached_property
+    def _setting(self) -> Setting:
+        return self.bench.setting(lambda text: self.log.event("note", text))
+
+    def _loop(self, recorder: Recorder, folder: Path, procedure: Procedure, mode: Mode, watch: Watch) -> Loop:
+        envelope = procedure.envelope(self._setting)
+        begun = Begun(folder, procedure, envelope.duration, recorder.ring, self.timing)
+        return Loop(
+            self.instruments, self.supervisor, Guard(self.bench.limits, envelope, self._setting.ratio), recorder,
+            self.interrupts, self.timing, self._both(watch, self.observer.begun(begun)),
+            setpoints_of(mode, self._setting), self.observer.tripped,
+        )  # fmt: skip
 
     @staticmethod
     def _both(watch: Watch, other: Watch) -> Watch:

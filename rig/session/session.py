@@ -12,7 +12,7 @@ from typing import Any
 from rig.bench import Bench, ClockName
 from rig.changes import judge_tare, wait_for_rest
 from rig.control.filter import SpeedFilter
-from rig.core.errors import HdrigError, NotReady
+from rig.core.errors import Ended, HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
@@ -23,12 +23,12 @@ from rig.refusals import refuse_beyond_limits, refuse_endless, refuse_mode, refu
 from rig.runfile.folder import create
 from rig.runfile.room import refuse_no_room
 from rig.session.changing import prepare, show
-from rig.session.done import Done, Ended, Watch, nobody
+from rig.session.done import Done, Watch, nobody
 from rig.session.log import SessionLog
 from rig.session.manifest import manifest_of
 from rig.session.observer import Observer
 from rig.session.recording import Recording
-from rig.supervisor import Act, State, Supervisor
+from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 
 
@@ -160,6 +160,8 @@ class Session:
     def reset(self) -> None:
         """The explicit act that leaves a fault: every device looks anew, nothing is energised. Raises NotReady."""
         self.instruments.drive.reset_fault()
+        if not self.instruments.safe():
+            raise NotReady(f"the fault stays: {UNCONFIRMED}; press the hard-wired stop")
         for device in self.instruments.devices:
             device.clear()
         self.supervisor.act(Act.RESET)

@@ -24,7 +24,6 @@ class Panel(Interrupts):
         self._total = -1  # presses seen so far, all switches together; -1: not looked yet
         self._asked = 0  # by the switches: 1 stop, 2 halt
         self._hold = False
-        self._signals = 0
         self._patience = float("inf")  # s without a page, then stop
         self.lost = False  # the page was, and a stop followed from it
         super().__init__()
@@ -62,9 +61,9 @@ class Panel(Interrupts):
     def count(self) -> int:
         """1 stop, 2 halt."""
         self._look()
-        if not (self._asked or self._signals or self.lost):
+        if not (self._asked or self._signals or self._keyed or self.lost):
             self.lost = self._switches.page_age > self._patience
-        return max(self._asked, self._signals, int(self.lost))
+        return max(self._asked, self._signals, self._keyed, int(self.lost))
 
     @count.setter
     def count(self, value: int) -> None:

@@ -6,18 +6,10 @@ import uuid
 from collections.abc import Callable
 from typing import final
 
-from rig.core.errors import Exit, HdrigError, NotReady
+from rig.core.errors import Ended, NotReady
 from rig.core.operator import Change, ClearFault, Operator
 from rig.station.interrupts import Panel
 from rig.station.telling import Teller
-
-
-class NotMade(HdrigError):
-    """The person ended it instead."""
-
-    def __init__(self, sentence: str, exit: Exit) -> None:
-        super().__init__(sentence)
-        self.exit = exit
 
 
 @final
@@ -30,7 +22,7 @@ class PagePerson(Operator):
         self.asked: Change | None = None  # last
 
     def make(self, change: Change) -> None:
-        """Raises NotReady when the answer is no or nobody can give one, NotMade after a stop."""
+        """Raises NotReady when the answer is no or nobody can give one, Ended after a stop."""
         self.asked = change
         if not self.ask(change.words(), type(change).__name__):
             raise NotReady(f"the operator could not do this: {change.words()}")
@@ -54,7 +46,7 @@ class PagePerson(Operator):
         while self._answer is None:
             self._attend()
             if self._panel.count:
-                raise NotMade(f"stopped {self._panel.who}; asked was: {text}", self._panel.exit)
+                raise Ended(f"stopped {self._panel.who}; asked was: {text}", self._panel.exit)
             if self._teller.channel.closed:
                 raise NotReady(f"the page's server is gone, nobody can be asked: {text}")
 

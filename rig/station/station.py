@@ -22,7 +22,7 @@ from rig.station.rules import why_not
 from rig.station.silence import Silence
 from rig.station.status import Status
 from rig.station.telling import Teller
-from rig.supervisor import Act, State
+from rig.supervisor import UNCONFIRMED, Act, State
 
 IDLE = 0.05  # s between two readings while nothing runs: 20 a second
 WORDS = {
@@ -117,6 +117,7 @@ class Station:
             self.teller.say("operator", "halted while nothing ran: torque off, confirmed by the drive")
         else:
             self.teller.say("error", "halted while nothing ran: TORQUE OFF NOT CONFIRMED by the drive: hard-wired stop")
+            self.session.supervisor.act(Act.TRIP, f"halted while nothing ran; {UNCONFIRMED}")
 
     def _analysed(self) -> None:
         done, last = self.analysis, self.status.last_run

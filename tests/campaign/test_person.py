@@ -12,8 +12,8 @@ import pytest
 
 from rig.bench import Bench
 from rig.commands.campaign import refuse_nobody
-from rig.commands.person import NotMade, Person
-from rig.core.errors import Exit, NotReady
+from rig.commands.person import Person
+from rig.core.errors import Ended, Exit, NotReady
 from rig.core.operator import HangWeight
 from rig.process.interrupts import Interrupts
 from tests.campaign.plans import LOADED, REST, campaign
@@ -46,7 +46,7 @@ def test_no_means_that_it_cannot_be_done(keyboard: int) -> None:
 def test_ctrl_c_while_asked_ends_it_with_the_operators_exit_code(keyboard: int) -> None:
     interrupts = Interrupts()
     interrupts.request()
-    with pytest.raises(NotMade) as ended:
+    with pytest.raises(Ended) as ended:
         Person(interrupts).make(CHANGE)
     assert ended.value.exit is Exit.STOPPED
 

@@ -45,6 +45,13 @@ def test_a_halt_is_a_halt_whatever_came_before(pressed: Switches, panel: Panel) 
     assert panel.exit is Exit.HALTED
 
 
+def test_what_a_key_would_call_counts_too(panel: Panel) -> None:
+    panel.stop()
+    assert panel.count == 1
+    panel.halt()
+    assert panel.count == 2
+
+
 def test_a_hold_is_held_until_the_next_act(pressed: Switches, panel: Panel) -> None:
     pressed.hold()
     assert panel.held

@@ -35,6 +35,10 @@ class Onlookers(Observer):
 
         return watch
 
+    def tripped(self, why: str) -> None:
+        for one in self._each:
+            one.tripped(why)
+
     def ended(self, folder: Path, ending: Ending) -> None:
         for one in self._each:
             one.ended(folder, ending)

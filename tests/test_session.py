@@ -1,0 +1,51 @@
+"""What a session does when something is amiss around a run: its folder is closed, a fault stays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from rig.bench import read
+from rig.core.errors import NotReady, RecorderError
+from rig.procedures.standstill import Standstill
+from rig.process.interrupts import Interrupts
+from rig.session import Session
+from rig.supervisor import Act, State
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[Session]:
+    with Session(read("twin"), "virtual", tmp_path, Interrupts()) as made:
+        yield made
+
+
+@pytest.mark.parametrize("where", ["rig.recorder.Recorder.start", "rig.session.observer.Observer.begun"])
+def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
+    session: Session, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    def refused(*_: object) -> None:
+        raise RecorderError("no room for it")
+
+    monkeypatch.setattr(where, refused)
+    with pytest.raises(RecorderError, match="no room for it"):
+        session.run(Standstill(1.0))
+    assert session.folder is not None
+    manifest = json.loads((session.folder / "manifest.json").read_text())
+    assert manifest["status"] != "running"
+    assert "no room for it" in manifest["exit_reason"]
+
+
+def test_a_fault_is_not_left_while_the_drive_does_not_confirm_that_its_torque_is_off(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session.supervisor.act(Act.TRIP, "over-current")
+    with monkeypatch.context() as deaf:
+        deaf.setattr(session.instruments.drive, "halt", lambda: False)
+        with pytest.raises(NotReady, match="the fault stays: the drive did not confirm that its torque is off"):
+            session.reset()
+        assert session.supervisor.state is State.FAULT
+    session.reset()
+    assert session.supervisor.state is State.CONNECTED
