@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import can
 import pytest
 
 from rig.core.errors import NotReady
 from rig.drill.canopen_rig import CanopenRig
+from rig.drill.odrive_rig import ODriveRig
+from rig.drill.rig import DrillRig
 from rig.supervisor import UNCONFIRMED, Act, State
 from sim.wire.faults.of_bus import BusFaults
 from tests.drivers.running import SHORT
@@ -58,6 +62,24 @@ def test_a_drive_that_went_off_by_itself_can_be_used_again() -> None:
     rig.supervisor.act(Act.CHECK)
     assert rig.run(SHORT).status == "completed"
     rig.close()
+
+
+@pytest.mark.parametrize("made", [CanopenRig, ODriveRig])
+@pytest.mark.parametrize("way", ["send", "recv", "flush_tx_buffer", "shutdown"])
+def test_whatever_an_adapter_raises_halting_and_closing_twice_do_not(
+    made: Callable[[], DrillRig], way: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = made()
+
+    def broken(*_: object, **__: object) -> None:
+        raise OSError(19, "No such device")
+
+    drive = rig.instruments.drive
+    monkeypatch.setattr(drive.bus.raw, way, broken)  # type: ignore[attr-defined]
+    assert drive.halt() in (True, False)
+    assert drive.halt() in (True, False)
+    drive.close()
+    drive.close()
 
 
 @pytest.mark.parametrize("error", [BrokenPipeError(32, "Broken pipe"), can.CanError("gone")])
