@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from rig.analysis.tracing.selection import as_repeats as module
 from rig.analysis.tracing.selection import selected
 from rig.analysis.tracing.selection.as_repeats import as_repeats
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.model.effect import Parameter
 
 CONDITIONS, ROWS = 12, 1000
 LOCKED = -1  # a condition more, whose output is
@@ -115,6 +117,24 @@ def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:
     assert not HeldOutScore("load_dependent_friction", 1.2, 1.4, 0.8, 1.0, (), harm=1.2, as_repeats=True).named
 
 
+def alone(score: HeldOutScore, half: float = 0.1) -> Any:
+    """That effect as the only one that stands, its size known to `half` of itself."""
+    term = SimpleNamespace(name=score.name, effect=SimpleNamespace(sizes=lambda words: words[:1]))
+    words = {score.name: (Parameter("size", 1.0, (1.0 - half, 1.0 + half), "N·m"),)}
+    solution = SimpleNamespace(design=SimpleNamespace(terms=[term]))
+    return SimpleNamespace(scores=[score], solution=solution, words=words, loud=False)
+
+
+def test_without_repeats_that_vouch_a_size_must_be_known_where_nothing_is_above_the_floor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
+    score = HeldOutScore("torsional_mode", 1.2, 0.8, 0.62, 1.0, ())
+    assert selected.is_certain(alone(score, 0.3))
+    assert not selected.is_certain(alone(score, 0.67))
+    assert selected.is_certain(alone(replace(score, as_repeats=True), 0.67))
+
+
 def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeats_vouch(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -123,8 +143,7 @@ def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeat
 
     def certain(**said: Any) -> bool:
         score = HeldOutScore("thermal_friction_drift", 1.2, 0.45, 0.97, 0.9, (), **said)
-        found: Any = SimpleNamespace(scores=[score], solution=None, loud=False)
-        return selected.is_certain(found)
+        return selected.is_certain(alone(score))
 
     assert certain(as_repeats=True, seen=3.9)
     assert not certain(as_repeats=True, seen=0.9)
@@ -138,8 +157,7 @@ def test_what_repeats_vouch_for_may_be_smaller_where_nothing_is_above_the_floor(
 
     def certain(**said: Any) -> bool:
         score = HeldOutScore("stribeck_friction", 1.2, 0.6, 0.8, 1.05, (), **said)
-        found: Any = SimpleNamespace(scores=[score], solution=None, loud=False)
-        return selected.is_certain(found)
+        return selected.is_certain(alone(score))
 
     assert certain(as_repeats=True)
     assert certain(as_repeats=True, unsteady=0.65, apart=0.65)

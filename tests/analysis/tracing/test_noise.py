@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
+from rig.analysis.tracing.floor import of_a_run
 from rig.analysis.tracing.floor.noise import Measured, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
@@ -83,6 +85,15 @@ def test_how_far_a_zero_wanders_is_read_the_same_whatever_is_believed_of_it(wand
 
 def test_noise_that_does_not_grow_stays_as_it_is() -> None:
     assert floor(measured(500.0, jitter=0.0), 6) == pytest.approx(1e-3, rel=1e-6)
+
+
+@pytest.mark.parametrize(("pairs", "same", "expected"), [(1, False, LENIENT), (1, True, 1.0), (3, False, 1.0)])
+def test_of_a_condition_that_one_pair_stands_for_nothing_is_known(
+    monkeypatch: pytest.MonkeyPatch, pairs: int, same: bool, expected: float
+) -> None:
+    monkeypatch.setattr(of_a_run, "alike", lambda a, b: same)
+    of = replace(measured(500.0), freedom={(i, "M"): 500.0 for i in range(2 * pairs)})
+    assert leniency(of, campaign(), (6, "M")) == expected
 
 
 def test_a_single_run_may_exceed_a_floor_of_few_independent_parts_by_more() -> None:

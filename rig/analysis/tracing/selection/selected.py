@@ -178,15 +178,17 @@ def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach)
 
 def is_certain(selected: Selected) -> bool:
     """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
-    few repeats, and can be too high. Every name must be large, or repeats vouch for it, of one size in all runs and
-    what it acts on must be explained, and nothing unnamed be needed beside it."""
+    few repeats, and can be too high. Every name must be large and its size known, or repeats vouch for it, of one size
+    in all runs and what it acts on must be explained, and nothing unnamed be needed beside it."""
     plain = selected.scores and not confounders_in(selected.solution) and not selected.loud
-    return bool(plain) and all(_is_plain_to_see(score) for score in selected.scores)
+    return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
 
 
-def _is_plain_to_see(score: HeldOutScore) -> bool:
+def _is_plain_to_see(selected: Selected, score: HeldOutScore) -> bool:
+    effect = next(term.effect for term in selected.solution.design.terms if term.name == score.name)
+    known = not all(_is_hardly_known(size) for size in effect.sizes(selected.words.get(score.name, ())))
     vouched = score.as_repeats and (score.size > VOUCHED_FOR or score.seen > SEEN)
-    return score.fairly and (score.size > PLAIN_TO_SEE or vouched)
+    return score.fairly and ((known and score.size > PLAIN_TO_SEE) or vouched)
 
 
 def is_calm(p: Prepared) -> bool:
