@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rig.drill.cause import Cause, Expected
 from rig.drill.causes import AT_ONCE, AT_REST, MOTION, NOT_RUNNING, SOON_OVER, STALE, stall, verb
-from rig.drill.odrive_rig import NODE
+from rig.drill.odrive_rig import NODE, SET_TORQUE
 from rig.drill.rig import DrillRig
 
 ESTIMATES, TORQUES, HEARTBEAT = NODE << 5 | 0x09, NODE << 5 | 0x1C, NODE << 5 | 0x01
@@ -24,6 +24,7 @@ CAUSES: tuple[Cause, ...] = (
     Cause("cable pulled, back after 50 ms with what was queued", _back_with_queue, STALE, unseen=NOT_RUNNING),
     Cause("host's controller bus-off", verb("drive_bus_off", "host"), STALE),
     Cause("drive's cable pulled", verb("drive_cut", AXIS), STALE),
+    Cause("drive's commands lost", verb("drive_drop", SET_TORQUE), MOTION, unseen=AT_REST),
     Cause("drive's estimates lost", verb("drive_drop", ESTIMATES), STALE),
     Cause("drive's torques lost", verb("drive_drop", TORQUES), STALE),
     Cause("drive's heartbeats lost", verb("drive_drop", HEARTBEAT), OVERDUE, unseen=SOON_OVER),
