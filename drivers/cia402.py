@@ -76,6 +76,7 @@ class Cia402(Drive):
     def connect(self) -> Identity:
         """Identify, compare scales, configure, start. Nothing is energised: the drive is told to disable first."""
         self.node.open()
+        self._left = self.bus.mute = False
         identity = self.node.identify(PROFILE)
         self.node.pause()
         self.node.sdo.put(0x6040, 0, struct.pack("<H", DISABLE))
@@ -147,6 +148,9 @@ class Cia402(Drive):
         """Walk to OPERATION ENABLED at rest, the watchdog armed. Raises NotReady: where it stuck."""
         if not self._connected:
             raise NotReady("the drive is not connected")
+        if self._left:  # off by now, or nobody would have got here
+            self.node.start()
+            self._take_up()
         if mode is not self.mode:
             self._change(mode)
         self._scale.position = self._direction * self.node.sdo.read_int(0x6064) * self._step
@@ -269,18 +273,22 @@ class Cia402(Drive):
         self._left = self.bus.mute = True
         self.node.stop()
 
+    def _take_up(self) -> None:
+        """It says that it is off: it is talked to again. Not before, or we would feed the watchdog of a drive that may
+        be energised. Raises NotReady."""
+        if self._left:
+            self._disarm()
+            self._left = self.bus.mute = False
+
     def reset_fault(self) -> None:
         """The rising edge of bit 7, then disabled. Raises NotReady when the fault stays."""
         if not self._connected:
             raise NotReady("the drive is not connected")
         if self._left or self.node.aside(self.bus.clock.now()):
-            self.bus.mute = False
             self.node.revive()
             self.node.start()
         reset(self.node, self._hold)
-        if self._left:
-            self._disarm()
-            self._left = False
+        self._take_up()
         self.node.revive()
         self._inputs.wrong = ""
         self.trouble = ""

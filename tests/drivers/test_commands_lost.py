@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import can
 import pytest
 
 from rig.core.errors import NotReady
+from rig.core.sample import Torque
 from rig.drill.canopen_rig import CanopenRig
 from rig.drill.odrive_rig import ODriveRig
 from rig.drill.rig import DrillRig
@@ -42,6 +44,7 @@ def test_a_drive_that_cannot_be_reached_goes_off_by_itself_and_is_not_reset(lost
     rig = without(*lost)
     with pytest.raises(NotReady):
         rig.instruments.drive.reset_fault()
+    assert rig.instruments.drive.bus.mute, "a reset that failed feeds nothing either"  # type: ignore[attr-defined]
     for _ in range(30):  # what a console does between runs: it goes on to read
         rig.instruments.look()
     assert not rig.energised
@@ -61,6 +64,25 @@ def test_a_drive_that_went_off_by_itself_can_be_used_again() -> None:
     assert not rig.energised
     rig.supervisor.act(Act.CHECK)
     assert rig.run(SHORT).status == "completed"
+    rig.close()
+
+
+def test_a_drive_that_was_left_alone_and_says_that_it_is_off_can_be_enabled() -> None:
+    rig = CanopenRig()
+    drive: Any = rig.instruments.drive
+    drive._leave_alone()
+    for _ in range(10):
+        rig.instruments.look()
+    assert drive.halt() is True
+    drive.enable()
+    assert rig.energised
+    assert not drive.bus.mute
+    for _ in range(20):  # 0.4 s: its watchdog is fed
+        rig.instruments.look()
+        rig.instruments.write(Torque(0.0))
+    assert rig.energised
+    assert drive.halt() is True
+    assert not rig.energised
     rig.close()
 
 
