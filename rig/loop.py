@@ -7,7 +7,6 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from rig.control.brake import PATIENCE
 from rig.control.setpoints import AsTorque, Setpoints
 from rig.core.channels import Flag
 from rig.core.clock import NEVER
@@ -202,7 +201,7 @@ class Loop:
         """Whether the motor was brought to rest: one that would not come is let go."""
         if abs(sample.omega_m) < TURNS:
             return "brought to rest"
-        return f"it still turned at {sample.omega_m / RPM:.0f} rpm after {PATIENCE:g} s of braking"
+        return f"not brought to rest, it still turned at {sample.omega_m / RPM:.0f} rpm"
 
     def _course(self, steps: Steps, procedure: Procedure, setting: Setting) -> Steps:
         """What is stepped on with: something else once the operator has asked for a hold or a stop."""

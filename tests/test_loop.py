@@ -147,8 +147,8 @@ def test_a_motor_that_would_not_come_to_rest_is_not_said_to_have() -> None:
 
     ending = bench.run(at, tau=0.35)
     assert (ending.status, ending.exit) == ("stopped", Exit.STOPPED)
-    assert "it still turned at" in ending.reason
-    assert "rpm after 2 s of braking, torque off" in ending.reason
+    assert "not brought to rest, it still turned at" in ending.reason
+    assert ending.reason.endswith(" rpm, torque off")
     assert bench.torque_free()
 
 

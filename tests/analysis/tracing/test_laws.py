@@ -570,3 +570,22 @@ def test_the_papers_slow_run_is_long_enough_to_tell_an_order_of_the_flexspline_f
     for turns, offered in ((2 * 1440 / 360 / N, True), (1440 / 360 / N, False)):
         assert bool(FlexsplineFrameError().shapes(dataclasses.replace(REACH, load_turns=turns))) == offered
         assert (apart(turns) > 1 / 3) == offered
+
+
+@pytest.mark.parametrize(("law", "by"), [(CLOCK, 2), (SOAK, 2), (HEAT, 4)])
+def test_what_a_warm_up_takes_away_at_first_is_known_as_well_as_its_numbers_together(law: float, by: int) -> None:
+    """Its interval, from the law's numbers one by one, beside finite differences."""
+    effect, spread = ThermalFrictionDrift(), np.array([0.02, 1e-3, 80.0, 0.0, 2e-4])
+    at = np.array([0.3, 2e-3, 700.0, law, 1e-3])
+
+    def gone(x: Array) -> Parameter:
+        fit = Fit(x[:2], tuple(x[2:]), np.diag(spread**2), KNOWN, N)
+        return effect.parameters(fit)[-1]
+
+    slopes = [
+        (gone(at + h * np.eye(5)[i]).value - gone(at - h * np.eye(5)[i]).value) / (2 * h) if i in (0, 1, by) else 0.0
+        for i, h in enumerate(1e-4 * at + 1e-12)
+    ]
+    half = (gone(at).ci95[1] - gone(at).ci95[0]) / 2
+    assert half == pytest.approx(1.96 * float(np.linalg.norm(slopes * spread)), rel=1e-3)
+    assert effect.sizes(effect.parameters(Fit(at[:2], tuple(at[2:]), np.eye(5), KNOWN, N)))[-1].name.startswith("gone")

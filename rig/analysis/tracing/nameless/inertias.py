@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import WIDE, Amount, Nameless, sum_of, wave_of, when
+from rig.analysis.tracing.nameless.law import Amount, Nameless, wave_of, when
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
@@ -43,24 +43,3 @@ class UnevenInertia(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Of the first order: of the second there may be as much."""
         return wave_of(fit, "once a turn of the output by a wave of", 1000, "g·m²")
-
-
-class InertiaBySpeed(Nameless):
-    """The load's inertia grows with the speed, as of arms that swing out do: (c·ω²)·α      [tuttle1992]"""
-
-    name: ClassVar[str] = "inertia_by_speed"
-    in_short: ClassVar[str] = "the load's inertia changes with speed"
-    source: ClassVar[str] = "tuttle1992"
-    needs: ClassVar[frozenset[str]] = frozenset({"theta_l", "t"})
-
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, of several speeds."""
-        return when(reach.fastest > WIDE * reach.slowest)
-
-    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column, of an output at 1 rad/s."""
-        return {Port.LOAD_TORQUE: (np.nan_to_num(signals.omega_l) ** 2 * np.nan_to_num(signals.alpha_l))[:, None]}
-
-    def amount(self, fit: Fit) -> Amount:
-        """At speed."""
-        return sum_of(fit, "at 1 rad/s of the output it is larger by", 1000, "g·m²")

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
-from rig.analysis.tracing.nameless.inertias import InertiaBySpeed, UnevenInertia
+from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
     ConstantDrift,
@@ -53,7 +53,7 @@ CONFOUNDERS: Final = {
         "A part of the wind-up follows the torque seconds late, as creep does; a loop that does not depend on the rate "
         "explains these runs no better by a twentieth, and no effect of the library explains it.",
         mimics=frozenset({"hysteretic_stiffness"}),
-        short=0.05,  # its times are a few for all: of 14 loops the most alike leaves it 7 % short, a creep 2 %
+        short=0.05,  # its times are a few for all: six loops leave it 7 % short and more, a creep 2 %
     ),
     "coupling_play": Confounder(
         CouplingPlay(),
@@ -186,11 +186,6 @@ CONFOUNDERS: Final = {
         UnevenInertia(),
         "load_angle",
         "The inertia on the output changes along its turn. No effect of the library does so.",
-    ),
-    "inertia_by_speed": Confounder(
-        InertiaBySpeed(),
-        "speed",
-        "The inertia on the output changes with its speed. No effect of the library does so.",
     ),
     "droop": Confounder(
         Droop(),
