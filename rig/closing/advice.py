@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import tomlkit
 
-from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.answer import NextRun
 from rig.campaign.changes import ByHand, deeds
 from rig.campaign.dry_run import checks_of
 from rig.campaign.plan import Plan, parse_plan

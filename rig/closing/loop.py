@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from rig.analysis.tracing.answer import NextRun, Status
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
-from rig.analysis.tracing.outcome.result import NextRun, Status, Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.selection.next_run import along
 from rig.campaign.journal import Journal
 from rig.campaign.planner import Campaign

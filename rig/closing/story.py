@@ -9,9 +9,10 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.outcome.without import ruled
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import EXPLAINED

@@ -14,7 +14,8 @@ from rig.process.ctrl_c import uninterrupted
 from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
-    from rig.analysis.tracing.outcome.result import NextRun, Trace
+    from rig.analysis.tracing.answer import NextRun
+    from rig.analysis.tracing.outcome.result import Trace
 
 
 PAGE = "rig.report.trace.page"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.answer import NextRun
 from rig.bench import read
 from rig.campaign.plan import parse_plan
 from rig.campaign.planner import Campaign, planned

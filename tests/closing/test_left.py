@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.outcome.result import Before, Errors, NextRun, Status, Trace, Verdict
+from rig.analysis.tracing.answer import NextRun, Status, Verdict
+from rig.analysis.tracing.outcome.result import Before, Errors, Trace
 from rig.closing import loop
 from rig.closing.advice import Advice
 from rig.closing.loop import Closing, words

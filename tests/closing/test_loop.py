@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from rig.analysis.tracing.outcome.result import Before, Errors, NextRun, Status, Trace, Verdict
+from rig.analysis.tracing.answer import NextRun, Status, Verdict
+from rig.analysis.tracing.outcome.result import Before, Errors, Trace
 from rig.analysis.tracing.selection.next_run import along
 from rig.bench import read
 from rig.campaign.journal import Journal, new_journal, read_journal

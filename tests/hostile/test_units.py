@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit import scale
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
-from rig.analysis.tracing.runs import scale
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.core.errors import UsageError
 from tests.hostile.test_campaigns import Columns, campaign, times

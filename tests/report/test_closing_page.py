@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from rig.analysis.tracing.outcome.result import NextRun, Status
+from rig.analysis.tracing.answer import NextRun, Status
 from rig.closing.story import End, Story, told_by
 from rig.report.closing.changes import changes, sizes
 from rig.report.closing.page import render

@@ -24,8 +24,8 @@ import numpy as np
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from rig.analysis.tracing.answer import NextRun
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import NextRun
 from rig.analysis.tracing.trace import trace
 from rig.closing.advice import sections
 from rig.core.errors import UsageError

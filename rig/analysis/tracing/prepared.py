@@ -12,15 +12,16 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Noise, equations,
 from rig.analysis.tracing.fit.leaning import carrying
 from rig.analysis.tracing.fit.learnt import change, learnt
 from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.negative import refuse_negative
+from rig.analysis.tracing.fit.scale import off_scale
 from rig.analysis.tracing.fit.search import ROUNDS, SETTLED
+from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
 from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.runs.holdout import Split, split
-from rig.analysis.tracing.runs.scale import off_scale
-from rig.analysis.tracing.runs.signs import refuse_negative, refuse_odd_torques
-from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks
+from rig.analysis.tracing.runs.signs import refuse_odd_torques
 from rig.core.errors import UsageError
 
 FEWEST: Final = 250  # rows, eight for each number of a kinematic error

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.channels import AT_REVERSALS
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED_BACK
 from rig.report.figures.arrays import line
 from rig.report.numbers import counted, join

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.findings.result import Array
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
 from rig.analysis.tracing.outcome.free_told import free_told
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.outcome.told import listed, symbol
 from rig.analysis.tracing.workers import each
 from rig.report import page as run_page

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from rig.analysis.tracing.answer import Candidate, Status
 from rig.analysis.tracing.outcome.free import together
 from rig.analysis.tracing.outcome.free_told import over_floor
 from rig.analysis.tracing.outcome.honest import ORDER
-from rig.analysis.tracing.outcome.result import Candidate, Status, Trace
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE

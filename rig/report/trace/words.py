@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.outcome import told
 from rig.analysis.tracing.outcome.each_run import LOADED
 from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
 from rig.analysis.tracing.outcome.honest import ORDER
-from rig.analysis.tracing.outcome.result import Found, Status, Trace
+from rig.analysis.tracing.outcome.result import Found, Trace
 from rig.analysis.tracing.outcome.told import PARAMETERS, listed
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter

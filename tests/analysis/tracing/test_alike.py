@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.runs.alike import alike
 
 DT, STEP = 0.004, 0.014  # s; rad, how far a motor that sticks goes at once
 

@@ -10,7 +10,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from rig.analysis.tracing.outcome.result import Status, Trace
+from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.trace import trace
 from rig.core.units import ARCSEC
 from rig.model.effect import Array

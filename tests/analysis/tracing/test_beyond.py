@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import NextRun, Status, Verdict
 from rig.analysis.tracing.outcome.beyond import Beyond, beyond, undecided
-from rig.analysis.tracing.outcome.result import NextRun, Status, Verdict
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.trace import trace

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.runs import building_up
 from rig.analysis.tracing.runs.building_up import WAYS, builds_up
 from rig.analysis.tracing.runs.campaign import read_campaign

@@ -9,12 +9,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.fit.footprint import footprint
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
 from rig.analysis.tracing.nameless.readings import Droop, SensorWaves
 from rig.analysis.tracing.nameless.springs import EvenSpring
-from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.analysis.tracing.selection import confounders
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
-from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns, strokes
+from rig.analysis.tracing.floor.repeats import autocorrelation, compare, effective, freedom, output_turns
+from rig.analysis.tracing.runs.strokes import strokes
 
 
 def _noise(rng: np.random.Generator, n: int, sigma: float) -> np.ndarray:

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.led import Model, rung
 from rig.analysis.tracing.outcome.free import _one_way, together
 from rig.analysis.tracing.outcome.free_told import free_told, over_floor
-from rig.analysis.tracing.outcome.result import Before, Errors, Status, Trace
+from rig.analysis.tracing.outcome.result import Before, Errors, Trace
 from rig.model.effect import Known, parameter
 from rig.model.fourier import FourierSeries
 from tests.report.trace import made_up

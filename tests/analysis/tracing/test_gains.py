@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.channels import INDEX, rows
 from rig.analysis.tracing.fit.model import design, fit
-from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.recording import Recording, record
-from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.runfile.run import Run
 from tests.analysis.tracing.spiked import Columns, spiked
 

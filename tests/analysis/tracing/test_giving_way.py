@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.runs.giving_way import gives_way
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Array

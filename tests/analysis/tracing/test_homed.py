@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.floor.homed import about_a_line
-from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import trace

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Candidate, Status, Verdict
 from rig.analysis.tracing.outcome.dismissed import dismissed
 from rig.analysis.tracing.outcome.honest import honest, not_told
-from rig.analysis.tracing.outcome.result import Candidate, Errors, Status, Verdict
+from rig.analysis.tracing.outcome.result import Errors
 from rig.analysis.tracing.runs.cannot import highest_order, together
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.model.effect import Parameter, parameter

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.levels import _between, _runs, levels
 from tests.analysis.tracing.spiked import Columns, spiked

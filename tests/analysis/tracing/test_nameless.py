@@ -11,12 +11,12 @@ from typing import Final
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.law import LONG
 from rig.analysis.tracing.nameless.readings import TwoConstants, TwoGains
-from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Effect, Port

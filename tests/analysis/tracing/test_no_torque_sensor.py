@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.recording import record
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.trace import trace
 from rig.runfile.run import Run
 from tests.analysis.tracing.test_few_channels import reduced

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from rig.analysis.tracing.outcome.result import Status
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.trace import trace
 from tests.blind.cases import Request
 from tests.blind.generate import write_case

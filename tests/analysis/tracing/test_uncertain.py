@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
-from rig.analysis.tracing.selection.uncertain import beside, is_inferred
+from rig.analysis.tracing.floor.uncertain import beside, is_inferred
 
 THETA = np.linspace(-1.0, 1.0, 2000)
 FLOOR = 4e-6  # rad

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.floor import vibration
-from rig.analysis.tracing.outcome.result import Status
 from tests.analysis.tracing.spiked import Columns, spiked, under
 
 CARRIER, SWELL, SIZE = 4.1, 0.31, 0.25  # Hz, Hz, N·m: well below the resonance at 15 Hz

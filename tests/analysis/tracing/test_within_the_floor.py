@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
-from rig.analysis.tracing.outcome.result import Status
 from rig.analysis.tracing.rest import in_the_floor
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves

@@ -7,17 +7,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.outcome.result import (
-    Before,
-    Candidate,
-    Errors,
-    Floor,
-    Found,
-    NextRun,
-    Status,
-    Trace,
-    Verdict,
-)
+from rig.analysis.tracing.answer import Candidate, NextRun, Status, Verdict
+from rig.analysis.tracing.outcome.result import Before, Errors, Floor, Found, Trace
 from rig.model.effect import parameter
 from rig.report.trace.campaign import Provenance
 

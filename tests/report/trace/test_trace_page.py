@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.answer import Candidate
 from rig.analysis.tracing.fit.channels import AT_REVERSALS
 from rig.analysis.tracing.outcome.each_run import AT_LOAD, beside_the_numbers, of_each_run
 from rig.analysis.tracing.outcome.record import document
-from rig.analysis.tracing.outcome.result import Before, Candidate, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import Before, Floor, Found, Trace
 from rig.analysis.tracing.outcome.told import PARAMETERS
 from rig.model.effect import parameter
 from rig.model.effects import LIBRARY

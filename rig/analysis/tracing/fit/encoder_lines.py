@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.repeats import strokes
+from rig.analysis.tracing.runs.strokes import strokes
 from rig.analysis.tracing.thresholds import LINE
 from rig.core.units import TURN
 from rig.model.effect import Array, Reach

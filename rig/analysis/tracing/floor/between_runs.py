@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import offset
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.runs.alike import alike
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.common_orders import without_common_orders
-from rig.analysis.tracing.floor.repeats import Scatter, autocorrelation, beside_a_row, compare, freedom, strokes
+from rig.analysis.tracing.floor.repeats import Scatter, autocorrelation, beside_a_row, compare, freedom
+from rig.analysis.tracing.runs.strokes import strokes
 from rig.analysis.tracing.thresholds import FLOOR_LEAST
 from rig.core.units import TURN
 from rig.model.effect import Array

@@ -14,7 +14,8 @@ from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
-from rig.analysis.tracing.floor.repeats import Scatter, effective, repeats, scatter
+from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
 

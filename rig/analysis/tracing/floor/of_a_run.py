@@ -11,7 +11,7 @@ from scipy.special import fdtri
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.offsets import ENOUGH
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.thresholds import CHANCE, GAIN, LENIENT, MISSING
 from rig.model.effect import Array
 
@@ -51,7 +51,9 @@ def leniency(measured: Measured, eq: Equations, key: Key) -> float:
     """
     run, channel = key
     known = {i: nu for (i, c), nu in measured.freedom.items() if c == channel}
-    if known and len(known) < 2 * PAIRS and not any(alike(eq.runs[run], eq.runs[i]) for i in known):
+    # of reversals the floor is that of the motor torque
+    told = [i for i, c in measured.freedom if c == ("M" if channel == "R" else channel)]
+    if told and len(told) < 2 * PAIRS and not any(alike(eq.runs[run], eq.runs[i]) for i in told):
         return LENIENT
     like = [nu for i, nu in known.items() if eq.runs[i].procedure == eq.runs[run].procedure]
     if not like:

@@ -10,10 +10,10 @@ from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
-from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.floor.sidebands import sidebands
 from rig.analysis.tracing.floor.steps import explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import find_vibration
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
 from rig.analysis.tracing.thresholds import OWN
 from rig.model.effect import Array, Parameter

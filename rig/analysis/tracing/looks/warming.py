@@ -14,8 +14,8 @@ import numpy as np
 
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.offsets import offset
-from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected

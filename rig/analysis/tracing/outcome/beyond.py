@@ -12,9 +12,9 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.outcome.honest import in_words, left_open
-from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.conclusion import Conclusion

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from rig.analysis.tracing.answer import Candidate, Status, Verdict
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
-from rig.analysis.tracing.outcome.result import Candidate, Errors, Status, Verdict
+from rig.analysis.tracing.outcome.result import Errors
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.core.units import ARCSEC
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
+from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.outcome.result import Before, Errors
-from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.core.units import ARCSEC
 from rig.model.effect import Array
 

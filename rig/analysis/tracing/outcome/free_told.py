@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from rig.analysis.tracing.outcome.result import Errors, Status, Trace
+from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.outcome.result import Errors, Trace
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.linear import held_frequency
 

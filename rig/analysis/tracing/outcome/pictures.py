@@ -9,13 +9,13 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.floor.repeats import strokes
 from rig.analysis.tracing.outcome.errors import UNITS
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
 from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import spectrum
 from rig.analysis.tracing.rest.shares import shares
+from rig.analysis.tracing.runs.strokes import strokes
 from rig.core.units import TURN
 from rig.model.effect import Array
 

@@ -11,6 +11,7 @@ from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.search import Found as Searched
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.outcome.beyond import beyond, undecided
 from rig.analysis.tracing.outcome.curves import curves
 from rig.analysis.tracing.outcome.dismissed import dismissed
@@ -31,7 +32,6 @@ from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.selection.candidates import candidates
 from rig.analysis.tracing.selection.confounders import confounders_in
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.selection.one_sided import COGGING, one_sided
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore

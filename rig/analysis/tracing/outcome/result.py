@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from rig.analysis.findings.result import Array
+from rig.analysis.tracing.answer import Candidate, NextRun, Verdict
 from rig.analysis.tracing.outcome.mean_drift import MeanDrift
 from rig.analysis.tracing.outcome.ripple import Ripple
 from rig.model.effect import Parameter
-
-
-class Status(StrEnum):
-    """The verdict's word."""
-
-    EXPLAINED = "explained"
-    NOTHING = "no_missing_effect"
-    UNKNOWN = "unknown_effect"
-    AMBIGUOUS = "ambiguous"
 
 
 @dataclass(frozen=True)
@@ -28,16 +19,6 @@ class Floor:
     rms: float
     unit: str
     how: str
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One effect of the library, as scored."""
-
-    effect: str
-    evidence: float  # nats by which it beats having nothing more, after paying for its parameters
-    why: str
-    heldout_rms: dict[str, float] = field(default_factory=dict)  # by channel, with it in the model
 
 
 @dataclass(frozen=True)
@@ -70,28 +51,6 @@ class Before:
 
     per_run: dict[str, Errors]
     pooled: Errors
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What is missing in the model."""
-
-    status: Status
-    effects: tuple[str, ...]
-    rivals: tuple[str, ...]
-    coordinate: str | None
-    order: float | None  # cycles per turn of that coordinate
-    frequency_hz: float | None
-    sentence: str
-
-
-@dataclass(frozen=True)
-class NextRun:
-    """The cheapest run that would decide, or that would say most of what is unknown."""
-
-    procedure: str
-    conditions: dict[str, float | bool | str]
-    because: str
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from typing import Final
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.floor.repeats import repeats
 from rig.analysis.tracing.rest.binned import Halves, folds
 from rig.analysis.tracing.rest.foretold import unseen_beside
 from rig.analysis.tracing.rest.home import Home
@@ -19,6 +18,7 @@ from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.readings import in_columns, nothing
 from rig.analysis.tracing.rest.unknown import MOST
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.analysis.tracing.workers import each
 from rig.model.effect import Array

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.tracing.floor.repeats import alike, strokes
+from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.strokes import strokes
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.units import TURN

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.floor.repeats import alike, moved_alike
+from rig.analysis.tracing.runs.alike import alike, moved_alike
 from rig.analysis.tracing.runs.recording import Recording
 
 TORQUES: Final = {"tau_m": "τ_m", "tau_l": "τ_l"}

@@ -1,4 +1,4 @@
-"""Sensors of the wrong sign or unit: seen before anything is fitted to them, by what a gear cannot do."""
+"""Torques of the wrong sign or unit: seen before anything is fitted to them, by the weights that were hung."""
 
 from __future__ import annotations
 
@@ -7,9 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.covariance import scatter
-from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Signals
@@ -17,16 +14,10 @@ from rig.model.effect import Array, Signals
 WEIGHT: Final = 1.0  # N·m, by which hung weights must differ to be compared
 SHARE: Final = (0.3, 3.0)  # of the weight that a torque may show: friction of a poor gear takes half of it
 EVEN: Final = 0.3  # mean direction: a triangle that was cut short has a fifth
-SURELY: Final = 5.0  # standard deviations below zero
 READ: Final[Mapping[str, tuple[str, Callable[[Signals], Array]]]] = {
     "tau_l": ("τ_l", lambda s: s.tau_l),
     "tau_m": ("N·τ_m", lambda s: s.ratio * s.tau_m),
 }
-NEGATIVE: Final[Mapping[str, tuple[tuple[str, ...], str]]] = {
-    "τ_m": (("tau_c",), "the friction of the motor comes out negative"),
-    "τ_l": (("compliance", "J_l"), "stiffness of the gear and inertia of the load both come out negative"),
-}
-"""By sensor: coefficients that its sign turns over together, and what they are."""
 
 
 def refuse_odd_torques(runs: Sequence[Recording], name: str) -> None:
@@ -61,11 +52,3 @@ def _but_for_one(runs: Sequence[Recording], weight: Array, mean: Array) -> str:
 def _both_ways(run: Recording) -> bool:
     """Whether friction, which is no weight, goes out of a run's mean."""
     return abs(mean_way(run)) < EVEN
-
-
-def refuse_negative(s: Solution, name: str) -> None:
-    """Raises UsageError when a sensor's sign is the other way round than the rest of the campaign `name` says."""
-    spread = np.sqrt(np.maximum(np.diag(scatter(s)), 0.0))
-    for sensor, (coefficients, words) in NEGATIVE.items():
-        if all(s.value(c) < -SURELY * spread[INDEX[c]] and s.value(c) < 0.0 for c in coefficients):
-            raise UsageError(f"{name}: {words}; {sensor} seems to have the other sign than equations 6 and 7 give it")

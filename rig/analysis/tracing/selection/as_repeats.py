@@ -15,11 +15,11 @@ from scipy.special import fdtrc
 
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.model import Design, Solution
-from rig.analysis.tracing.floor.repeats import alike
+from rig.analysis.tracing.floor.held_out import HeldOut
+from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.done import done, noise_in
-from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.analysis.tracing.thresholds import BY_CHANCE, FAINT, FAIR, FREE, MOSTLY, OF_ONE_SIZE, PLAIN_AMONG_REPEATS
 
 

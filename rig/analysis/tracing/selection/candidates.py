@@ -8,13 +8,13 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Candidate
 from rig.analysis.tracing.fit.channels import CHANNEL, CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, extended, fit
 from rig.analysis.tracing.fit.search import Scored
-from rig.analysis.tracing.outcome.result import Candidate
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import NAMED, QUIET
 from rig.model.effect import Array
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rig.analysis.tracing.outcome.result import NextRun, Verdict
+from rig.analysis.tracing.answer import NextRun, Verdict
 from rig.analysis.tracing.rest.home import Home
 
 

@@ -11,8 +11,8 @@ from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, possible, reduced
+from rig.analysis.tracing.floor.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
-from rig.analysis.tracing.selection.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
 from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN, SHADOW
 from rig.core.quantiles import Z95

@@ -17,10 +17,10 @@ from rig.analysis.tracing.fit.model import design, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
 from rig.analysis.tracing.fit.some import ranking_of_some, search_some
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.selection.candidates import tried
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.elimination import scales
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.selection.selected import Selected, select
 from rig.analysis.tracing.thresholds import ALIKE, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
-from rig.analysis.tracing.floor.repeats import alike, repeats
-from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.hidden_order import hidden_order
@@ -21,6 +20,7 @@ from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.next_run import along

@@ -8,16 +8,16 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.answer import NextRun
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, possible
-from rig.analysis.tracing.outcome.result import NextRun
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.selection.expected import TWICE, Proposal, imagined, proposals, sigmas
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.thresholds import CLOSE, QUIET, STILL_RUN
 
 SIGMAS: Final = 3.0  # standard deviations, at least

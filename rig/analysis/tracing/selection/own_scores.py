@@ -9,10 +9,10 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
-from rig.analysis.tracing.floor.repeats import alike, repeats
+from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
-from rig.analysis.tracing.selection.held_out import unseen
 from rig.analysis.tracing.selection.score import overall
 from rig.model.effect import Array
 

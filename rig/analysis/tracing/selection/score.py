@@ -11,9 +11,9 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, without
+from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.selection.as_repeats import as_repeats
 from rig.analysis.tracing.selection.done import done, noise_in
-from rig.analysis.tracing.selection.held_out import HeldOut
 from rig.analysis.tracing.thresholds import (
     ABOUT,
     ALL,

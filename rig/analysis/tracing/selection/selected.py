@@ -14,10 +14,12 @@ from rig.analysis.tracing.fit.leaning import carrying
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.fit.search import Found, polished, reduced
+from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.floor.noise import Measured, measure, quieter
-from rig.analysis.tracing.floor.repeats import repeats
+from rig.analysis.tracing.floor.of_a_run import PAIRS
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.levels import friction_by_speed
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import (
@@ -27,7 +29,6 @@ from rig.analysis.tracing.selection.elimination import (
     unresolved,
     unscaled,
 )
-from rig.analysis.tracing.selection.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import (
@@ -119,8 +120,9 @@ def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], cover
 
 def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
     """Without names whose size may as well be zero, or is hardly known beside a name that does more, or whose law may
-    be any beside an unknown rest, unless something is left to explain that is not with them. Of two that stand in for
-    each other either may be the one that can go: the one that does less is tried first."""
+    be any beside an unknown rest, unless something is left to explain that is not with them: where few repeats tell
+    the floor, that is no reason for such a name. Of two that stand in for each other either may be the one that can go:
+    the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
     vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
@@ -135,10 +137,11 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         )
     ]
     needless = {score.name for score in insignificant}
+    few = len(repeats(selected.p.eq.runs, runs)) < PAIRS
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
-        if (selected.loud or not fewer.loud) and gone <= needless:
+        if (few or selected.loud or not fewer.loud) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
 

@@ -7,18 +7,18 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.floor.repeats import repeats
-from rig.analysis.tracing.outcome.result import Status, Verdict
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, Confounder, confounders_in
 from rig.analysis.tracing.selection.hidden import hidden

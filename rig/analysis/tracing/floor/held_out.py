@@ -14,8 +14,8 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design, inverse
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
-from rig.analysis.tracing.selection.uncertain import beside, is_inferred
-from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, TURNED
+from rig.analysis.tracing.floor.uncertain import beside, is_inferred
+from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, TURNED
 from rig.model.effect import Array
 
 
@@ -77,8 +77,11 @@ class HeldOut:
         return max(self.ratio(e, keys) for keys in _by_channel(e)), self._worst_run(e)
 
     def beyond_chance(self, e: Mapping[Key, Array]) -> tuple[float, float]:
-        """The same beside what chance does to the rows of a channel too, where they are few."""
-        return max(self.ratio(e, keys) / _by_chance(e, keys) for keys in _by_channel(e)), self._worst_run(e)
+        """The same beside what chance does to the rows of a channel too, where they are few. A channel of one run whose
+        floor others' repeats stand for is judged as that run alone."""
+        many = [keys for keys in _by_channel(e) if len(keys) > 1 or self.lenient[keys[0]] < LENIENT]
+        most = max((self.ratio(e, keys) / _by_chance(e, keys) for keys in many), default=0.0)
+        return most, self._worst_run(e)
 
     def _worst_run(self, e: Mapping[Key, Array]) -> float:
         return max(self.ratio(e, [k]) / self.lenient[k] for k in e)
