@@ -30,6 +30,7 @@ def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[
     """All of them, one after the other: each has its own reason, and most campaigns none."""
     selected = try_prefixes(selected, found, runs, covered)
     selected = try_without_eliminated(selected, found, bank, runs, covered)
+    selected = try_without_each(selected, found, bank, runs, covered)
     selected = try_each_added(selected, found, bank, runs, covered)
     return without_outdone(try_each_instead(selected, found, runs, covered), found, runs)
 
@@ -67,6 +68,27 @@ def try_without_eliminated(
     other = select(selected.p, others, runs, covered)
     stands = _settles(other, stay) or _stands_alone(other, stay)
     return other if stands and not _stands_in(other, stay, found, eliminated, runs) else selected
+
+
+def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where much is left beside several names: what is found without one of them, the others in the model from the
+    start. A second inertia in the place of an encoder's lines takes most of the motor's; beside what is left of that
+    the lines, once they are found, cannot do without it. It counts when fewer names leave less of unseen runs, or when
+    all the others stand and explain everything."""
+    names = {score.name for score in selected.scores}
+    if len(names) < 2 or selected.p.own.line is not None or not selected.loud:
+        return selected
+    for name in sorted(names):
+        terms = selected.solution.design.terms
+        bare = reduced(selected.solution.design, [i for i, term in enumerate(terms) if term.name == name])
+        d = settled(fit(bare), runs, covered).design
+        without = frozenset({name})
+        others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=without)
+        other = select(selected.p, others, runs, covered)
+        fewer = other.names <= names - without and other.left < selected.left
+        if fewer or (names - without <= other.names and _settles(other, names)):
+            return other
+    return selected
 
 
 def _stands_in(

@@ -21,7 +21,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.selection.confounders import confounders_in, with_confounders
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import (
     backward_elimination,
     instead_of_the_spring,
@@ -141,7 +141,8 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
-        if (few or selected.loud or not fewer.loud) and gone <= needless:
+        no_name = few and gone.isdisjoint(CONFOUNDERS)
+        if (no_name or selected.loud or not fewer.loud) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
 
