@@ -77,9 +77,9 @@ class HeldOut:
         return max(self.ratio(e, keys) for keys in _by_channel(e)), self._worst_run(e)
 
     def beyond_chance(self, e: Mapping[Key, Array]) -> tuple[float, float]:
-        """The same beside what chance does to the rows of a channel too, where they are few. A channel of one run whose
-        floor others' repeats stand for is judged as that run alone."""
-        many = [keys for keys in _by_channel(e) if len(keys) > 1 or self.lenient[keys[0]] < LENIENT]
+        """The same beside what chance does to the rows of a channel too, where they are few. Reversals of one run whose
+        floor others' repeats stand for are judged as that run alone."""
+        many = [k for k in _by_channel(e) if k[0][1] != "R" or len(k) > 1 or self.lenient[k[0]] < LENIENT]
         most = max((self.ratio(e, keys) / _by_chance(e, keys) for keys in many), default=0.0)
         return most, self._worst_run(e)
 

@@ -85,8 +85,9 @@ def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequenc
         without = frozenset({name})
         others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=without)
         other = select(selected.p, others, runs, covered)
-        fewer = other.names <= names - without and other.left < selected.left
-        if fewer or (names - without <= other.names and _settles(other, names)):
+        same = replace(other, p=selected.p)  # by the same floors: without repeats they are measured beside the effects
+        fewer = other.names <= names - without and same.left < selected.left
+        if fewer or (names - without <= other.names and _settles(same, names)):
             return other
     return selected
 
