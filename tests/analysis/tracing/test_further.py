@@ -126,3 +126,40 @@ def test_an_effect_is_asked_in_all_its_laws_before_the_next_one_is() -> None:
     terms: Any = [mode, support, mode]
     ranking: Any = [SimpleNamespace(term=mode, laws=(driven,)), SimpleNamespace(term=support, laws=())]
     assert further._in_all_laws(terms, ranking) == [mode, driven, support]
+
+
+@pytest.mark.parametrize(("found_without", "left", "loud", "expected"), [
+    ({"lines"}, 1.0, True, {"lines"}),  # fewer names leave less
+    ({"lines"}, 4.5, True, {"lines", "mode"}),  # fewer names leave more
+    ({"lines", "play"}, 1.0, False, {"lines", "play"}),  # the others stand, and with a new one explain everything
+    ({"lines", "play"}, 1.0, True, {"lines", "mode"}),
+    ({"play"}, 1.0, False, {"lines", "mode"}),  # of the others one is lost
+])  # fmt: skip
+def test_what_is_found_without_one_of_several_names_counts_where_it_is_better(
+    monkeypatch: pytest.MonkeyPatch, found_without: set[str], left: float, loud: bool, expected: set[str]
+) -> None:
+    """A mode in the place of an encoder's lines made another motor of this one. Without the lines nothing is found."""
+
+    def standing(names: set[str], left: float, loud: bool) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in sorted(names))
+        solution = SimpleNamespace(design=SimpleNamespace(terms=terms))
+        scores = [SimpleNamespace(name=name) for name in sorted(names)]
+        return SimpleNamespace(p=p, solution=solution, scores=scores, names=names, left=left, loud=loud)
+
+    def searched(design: Any, *_: object, excluded: frozenset[str], **__: object) -> Any:
+        return found_without if excluded == {"mode"} else set()
+
+    p = SimpleNamespace(own=SimpleNamespace(line=None), floors={})
+    monkeypatch.setattr(further, "reduced", lambda d, gone: d)
+    monkeypatch.setattr(further, "fit", lambda d: d)
+    monkeypatch.setattr(further, "settled", lambda d, *_: SimpleNamespace(design=d))
+    monkeypatch.setattr(further, "search_some", searched)
+    monkeypatch.setattr(
+        further, "select", lambda p, names, *_: standing(names, left, loud) if names else standing(set(), 9.0, True)
+    )
+    monkeypatch.setattr(further, "replace", lambda other, p: other)
+    monkeypatch.setattr(further, "_known", lambda other, stay: True)
+    found: Any = SimpleNamespace(ranking=())
+    nothing: Any = None
+    kept = further.try_without_each(standing({"lines", "mode"}, 3.9, True), found, nothing, (), nothing)
+    assert kept.names == expected

@@ -16,6 +16,7 @@ from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.thresholds import ALONE
 from rig.runfile.run import Run
 from tests.analysis.tracing.spiked import Columns, spiked
 
@@ -73,6 +74,15 @@ def test_a_few_rows_may_be_as_far_over_the_floor_as_chance_brings_them(rows: int
     e = {(0, "R"): np.full(rows, over)}
     assert at.loud(e, 1.5, named=False) is loud
     assert at.worst(e)[0] == pytest.approx(over), "what is told is what is left"
+
+
+@pytest.mark.parametrize(("lenient", "over", "loud"), [(1.2, 2.3, True), (1.5, 2.3, False), (1.5, 3.2, True)])
+def test_reversals_of_one_run_that_no_repeats_tell_of_are_judged_as_that_run(
+    lenient: float, over: float, loud: bool
+) -> None:
+    at = HeldOut((0,), {(0, "R"): 1.0, (0, "M"): 1.0}, {}, {(0, "R"): lenient, (0, "M"): 1.0}, {})
+    e = {(0, "R"): np.full(500, over), (0, "M"): np.ones(500)}
+    assert at.loud(e, ALONE, named=False) is loud
 
 
 class SimplePart:

@@ -41,11 +41,21 @@ def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: py
     assert left.held == ("held out as prepared" if astray else "held")
 
 
-@pytest.mark.parametrize(("needed", "left"), [("presliding", ["presliding"]), ("both", ["stribeck", "presliding"])])
+@pytest.fixture(autouse=True)
+def repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Enough was repeated, where a test says no other."""
+    monkeypatch.setattr(selected, "_few_repeats", lambda p, runs: False)
+
+
+@pytest.mark.parametrize(("needed", "few", "left"), [
+    ("presliding", False, ["presliding"]), ("both", False, ["stribeck", "presliding"]), ("both", True, []),
+])  # fmt: skip
 def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
-    monkeypatch: pytest.MonkeyPatch, needed: str, left: list[str]
+    monkeypatch: pytest.MonkeyPatch, needed: str, few: bool, left: list[str]
 ) -> None:
-    """The one that does less is tried first; where that cannot go the other is."""
+    """The one that does less is tried first; where that cannot go the other is; where few repeats tell the floor, none
+    is needed for what is left over that."""
+    monkeypatch.setattr(selected, "_few_repeats", lambda p, runs: few)
     work = {"stribeck": 900.0, "presliding": 500.0}
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 

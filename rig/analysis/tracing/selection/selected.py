@@ -137,7 +137,7 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         )
     ]
     needless = {score.name for score in insignificant}
-    few = len(repeats(selected.p.eq.runs, runs)) < PAIRS
+    few = _few_repeats(selected.p, runs)
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
@@ -145,6 +145,10 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         if (no_name or selected.loud or not fewer.loud) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:
+    return len(repeats(p.eq.runs, runs)) < PAIRS
 
 
 def _vouched_for(score: HeldOutScore, most: float) -> bool:
