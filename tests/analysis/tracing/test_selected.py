@@ -61,7 +61,7 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=work[name]) for name in names]
-        effect = SimpleNamespace(sizes=lambda parameters: parameters[:1])
+        effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
