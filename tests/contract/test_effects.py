@@ -152,15 +152,18 @@ def test_lag_is_told_in_other_words_in_the_baseline_and_in_the_effect_that_has_o
 def test_friction_never_gives_energy(name: str, sign: float):
     effect, s = CATALOGUE[name], motion(sign)
     for shape in effect.shapes(REACH):
-        columns = effect.columns(s, shape)[Port.MOTOR_TORQUE]
-        assert (columns * s.omega_m[:, None] >= 0).all()
+        ((port, columns),) = effect.columns(s, shape).items()
+        omega = {Port.MOTOR_TORQUE: s.omega_m, Port.LOAD_TORQUE: s.omega_l}[port]
+        assert (columns * omega[:, None] >= 0).all()
 
 
 @pytest.mark.parametrize("name", sorted(FRICTION | {"presliding_friction", "thermal_friction_drift"}))
 def test_friction_is_the_same_both_ways(name: str):
     effect = CATALOGUE[name]
     forward, backward = from_rest(1.0), from_rest(-1.0)  # friction that builds up is none where the run began in motion
-    backward = dataclasses.replace(backward, theta_m=-forward.theta_m, theta_l=-forward.theta_l)
+    backward = dataclasses.replace(
+        backward, theta_m=-forward.theta_m, theta_l=-forward.theta_l, omega_l=-forward.omega_l
+    )
     for shape in effect.shapes(REACH):
         (ahead,), (back,) = (effect.columns(s, shape).values() for s in (forward, backward))
         if "by_way" in effect.shape_names and shape[effect.shape_names.index("by_way")]:

@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.search import Found, relawed, still
 from rig.analysis.tracing.fit.some import search_some, some
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
+from rig.analysis.tracing.floor.vibration import VIBRATION
 from rig.analysis.tracing.prepared import Prepared, built
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
 from rig.analysis.tracing.selection.further import select_further
@@ -71,6 +72,7 @@ def _selected(
     give_back()
     covered = tried.covered
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
+    selected = _shaken_as_it_stands(selected, found, runs, covered)
     if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
@@ -78,6 +80,19 @@ def _selected(
         other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
         return (selected, found, covered) if other[0].loud else other
     return selected, found, covered
+
+
+def _shaken_as_it_stands(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Selected again where a line was taken for a vibration of the load beside effects that do not stand: beside what
+    does it may be one sensor's own."""
+    stands = selected.solution.design.terms
+    if VIBRATION.name not in selected.p.own.made or len(stands) == len(found.solution.design.terms):
+        return selected
+    again, s = beside(selected.p, selected.solution, covered)
+    if VIBRATION.name in again.own.made:
+        return selected
+    again = replace(again, held_out=replace(again.held_out, calm=selected.p.held_out.calm))
+    return select(again, replace(found, solution=s), runs, covered)
 
 
 def _remembering(terms: Sequence[Term]) -> frozenset[str]:

@@ -22,6 +22,8 @@ KEPT = 0.65  # of a run that has no repeat is fitted, the rest held out
 SPARED = 3  # one stretch of so many is held out
 FORTH_AND_BACK = 2  # strokes
 TURNED_BACK = 0.7  # of a stroke: what is left of it goes with the next, so that both ways are tested
+PAIRS = 8  # of strokes, from which on every third tells of all
+MIXED = 2.0  # highest speed of strokes over the lowest: a motion that is repeated has one
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 HELD_PART = "part held out"
 TOLD = 8  # names of runs in a sentence
@@ -135,10 +137,10 @@ def _parts(runs: Sequence[Recording], moving: list[int]) -> Split:
 
 def _parted(runs: Sequence[Recording], chosen: Sequence[int]) -> tuple[tuple[Recording, ...], tuple[int, ...]]:
     """The runs with a third of each chosen one as a run of its own behind the others, and where those are: every third
-    stretch of one that turns on and on, else the last turns or strokes."""
+    stretch of one that turns on and on or that goes forth and back at many speeds, else the last turns or strokes."""
     made, held = list(runs), []
     for i in chosen:
-        parts = _stretches(runs[i]) or _head_and_tail(runs[i])
+        parts = _stretches(runs[i]) or _here_and_there(runs[i]) or _head_and_tail(runs[i])
         if parts is None:
             continue
         made[i] = replace(runs[i], pieces=parts[0])
@@ -175,6 +177,32 @@ def _whole_turns(piece: Signals) -> list[Signals]:
     edges = [*np.searchsorted(np.maximum.accumulate(theta), marks), theta.size]
     cut = [slice(int(lo), int(hi)) for lo, hi in itertools.pairwise(edges)]
     return [piece.part(rows) for rows in cut if rows.stop - rows.start > STRETCH / 2]
+
+
+def _here_and_there(run: Recording) -> Parts | None:
+    """Strokes of many speeds, as in the log of a machine at work, every third pair of them to test with: its end alone
+    may be faster than all before. Cut where the motor turns, for friction remembers where it turned back."""
+    pairs = [pair for piece in run.pieces for pair in _pairs(piece)]
+    if len(pairs) < PAIRS:
+        return None
+    speeds = [float(np.mean(np.abs(pair.omega_m))) for pair in pairs]
+    if np.percentile(speeds, 90) < MIXED * np.percentile(speeds, 10):
+        return None
+    held = range(SPARED // 2, len(pairs), SPARED)
+    return tuple(pair for j, pair in enumerate(pairs) if j not in held), tuple(pairs[j] for j in held)
+
+
+def _pairs(piece: Signals) -> list[Signals]:
+    """A stroke and the next, each from well within one stroke on, and as long as a stretch at least."""
+    ways = strokes(piece.theta_m)
+    within = [
+        way.start + int(TURNED_BACK * (way.stop - way.start)) for way in ways[FORTH_AND_BACK - 1 :: FORTH_AND_BACK]
+    ]
+    edges = [0]
+    for cut in within:
+        if cut - edges[-1] >= STRETCH:
+            edges.append(cut)
+    return [piece.part(slice(lo, hi)) for lo, hi in itertools.pairwise([*edges[:-1], piece.theta_m.size])]
 
 
 def _head_and_tail(run: Recording) -> Parts | None:
