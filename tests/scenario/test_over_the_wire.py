@@ -167,8 +167,8 @@ def test_latch_skew_over_a_bus_and_a_serial_line_is_told_with_its_interval(twin:
 def test_two_programs_at_one_bench_are_refused_by_name_and_the_first_runs_on(twin: Twin, tmp_path: Path) -> None:
     bench = str(twin.bench("twin-can"))
     patient = ["--set", "limits.stale_s=0.6", "--set", "devices.drive.watchdog=0.7"]
-    command = [*HDRIG, "run", "kinematic-error", "--bench", bench, "--out", str(tmp_path), *SHORT, *patient]
-    command += ["--with", "cycles=1.5"]  # 38 s: the others take a while to start
+    longer = ["--with", "amplitude_deg=720", "--with", "frequency=0.04", "--with", "cycles=1.5"]  # 38 s: others start
+    command = [*HDRIG, "run", "kinematic-error", "--bench", bench, "--out", str(tmp_path), *longer, *patient]
     first = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + 60
     while not list(tmp_path.glob("*/*kinematic-error*/journal*")) and time.monotonic() < until:

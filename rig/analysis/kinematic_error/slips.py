@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion
-from rig.analysis.motion.strokes import Stroke
+from rig.analysis.motion.strokes import Index, Stroke
 from rig.analysis.orders.revolutions import GRID, StrokeResult
 from rig.core.units import TURN
 
@@ -24,6 +24,7 @@ FAR: Final = 10.0  # σ of what neighbouring windows differ by: wander of a load
 LEAST: Final = 3.0  # arcsec: less is no slip that anybody looks for in one run
 BESIDE: Final = 0.2  # of the largest: what the trend and the mean turn make of it is less
 STAYS: Final = 0.5  # of the step, which the longer stretches must be apart by: the trend that was taken off leans on it
+SLOWER: Final = 1.02  # times as long as usual for a sixteenth of a turn: a ramp of the speed is over by then
 TOLD: Final = 3  # slips told one by one
 SIGMA: Final = 1.4826  # of normal noise, over its median size
 
@@ -55,8 +56,11 @@ def slipped(motion: Motion, strokes: Sequence[Stroke], results: Sequence[StrokeR
 
 def find_slips(motion: Motion, strokes: Sequence[Stroke], results: Sequence[StrokeResult]) -> list[Slip]:
     """Steps within strokes, in order of time; none where a direction has a single revolution."""
-    rests = [_rest(float(motion.theta_m[s.edges[0]]), r, results) for s, r in zip(strokes, results, strict=True)]
-    apart = [None if rest is None else _apart(rest, WINDOW) for rest in rests]
+    rests = [
+        _rest(float(motion.theta_m[s.edges[0]]), r, results, _steady(motion, s))
+        for s, r in zip(strokes, results, strict=True)
+    ]
+    apart = [None if rest is None else _apart(rest.left, WINDOW) for rest in rests]
     known = [a for a in apart if a is not None and a.size]
     if not known:
         return []
@@ -65,20 +69,43 @@ def find_slips(motion: Motion, strokes: Sequence[Stroke], results: Sequence[Stro
     found = []
     for stroke, rest, a in zip(strokes, rests, apart, strict=True):
         if rest is not None and a is not None:
-            found += [Slip(_row(stroke, at), size, 2 * sigma) for at, size in _steps(rest, a, least)]
+            found += [
+                Slip(_row(motion, stroke, rest.first + at), size, 2 * sigma) for at, size in _steps(rest.left, a, least)
+            ]
     return sorted(found, key=lambda slip: slip.row)
 
 
-def _rest(start: float, result: StrokeResult, all_of_them: Sequence[StrokeResult]) -> Array | None:
-    """θ̃ along the stroke less what comes again every turn, (R·GRID,) arcsec, as it was gone through from `start` rad of
-    the motor on."""
+@dataclass(frozen=True)
+class _Rest:
+    """θ̃ along a stroke less what comes again every turn, (n,) arcsec, from its point `first` on."""
+
+    left: Array
+    first: int
+
+
+def _rest(
+    start: float, result: StrokeResult, all_of_them: Sequence[StrokeResult], steady: tuple[int, int]
+) -> _Rest | None:
+    """Of the `steady` points of a stroke, as it was gone through from `start` rad of the motor on."""
     same = np.concatenate([r.curves for r in all_of_them if r.direction == result.direction])
     if len(same) < 2:
         return None
     first = int(start / TURN % 1.0 * GRID)
     rest = np.roll(result.curves - np.mean(same, axis=0), -first, axis=1)
     rest *= len(same) / (len(same) - 1)  # a step is in the mean as well
-    return np.asarray((rest if result.direction > 0 else np.roll(rest, -1, axis=1)[:, ::-1]).ravel())
+    along = np.asarray((rest if result.direction > 0 else np.roll(rest, -1, axis=1)[:, ::-1]).ravel())
+    return _Rest(along[slice(*steady)], steady[0])
+
+
+def _steady(motion: Motion, stroke: Stroke) -> tuple[int, int]:
+    """The points of a stroke between its run-up and its run-down, (first, one past the last): an inertia that gains
+    speed winds the gear up, and lets go of it at once when the speed is reached."""
+    rows = _rows(motion, stroke, np.arange(0, stroke.revolutions * GRID + 1, WINDOW))
+    took = np.diff(rows if motion.t is None else motion.t[rows])
+    at_speed = np.flatnonzero(took < SLOWER * np.median(took))
+    if at_speed.size < 2:
+        return 0, stroke.revolutions * GRID
+    return int(at_speed[0] + 1) * WINDOW, int(at_speed[-1]) * WINDOW  # the first and the last may have an end of a ramp
 
 
 def _apart(rest: Array, window: int) -> Array:
@@ -110,10 +137,14 @@ def _sized(before: Array, after: Array) -> float:
     return float(np.linalg.lstsq(columns, np.concatenate([before, after]), rcond=None)[0][2])
 
 
-def _row(stroke: Stroke, place: int) -> int:
+def _row(motion: Motion, stroke: Stroke, place: int) -> int:
     """The row of a place along a stroke's revolutions."""
-    turn, rest = divmod(place, GRID)
-    if turn >= stroke.revolutions:
-        return int(stroke.edges[-1])
-    first, last = int(stroke.edges[turn]), int(stroke.edges[turn + 1])
-    return first + (last - first) * rest // GRID
+    return int(_rows(motion, stroke, np.array([place]))[0])
+
+
+def _rows(motion: Motion, stroke: Stroke, places: Index) -> Index:
+    """Rows at which the motor comes by some places of a stroke."""
+    first, last = int(stroke.edges[0]), int(stroke.edges[-1])
+    theta = motion.theta_m[first : last + 1]
+    gone = np.maximum.accumulate(stroke.direction * (theta - theta[0]))
+    return np.asarray(first + np.minimum(np.searchsorted(gone, places * (TURN / GRID)), last - first))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rig.analysis import Verdict, analyse
-from rig.core.units import ARCSEC
+from rig.core.units import ARCSEC, TURN
 from tests.analysis.synthetic import MadeRun, slow_run
 
 
@@ -47,3 +47,23 @@ def test_lost_counts_are_told_and_settle_no_limit(at: float, size: float) -> Non
 )
 def test_what_comes_and_goes_drifts_or_wanders_is_no_slip(shift: np.ndarray | float) -> None:
     assert not [c for c in analyse(made(shift)).checks if c.name == "slips"]
+
+
+def ramped(windup: float, step: float) -> MadeRun:
+    """Twenty turns forward at 120 rpm with a run-up and a run-down of a second, while which the gear is wound up by
+    `windup` arcsec, and a `step` of θ̃ in the middle."""
+    t = np.arange(0.0, 12.0, 1e-3)
+    ramp = np.clip(np.minimum(t - 0.5, 11.5 - t), 0.0, 1.0)
+    theta_m = np.cumsum(2 * TURN * ramp) * 1e-3
+    wound = windup * np.sign(np.gradient(ramp)) + step * (t > 6.0)
+    theta_l = theta_m / 50 - ARCSEC * (40.0 * np.cos(2 * theta_m) + wound)
+    zero = np.zeros(t.size)
+    columns = {"t": t, "theta_m": theta_m, "theta_l": theta_l, "theta_ref": theta_m, "tau_m": zero, "tau_l": zero}
+    return MadeRun(columns | {"flags": zero}, dict(slow_run(1).manifest))
+
+
+def test_a_gear_that_is_wound_up_while_its_load_gains_speed_has_not_slipped() -> None:
+    assert not [c for c in analyse(ramped(8.0, 0.0)).checks if c.name == "slips"]
+    (check,) = [c for c in analyse(ramped(8.0, 12.0)).checks if c.name == "slips"]
+    assert "t = 6.0" in check.sentence
+    assert check.sentence.count("arcsec at") == 1
