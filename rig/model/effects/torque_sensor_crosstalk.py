@@ -16,7 +16,7 @@ class TorqueSensorCrosstalk(Effect):
     """The shaft torque reads c·cos(k·θ_l + φ) too much, k = 1 or 2: neither the angles nor the motor know of it
 
     A slip ring with a bad place has the next orders as well. What bends the sensor may be the load itself, whose rope
-    pulls it to one side: then it reads T·c·cos(k·θ_l + φ) too much.
+    pulls it to one side: then it reads T·c·cos(k·θ_l + φ) too much, or as much either way, |T|·c·cos(k·θ_l + φ).
     """
 
     name: ClassVar[str] = "torque_sensor_crosstalk"
@@ -29,7 +29,7 @@ class TorqueSensorCrosstalk(Effect):
         "{n}·θ_l",
     )
     source: ClassVar[str] = "taghirad1999"
-    PLAIN, LOADED = 0.0, 1.0  # third shape parameter
+    PLAIN, LOADED, EITHER_WAY = 0.0, 1.0, 2.0  # third shape parameter
     MOST: Final = 0.1  # of the torque: a sensor whose gain changes by more is broken
     LARGEST: Final = 3e-4  # rad times K: 2 N·m in the paper's gear, whose sensor reaches some 100 N·m
     needs: ClassVar[frozenset[str]] = frozenset({"tau_l"})
@@ -42,12 +42,16 @@ class TorqueSensorCrosstalk(Effect):
         plain = once_or_twice(reach)
         loaded = [shape for shape in plain if shape[1] <= 2.0 and reach.weights > 1]
         both = [(1.0, 2.0)] if len(loaded) > 1 else []
-        return (*((*s, self.PLAIN) for s in plain), *((*s, self.LOADED) for s in (*loaded, *both)))
+        kinds = (self.LOADED, self.EITHER_WAY)
+        return (*((*s, self.PLAIN) for s in plain), *((*s, kind) for kind in kinds for s in (*loaded, *both)))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every k·θ_l, times the torque where they go with it."""
         made = waves(signals.theta_l, shape)
-        return {Port.READS_TAU_L: made * np.nan_to_num(signals.torque)[:, None] if _is_loaded(shape) else made}
+        if not _is_loaded(shape):
+            return {Port.READS_TAU_L: made}
+        torque = np.nan_to_num(signals.torque)
+        return {Port.READS_TAU_L: made * (np.abs(torque) if shape[2] == self.EITHER_WAY else torque)[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase of every order."""
@@ -67,4 +71,4 @@ class TorqueSensorCrosstalk(Effect):
 
 
 def _is_loaded(shape: Shape) -> bool:
-    return len(shape) > 2 and shape[2] == TorqueSensorCrosstalk.LOADED
+    return len(shape) > 2 and shape[2] != TorqueSensorCrosstalk.PLAIN
