@@ -10,14 +10,12 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
+from rig.analysis.tracing.selection.falls import share, share_of_all
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.selection.verdict import _beside_a_law as beside_a_law
-from rig.analysis.tracing.selection.verdict import _confounded as confounded
+from rig.analysis.tracing.selection.standing import standing
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
-from rig.analysis.tracing.selection.verdict import _share as share
-from rig.analysis.tracing.selection.verdict import _share_of_all as share_of_all
-from rig.analysis.tracing.selection.verdict import _standing as standing
 from rig.analysis.tracing.thresholds import PART
 from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
 from rig.model.effects.torque_ripple import TorqueRipple
@@ -81,8 +79,8 @@ def test_what_explains_one_channel_beside_far_more_in_others_takes_little_of_all
     before: Any = dict(zip(keys, (1.2, 1.26, 1.6), strict=True))
     one: Any = before | {(0, "A"): 1.0}
     assert share(1.2, 1.0) > 0.9
-    assert share_of_all(p, before, one) == pytest.approx(0.44 / (0.44 + 0.5876 + 1.56))
-    assert share_of_all(p, before, dict.fromkeys(keys, 1.0)) == pytest.approx(1.0)
+    assert share_of_all(p.held_out, before, one) == pytest.approx(0.44 / (0.44 + 0.5876 + 1.56))
+    assert share_of_all(p.held_out, before, dict.fromkeys(keys, 1.0)) == pytest.approx(1.0)
 
 
 def test_a_torque_in_one_way_only_is_no_weight_beside_a_friction() -> None:
@@ -101,3 +99,25 @@ def test_a_vibration_of_all_runs_stands_beside_a_law_that_leaves_nothing(
     """It has no score on unseen runs, for every run has its own phase of it."""
     names = ("external_vibration", CLEAN.name, PLAIN.name)
     assert beside_a_law("load", names, [CLEAN, PLAIN], {PLAIN.name}, own) == stand
+
+
+@pytest.mark.parametrize(("drift", "larger"), [
+    (0.9, {"hysteretic_stiffness", "cogging_torque"}), (1.2, set()),
+])  # fmt: skip
+def test_names_stand_beside_a_law_that_is_below_the_floor(drift: float, larger: set[str]) -> None:
+    """The gain of a torque sensor that drifts by a little beside a loop of thirty floors."""
+    law = HeldOutScore("sensor_gain_drift", 0.9, drift, 1.1, 1.0, (), anywhere=1.1)
+    laws, names = [CONFOUNDERS["sensor_gain_drift"]], (PLAIN.name, CLEAN.name, "quadratic_drag")
+    smaller = HeldOutScore("quadratic_drag", 0.9, 0.8, 1.0, 1.0, (), anywhere=1.0)
+    scores = [PLAIN, replace(CLEAN, size=1.3), smaller, law]
+    assert set(larger_than(laws, names, scores, {PLAIN.name})) == larger
+    assert larger_than(laws, names, scores, {PLAIN.name, law.name}) == ()  # it is plain to see
+    assert larger_than(laws, names, scores, set()) == ()  # no name is
+
+
+def test_the_sentence_says_that_there_is_a_law_beside_the_names() -> None:
+    found = confounded(CONFOUNDERS["sensor_gain_drift"], ("hysteretic_stiffness",))
+    said = beside_little(CONFOUNDERS["sensor_gain_drift"], found).verdict
+    assert said.effects == ("hysteretic_stiffness",)
+    assert said.sentence.startswith(found.verdict.sentence)
+    assert "less than the floor in any run" in said.sentence

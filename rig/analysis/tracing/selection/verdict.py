@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.answer import Status, Verdict
-from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
@@ -19,22 +19,21 @@ from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.conclusion import Conclusion
-from rig.analysis.tracing.selection.confounders import CONFOUNDERS, Confounder, confounders_in
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
+from rig.analysis.tracing.selection.falls import most, share, share_of_all
 from rig.analysis.tracing.selection.hidden import hidden
 from rig.analysis.tracing.selection.inseparable import inseparable
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
+from rig.analysis.tracing.selection.standing import standing
 from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART, QUIET
 from rig.model.effect import Array
-from rig.model.effects import LIBRARY
 
 DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
 SAME_ORDER: Final = 0.05  # of a turn
-# a torque along the output's turn in one way only, as of a cable that tightens, is half of it a weight and half of it
-# friction along that turn
-ONE_WAY: Final[Mapping[str, frozenset[str]]] = {"sector_drag": frozenset({"gravity_unbalance"})}
 HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
@@ -60,8 +59,12 @@ def decide(
     plain = {score.name for score in scores if score.plain}
     if confounders := [confounder for confounder in confounders_in(s) if not loud or confounder.effect.name in plain]:
         own = () if loud else p.own.made.keys()
-        stand = _beside_a_law(confounders[0].coordinate, names, scores, plain, own)
-        return _confounded(confounders[0], stand)
+        stand = beside_a_law(confounders[0].coordinate, names, scores, plain, own)
+        larger = () if loud else larger_than(confounders, names, scores, plain)
+        if larger:
+            named = tuple(name for name in names if name in stand or name in larger)
+            return beside_little(confounders[0], _settled(p, named, found, *_falls(p, before, after)))
+        return confounded(confounders[0], stand)
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     if not loud:
         inside = None if names else hidden(p, s, after, floors)
@@ -78,11 +81,11 @@ def decide(
     best = where[0]
     shared = [name for name in names if name not in p.own.made and name not in _of_the_same_order(s, best)]
     told = line is None and (known or total <= EXPLAINED)
-    taken = min(_share(*_most(p, before, after)), _share_of_all(p, before, after))
-    stand = _standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
+    taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
+    stand = standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
-        sentence = f"{lacks(stand, *_most(p, before, after), 'most improved')} {sentence}"
+        sentence = f"{lacks(stand, *most(p.held_out, before, after), 'most improved')} {sentence}"
     verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Conclusion(verdict, best, _lives(where), along(best.coordinate))
 
@@ -128,14 +131,6 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
     return p.held_out.worst(before)[0], p.held_out.worst(after)[0]
 
 
-def _confounded(confounder: Confounder, names: tuple[str, ...]) -> Conclusion:
-    """A law that is no effect of the library is in the model, which has it by then: no other term is added. A name that
-    is half of what the law is the other half of does not stand beside it."""
-    names = tuple(name for name in names if name not in ONE_WAY.get(confounder.effect.name, ()))
-    verdict = Verdict(Status.UNKNOWN, names, (), confounder.coordinate, None, None, confounder.sentence)
-    return Conclusion(verdict, None, (confounder.coordinate,), along(confounder.coordinate))
-
-
 def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
     """Nothing is above the floor, but the zeros of the runs drift, by more than it; None where they do not. Names stand
     beside it."""
@@ -147,28 +142,6 @@ def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[
     )
 
 
-def _standing(
-    coordinate: str, names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str], told: bool = True
-) -> tuple[str, ...]:
-    """Names that stand beside a rest: those `plain` to see; and where it can be `told` what much is, those beside which
-    nothing is left in any channel they act in, nor in the runs they act in most; else those that stand whatever the
-    floor is."""
-    amiss = {score.name for score in scores if max(score.anywhere, score.left) > MISSING}
-    sure = {score.name for score in scores if score.whatever_the_floor}
-    clean = _beside(coordinate, [name for name in names if (name not in amiss if told else name in sure)])
-    return tuple(name for name in names if name in plain or name in clean)
-
-
-def _beside_a_law(
-    coordinate: str, names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str], own: Collection[str]
-) -> tuple[str, ...]:
-    """Names that stand beside a law without one: what such a law has wrong of its form is chased by names as well, so
-    that those alone stand that are plain to see; and what runs have each of its `own`, where nothing is left that it
-    might have taken on."""
-    stand = _standing(coordinate, names, scores, plain, told=False)
-    return tuple(name for name in names if name in stand or name in own)
-
-
 def _of_the_same_order(s: Solution, rest: Home) -> set[str]:
     """Effects of the order of the motor angle that is left: what makes a wave in the angle makes one in the torque too,
     and a torque that leaves it there is not what makes both."""
@@ -176,37 +149,6 @@ def _of_the_same_order(s: Solution, rest: Home) -> set[str]:
         return set()
     orders = [(t.name, t.shape[0]) for t in s.design.terms if t.effect.shape_names[:1] == ("order",)]
     return {name for name, order in orders if abs(order - rest.order) < SAME_ORDER}
-
-
-def _beside(coordinate: str, names: Sequence[str]) -> tuple[str, ...]:
-    """Names that may stand beside a rest: one with memory would give its share to any law that remembers, and the mean
-    curve of its loop to one that bends the spring."""
-    if coordinate != "memory":
-        return tuple(names)
-    return tuple(name for name in names if not (LIBRARY[name].remembers or LIBRARY[name].backbone))
-
-
-def _pairs(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> list[tuple[float, float]]:
-    """RMS over floor without and with what was found, by channel."""
-    keys = [[k for k in after if k[1] == c] for c in CHANNELS]
-    return [(p.held_out.ratio(before, mine), p.held_out.ratio(after, mine)) for mine in keys if mine]
-
-
-def _most(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:
-    """RMS over floor without and with what was found, of the channel that gains most."""
-    return max(_pairs(p, before, after), key=lambda pair: pair[0] - pair[1])
-
-
-def _share_of_all(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> float:
-    """Of the excess over the floor in all channels, what has gone: a law that explains one channel while far more is
-    left in the others may be a shadow there of what those show."""
-    pairs = _pairs(p, before, after)
-    return sum(max(b**2 - a**2, 0.0) for b, a in pairs) / max(sum(max(b**2 - 1.0, 0.0) for b, _ in pairs), 1e-9)
-
-
-def _share(before: float, after: float) -> float:
-    """Of the excess over the floor in a channel, what has gone."""
-    return (before**2 - after**2) / max(before**2 - 1.0, 1e-9)
 
 
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
