@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.holdout import _head_and_tail, _stretches, split
+from rig.analysis.tracing.runs.holdout import _head_and_tail, _here_and_there, _stretches, split
 from tests.analysis.tracing.test_few_channels import reduced
 
 
@@ -41,7 +41,7 @@ class Piece:
     """As much of a piece as a cut needs."""
 
     def __init__(self, theta_m: np.ndarray) -> None:
-        self.theta_m = theta_m
+        self.theta_m, self.omega_m = theta_m, np.gradient(theta_m, 0.004)
 
     def part(self, rows: slice) -> Piece:
         return Piece(self.theta_m[rows])
@@ -115,3 +115,25 @@ def test_of_a_procedure_that_was_run_once_a_part_is_held_out(tmp_path: Path, sha
     whole = next(run for run in campaign.runs if run.name == "lock_60_1")
     assert sum(run.duration for run in lock) == pytest.approx(whole.duration)
     assert parts.how.endswith("of what was done only once a third, whole turns or strokes")
+
+
+def log(*speeds: float) -> Any:
+    """A motor at work: four seconds forth at each of some speeds [rad/s], and back."""
+    there = [np.linspace(0.0, speed * 4.0, 1000) for speed in speeds]
+    return SimpleNamespace(pieces=(Piece(np.concatenate([x for way in there for x in (way, way[::-1])])),))
+
+
+def test_a_log_of_many_speeds_is_tested_with_strokes_from_all_of_it() -> None:
+    fast_at_last = (3.0, 5.0, 8.0, 4.0, 6.0, 9.0, 5.0, 3.0, 7.0, 20.0, 40.0, 30.0)
+    fitted, tested = _here_and_there(log(*fast_at_last)) or ((), ())
+    fastest = [max(float(np.abs(piece.omega_m).max()) for piece in part) for part in (fitted, tested)]
+    assert min(fastest) > 25.0, "rad/s: neither is told of speeds that the other has alone"
+    assert sum(piece.theta_m.size for piece in (*fitted, *tested)) == 24_000, "nothing is lost"
+    assert 0.2 < sum(piece.theta_m.size for piece in tested) / 24_000 < 0.45
+    for piece in (*fitted[1:], *tested):
+        assert abs(float(piece.omega_m[1])) > 1.0, "rad/s: cut where the motor turns, not where it turns back"
+
+
+def test_a_motion_that_is_repeated_or_short_is_tested_with_its_end() -> None:
+    assert _here_and_there(log(*[5.0] * 12)) is None
+    assert _here_and_there(log(3.0, 40.0, 5.0)) is None
