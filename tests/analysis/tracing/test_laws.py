@@ -402,8 +402,8 @@ def test_what_an_oil_film_leaves_of_friction_at_rest_falls_to_half_and_goes_on_f
 
 def test_a_fan_of_curved_blades_drags_otherwise_backwards() -> None:
     effect = QuadraticDrag()
-    ways = [effect.columns(motion(sign), (1.0, 2.0))[Port.MOTOR_TORQUE] for sign in (1.0, -1.0)]
-    whole = [effect.columns(motion(sign), (0.0, 2.0))[Port.MOTOR_TORQUE][:, 0] for sign in (1.0, -1.0)]
+    ways = [effect.columns(motion(sign), (1.0, 2.0, 0.0))[Port.MOTOR_TORQUE] for sign in (1.0, -1.0)]
+    whole = [effect.columns(motion(sign), (0.0, 2.0, 0.0))[Port.MOTOR_TORQUE][:, 0] for sign in (1.0, -1.0)]
     for i, (columns, drag) in enumerate(zip(ways, whole, strict=True)):
         np.testing.assert_array_equal(columns[:, i], drag)
         assert not columns[:, 1 - i].any()
@@ -521,6 +521,28 @@ def test_crosstalk_that_is_felt_twice_a_turn_alone_is_not_nothing(twice: float, 
     effect = TorqueSensorCrosstalk()
     fit = Fit(np.array([0.0, 0.001, twice, 0.0]), (1.0, 2.0), 1e-4 * np.eye(6), KNOWN, 50.0)
     assert all(size.holds_zero for size in effect.sizes(effect.parameters(fit))) is nothing
+
+
+def test_crosstalk_may_go_with_the_torque_or_with_its_size() -> None:
+    effect, s = TorqueSensorCrosstalk(), motion()
+    s = dataclasses.replace(s, torque=np.linspace(-40.0, 40.0, s.t.size))
+    plain, signed, either = (effect.columns(s, (1.0, 2.0, kind))[Port.READS_TAU_L] for kind in (0.0, 1.0, 2.0))
+    np.testing.assert_allclose(signed, plain * s.torque[:, None])
+    np.testing.assert_allclose(either, plain * np.abs(s.torque)[:, None])
+
+
+def test_drag_of_the_load_goes_with_the_speed_of_the_output_and_is_told_as_its_own() -> None:
+    effect, s = QuadraticDrag(), motion()
+    s = dataclasses.replace(s, omega_l=np.linspace(-0.4, 0.4, s.t.size))  # rad/s: the motor at 20 rad/s
+    (column,) = effect.columns(s, (0.0, 2.0, 1.0))[Port.LOAD_TORQUE].T
+    assert column[-1] == pytest.approx(4.0)  # times D at 10 rad/s of the motor
+    assert column[0] == pytest.approx(-4.0)
+    drag, exponent = effect.parameters(
+        Fit(np.array([0.13]), (0.0, 2.0, 1.0), np.diag([1e-4, 0.0, 1e-2, 0.0]), KNOWN, N)
+    )
+    assert (drag.name, exponent.name) == ("drag_of_load_at_10_rad_s", "exponent")
+    assert exponent.ci95[1] - exponent.value == pytest.approx(0.196, abs=1e-3)
+    assert not effect.plausible(Fit(np.array([-0.1]), (0.0, 2.0, 1.0), np.eye(4), KNOWN, N))
 
 
 def test_a_lag_too_short_for_the_rows_may_be_none() -> None:
