@@ -59,10 +59,14 @@ def test_what_some_rows_brought_is_fitted_to_all_of_them(
     tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`searched.beside` does not fit it once more."""
-    monkeypatch.setattr("rig.analysis.tracing.fit.some.MOST", 4000)
+    monkeypatch.setattr("rig.analysis.tracing.fit.some.MOST", 5000)
+    monkeypatch.setattr("rig.analysis.tracing.fit.some.LEFT", 4000)
     p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-5", RUNS, ())), ())
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
+    rows = some(p.eq, runs).rows
+    most = max(sum(r.y.size for (i, channel), r in rows.items() if channel == c and i in runs) for c in "AML")
+    assert 3000 < most < 5000
     bank = fill(some(p.eq.afresh(), runs), [CATALOGUE["stribeck_friction"]], runs, covered)
     found = search_some(design(p.eq, (), runs), bank, runs, covered, p.floors)
     assert found.rough

@@ -24,7 +24,8 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Reach
 
-MOST: Final = 77_000  # rows of the fitted runs in a channel: half an hour, and a bank of half a gigabyte
+MOST: Final = 77_000  # rows of the fitted runs in a channel that are all searched: half an hour of campaign
+LEFT: Final = 60_000  # of more than those: what is found is then fitted to all rows again, and may as well be few
 PERIOD: Final = 12.0  # s from one stretch to the next: a slow motor turns twice
 FEWEST: Final = 2000  # rows of a run in all its channels: of fewer none are left out
 WORTH: Final = 0.9  # of a run's rows: a shortened one is a copy
@@ -62,10 +63,11 @@ class Stretches:
 
 
 def some(eq: Equations, runs: Sequence[int]) -> Equations:
-    """Equations with no more than about MOST rows of `runs` in a channel, all where there are no more. And with no rows
-    of the pieces that no equation is made from: a locked run is read stay by stay."""
+    """Equations with all rows of `runs` where no channel has more than MOST, else with about LEFT in the fullest. And
+    with no rows of the pieces that no equation is made from: a locked run is read stay by stay."""
     count = {c: sum(eq.rows[i, c].y.size for i in runs if (i, c) in eq.rows) for c in CHANNELS}
-    share = MOST / max(*count.values(), 1)
+    most = max(*count.values(), 1)
+    share = 1.0 if most <= MOST else LEFT / most
     left = {i: stretches(eq, i, share) for i in runs if eq.kept(i)}
     left = {i: s for i, s in left.items() if s.shorter(eq.runs[i])}
     rows = {key: left[key[0]].rows(r) if key[0] in left else r for key, r in eq.rows.items()}
