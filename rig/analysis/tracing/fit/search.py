@@ -20,6 +20,7 @@ from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, REL
 from rig.model.effect import Array, Fit, Reach
 
 ROUNDS = 4
+RUNS_AWAY = 1.5  # times what was left before: columns that lean on a little too much are off by less
 SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
 
 
@@ -207,7 +208,8 @@ def still(s: Solution, floors: Mapping[Key, float]) -> bool:
 
 
 def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
-    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says."""
+    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says, or until it runs away from it:
+    without a load angle an inertia that comes out too large can make one that is larger still."""
     for _ in range(ROUNDS):
         d = s.design
         eq = leaning(d.eq, s, SETTLED)
@@ -217,8 +219,17 @@ def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
         d = replace(reduced(d, range(len(terms))), eq=eq) if eq.rows is d.eq.rows else design(eq, (), runs)
         for term in terms[:-1]:
             d = extended(d, term, runs)
-        s = refine(d, terms[-1], runs, covered)[1]
+        again = refine(d, terms[-1], runs, covered)[1]
+        if _left(again) > RUNS_AWAY * _left(s):
+            break
+        s = again
     return s
+
+
+def _left(s: Solution) -> float:
+    """Weighted sum of squares of what a fit leaves."""
+    weight = s.design.eq.noise.weight
+    return sum(weight(key[1]) * float(e @ e) for key in s.keys for e in [s.residual(key)])
 
 
 def polished(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
