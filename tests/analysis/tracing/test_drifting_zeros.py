@@ -17,25 +17,38 @@ RUNS, LASTS, EVERY = 24, 20.0, 80.0  # s
 TIMES = EVERY * np.arange(RUNS) + LASTS / 2
 SPEEDS = np.tile([10.0, 30.0, -20.0, 40.0], RUNS // 4)  # rad/s
 WANDER, SIZE, TAU = 1e-6, 1.2e-4, 700.0  # rad, rad, s
+SOFT = 1.33e-4  # rad/(N·m)
 
 
 def found(
-    monkeypatch: pytest.MonkeyPatch, zeros: Sequence[float], speeds: np.ndarray = SPEEDS, has: frozenset[str] = MEASURED
+    monkeypatch: pytest.MonkeyPatch,
+    zeros: Sequence[float],
+    speeds: np.ndarray = SPEEDS,
+    has: frozenset[str] = MEASURED,
+    of_the_torque: Sequence[float] | None = None,
 ) -> DriftingZeros | None:
-    """Of runs with those zeros [rad], every third of them unseen."""
+    """Of runs with those zeros [rad], every third of them unseen, and zeros of the torque sensor [N·m]."""
     runs = [
         SimpleNamespace(
             locked=False,
             has=has,
             mean_torque=0.5 * np.sign(speed),
-            pieces=[SimpleNamespace(t=np.array([t - LASTS / 2, t + LASTS / 2]), omega_m=np.full(2, speed))],
+            pieces=[
+                SimpleNamespace(
+                    t=np.array([t - LASTS / 2, t + LASTS / 2]),
+                    omega_m=np.full(2, speed),
+                    torque=np.array([-60.0, 60.0]),
+                )
+            ],
         )
         for t, speed in zip(TIMES, speeds, strict=True)
     ]
+    rows = {(i, c) for i in range(RUNS) for c in ("A" if of_the_torque is None else "AL")}
     s: Any = SimpleNamespace(
-        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows={(i, "A") for i in range(RUNS)}))
+        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)), value=lambda name: {"compliance": SOFT}[name]
     )
-    monkeypatch.setattr(module, "offset", lambda _, run, channel: zeros[run])
+    known = {"A": zeros, "L": of_the_torque or ()}
+    monkeypatch.setattr(module, "offset", lambda _, run, channel: known[channel][run])
     unseen = range(1, RUNS, 3)
     return drifting_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
 
@@ -84,3 +97,18 @@ def test_without_a_torque_sensor_wind_up_shifts_a_zero_as_well(
 ) -> None:
     zeros = wander(rng) - SIZE * np.exp(-TIMES / TAU)
     assert found(monkeypatch, zeros, has=MEASURED - {"tau_l"}) is None
+
+
+@pytest.mark.parametrize(("torque", "angles", "told"), [
+    (0.14, 0.0, ""),  # N·m in half an hour, 3.5 arcsec of wind-up: every torque sensor does so
+    (0.14, SIZE, "The zeros of the angles drift"),
+    (0.75, 0.0, "The zero of the torque sensor drifts through the campaign, by 0.7"),
+])  # fmt: skip
+def test_what_the_zero_of_the_torque_sensor_makes_is_no_drift_of_the_angles(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, torque: float, angles: float, told: str
+) -> None:
+    zero = torque * TIMES / np.ptp(TIMES)
+    zeros = wander(rng) - SOFT * zero - angles * np.exp(-TIMES / TAU)
+    drift = found(monkeypatch, list(zeros), of_the_torque=list(zero + 1e-3 * rng.standard_normal(RUNS)))
+    assert (drift.sentence() if drift else "").startswith(told)
+    assert (drift is not None) is bool(told)
