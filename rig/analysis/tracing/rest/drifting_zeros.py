@@ -26,7 +26,7 @@ SHORTEST: Final = 0.03  # time constant, of the whole time
 LONGEST: Final = 3.0  # beyond, it is a straight line
 TRIED: Final = 24  # of them
 OWN: Final = 0.5  # of a drift, which must be the angles': the zero of the torque sensor is known to a part of it
-SENSOR: Final = 5e-3  # of the largest torque: so much a good sensor's zero may drift
+SENSOR: Final = 2.5e-3  # of the largest torque: so much a sensor's zero may drift in half an hour
 WAY: Final = 0.1  # of the scatter of all speeds, torques: less of it is no condition
 
 
