@@ -117,10 +117,11 @@ def test_of_a_procedure_that_was_run_once_a_part_is_held_out(tmp_path: Path, sha
     assert parts.how.endswith("of what was done only once a third, whole turns or strokes")
 
 
-def log(*speeds: float) -> Any:
+def log(*speeds: float, locked: bool = False) -> Any:
     """A motor at work: four seconds forth at each of some speeds [rad/s], and back."""
     there = [np.linspace(0.0, speed * 4.0, 1000) for speed in speeds]
-    return SimpleNamespace(pieces=(Piece(np.concatenate([x for way in there for x in (way, way[::-1])])),))
+    pieces = (Piece(np.concatenate([x for way in there for x in (way, way[::-1])])),)
+    return SimpleNamespace(pieces=pieces, locked=locked)
 
 
 def test_a_log_of_many_speeds_is_tested_with_strokes_from_all_of_it() -> None:
@@ -137,3 +138,4 @@ def test_a_log_of_many_speeds_is_tested_with_strokes_from_all_of_it() -> None:
 def test_a_motion_that_is_repeated_or_short_is_tested_with_its_end() -> None:
     assert _here_and_there(log(*[5.0] * 12)) is None
     assert _here_and_there(log(3.0, 40.0, 5.0)) is None
+    assert _here_and_there(log(*[3.0, 9.0] * 8, locked=True)) is None

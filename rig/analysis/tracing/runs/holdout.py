@@ -181,8 +181,9 @@ def _whole_turns(piece: Signals) -> list[Signals]:
 
 def _here_and_there(run: Recording) -> Parts | None:
     """Strokes of many speeds, as in the log of a machine at work, every third pair of them to test with: its end alone
-    may be faster than all before. Cut where the motor turns, for friction remembers where it turned back."""
-    pairs = [pair for piece in run.pieces for pair in _pairs(piece)]
+    may be faster than all before. Cut where the motor turns, for friction remembers where it turned back; the spring of
+    a locked run remembers all of its strokes."""
+    pairs = [] if run.locked else [pair for piece in run.pieces for pair in _pairs(piece)]
     if len(pairs) < PAIRS:
         return None
     speeds = [float(np.mean(np.abs(pair.omega_m))) for pair in pairs]
