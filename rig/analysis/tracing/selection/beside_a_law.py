@@ -43,7 +43,7 @@ def larger_than(
     confounders: Sequence[Confounder], names: Sequence[str], scores: Sequence[HeldOutScore], plain: Collection[str]
 ) -> tuple[str, ...]:
     """Names that do more than laws without one which are below the floor in every run and not plain to see: such a law
-    is a sensor's little drift, or what is left of an effect's form. None where one of those names is not plain."""
+    is a sensor's little drift, or what is left of an effect's form. No names where none of them is plain."""
     laws = [score for score in scores if score.name in {confounder.effect.name for confounder in confounders}]
     most = max((score.size for score in laws), default=np.inf)
     if most >= AT_THE_FLOOR or any(score.name in plain for score in laws):
