@@ -21,7 +21,7 @@ from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.runs.holdout import Split, split
-from rig.analysis.tracing.runs.signs import refuse_odd_torques
+from rig.analysis.tracing.runs.weights import refuse_odd_torques
 from rig.core.errors import UsageError
 
 FEWEST: Final = 250  # rows, eight for each number of a kinematic error

@@ -103,6 +103,7 @@ def test_without_a_torque_sensor_wind_up_shifts_a_zero_as_well(
     (0.14, 0.0, ""),  # N·m in half an hour, 3.5 arcsec of wind-up: every torque sensor does so
     (0.14, SIZE, "The zeros of the angles drift"),
     (0.75, 0.0, "The zero of the torque sensor drifts through the campaign, by 0.7"),
+    (0.0, SIZE, "The zeros of the angles drift"),
 ])  # fmt: skip
 def test_what_the_zero_of_the_torque_sensor_makes_is_no_drift_of_the_angles(
     monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, torque: float, angles: float, told: str
@@ -112,3 +113,13 @@ def test_what_the_zero_of_the_torque_sensor_makes_is_no_drift_of_the_angles(
     drift = found(monkeypatch, list(zeros), of_the_torque=list(zero + 1e-3 * rng.standard_normal(RUNS)))
     assert (drift.sentence() if drift else "").startswith(told)
     assert (drift is not None) is bool(told)
+
+
+def test_what_the_balance_of_the_load_does_not_show_is_not_laid_on_the_torque_sensor(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """Loads that are not what they are declared to be by half a newton metre hide whose zero it is."""
+    zeros = wander(rng) - SIZE * np.exp(-TIMES / TAU)
+    drift = found(monkeypatch, list(zeros), of_the_torque=list(0.5 * rng.standard_normal(RUNS)))
+    assert drift
+    assert drift.sentence().startswith("The zeros of the angles drift")

@@ -139,3 +139,10 @@ def test_a_motion_that_is_repeated_or_short_is_tested_with_its_end() -> None:
     assert _here_and_there(log(*[5.0] * 12)) is None
     assert _here_and_there(log(3.0, 40.0, 5.0)) is None
     assert _here_and_there(log(*[3.0, 9.0] * 8, locked=True)) is None
+
+
+def test_a_piece_of_a_log_that_is_too_short_to_cut_is_a_part_of_it() -> None:
+    whole = log(*[3.0, 5.0, 8.0, 20.0] * 4)
+    whole.pieces = (*whole.pieces, Piece(np.linspace(0.0, 40.0, 900)), Piece(np.linspace(0.0, 1.0, 60)))
+    fitted, tested = _here_and_there(whole) or ((), ())
+    assert sum(piece.theta_m.size for piece in (*fitted, *tested)) == 32_000 + 900 + 60

@@ -228,8 +228,7 @@ def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
 
 def _left(s: Solution) -> float:
     """Weighted sum of squares of what a fit leaves."""
-    weight = s.design.eq.noise.weight
-    return sum(weight(key[1]) * float(e @ e) for key in s.keys for e in [s.residual(key)])
+    return sum(s.design.eq.noise.weight(key[1]) * float(np.sum(s.residual(key) ** 2)) for key in s.keys)
 
 
 def polished(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:

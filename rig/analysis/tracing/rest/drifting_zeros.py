@@ -6,7 +6,7 @@ and zeros that drift are foretold by the time: those of unseen runs by a curve t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -33,7 +33,7 @@ WAY: Final = 0.1  # of the scatter of all speeds, torques: less of it is no cond
 @dataclass(frozen=True)
 class DriftingZeros:
     """By how much the zeros of the runs differ in all [rad], the time constant [s], and what of the scatter of unseen
-    zeros is foretold; the `torque` [N·m] where it is that of the torque sensor."""
+    zeros is foretold; by how much the torque sensor's do [N·m] where it is they that drift."""
 
     size: float
     time_constant: float
@@ -64,24 +64,26 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     mine, others = (_free(eq, runs) for runs in (fitted, unseen))
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
-    seen = _drift(eq, mine, others, [np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others)])
+
+    def drift(zero: Callable[[int], float]) -> DriftingZeros | None:
+        return _drift(eq, mine, others, [np.array([zero(i) for i in runs]) for runs in (mine, others)])
+
+    seen, soft = drift(lambda run: offset(s, run, "A")), s.value("compliance")
     if seen is None or any((i, "L") not in eq.rows for i in (*mine, *others)):
         return seen
-    angles = _drift(eq, mine, others, [np.array([_of_the_angles(s, i) for i in runs]) for runs in (mine, others)])
+    angles = drift(lambda run: offset(s, run, "A") + soft * offset(s, run, "L"))
     if angles is not None and abs(angles.size) > OWN * abs(seen.size):
         return angles
-    torque = abs(seen.size) / s.value("compliance")
-    return replace(seen, torque=torque) if torque > SENSOR * _largest(eq) else None
+    if abs(seen.size) < SENSOR * soft * _largest(eq):
+        return None
+    sensor = drift(lambda run: offset(s, run, "L"))
+    shown = sensor is not None and abs(soft * sensor.size) > OWN * abs(seen.size)
+    return replace(seen, torque=abs(sensor.size)) if sensor is not None and shown else seen
 
 
 def _largest(eq: Equations) -> float:
     """Torque that a run has for a tenth of its time, N·m: peaks of a resonance are no measure."""
     return max(float(np.nanpercentile(np.abs(p.torque), 90)) for r in eq.runs if "tau_l" in r.has for p in r.pieces)
-
-
-def _of_the_angles(s: Solution, run: int) -> float:
-    """The zero of a run without what the torque sensor's zero makes of it, rad."""
-    return offset(s, run, "A") + s.value("compliance") * offset(s, run, "L")
 
 
 def _drift(eq: Equations, mine: Sequence[int], others: Sequence[int], found: Sequence[Array]) -> DriftingZeros | None:

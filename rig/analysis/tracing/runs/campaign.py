@@ -20,10 +20,10 @@ from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.same_rows import same_rows
-from rig.analysis.tracing.runs.signs import refuse_odd_torques
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
+from rig.analysis.tracing.runs.weights import refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved

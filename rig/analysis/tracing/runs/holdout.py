@@ -201,9 +201,9 @@ def _pairs(piece: Signals) -> list[Signals]:
     ]
     edges = [0]
     for cut in within:
-        if cut - edges[-1] >= STRETCH:
+        if min(cut - edges[-1], piece.theta_m.size - cut) >= STRETCH:
             edges.append(cut)
-    return [piece.part(slice(lo, hi)) for lo, hi in itertools.pairwise([*edges[:-1], piece.theta_m.size])]
+    return [piece.part(slice(lo, hi)) for lo, hi in itertools.pairwise([*edges, piece.theta_m.size])]
 
 
 def _head_and_tail(run: Recording) -> Parts | None:
