@@ -25,7 +25,6 @@ REACH = Reach(
     ratio=N, fastest=50.0, slowest=1.0, torque=40.0, duration=2700.0, rate=1000.0, band=72.0, load_turns=1.0,
     counts_m=65536, counts_l=1_296_000, has=MEASURED | {"temperature"},
 )  # fmt: skip
-WITHIN = dataclasses.replace(REACH, duration=3.0)  # instants that fall into `motion`
 FRICTION = {"stribeck_friction", "load_dependent_friction", "quadratic_drag"}
 ANGLE_LOCKED = {"output_once_per_rev", "flexspline_frame_error", "tooth_mesh_error", "load_dependent_kinematic_error"}
 KNOWN_LAWS = (*LIBRARY.values(), *(confounder.effect for confounder in CONFOUNDERS.values()))
@@ -198,8 +197,7 @@ def test_no_two_effects_have_the_same_footprint():
     runs = (from_rest(1.0), from_rest(-1.0))
     seen: list[tuple[str, dict[Port, np.ndarray]]] = []
     for effect in LIBRARY.values():
-        reach = WITHIN if effect.name in EACH_RUN else REACH
-        made = [effect.columns(s, effect.shapes(reach)[0]) for s in runs]
+        made = [effect.columns(s, effect.shapes(REACH)[0]) for s in runs]
         columns = {port: np.concatenate([m[port][:, 0] for m in made]) for port in made[0]}
         for other, theirs in seen:
             same = set(columns) == set(theirs) and all(
@@ -212,7 +210,25 @@ def test_no_two_effects_have_the_same_footprint():
 @pytest.mark.parametrize("name", sorted(EACH_RUN))
 def test_what_every_run_has_to_itself_is_said_to_be_so(name: str):
     assert EACH_RUN[name].each_run
-    assert name not in CATALOGUE, "a coefficient that runs share would be sought for it"
+
+
+def test_counts_lost_again_and_again_go_with_the_way_and_not_with_the_ratio():
+    effect, forward, backward = CATALOGUE["missed_counts"], motion(1.0), motion(-1.0)
+    turns = forward.theta_l[-1] / (2 * np.pi) - forward.theta_l[0] / (2 * np.pi)
+    for law, back in ((missed_counts.GONE, -1.0), (missed_counts.FURTHEST, -1.0), (missed_counts.TURNED, 1.0)):
+        ends = [effect.columns(s, (law, 0.0))[Port.READS_THETA_L][-1, 0] for s in (forward, backward)]
+        np.testing.assert_allclose(ends, [-turns, back * turns], rtol=1e-3)
+    assert (missed_counts.TURNED, 0.0) not in effect.shapes(REACH), "another ratio does the same"
+    alike = dataclasses.replace(REACH, fastest=1.2 * REACH.slowest)
+    assert effect.shapes(alike) == (), "at one speed the way is the time"
+
+
+def test_counts_lost_above_a_speed_are_lost_nowhere_below_it():
+    effect, s = CATALOGUE["missed_counts"], motion()  # from 2 to 10 rad/s
+    (lost,) = effect.columns(s, (missed_counts.GONE, 8.0)).values()
+    slow = np.abs(s.omega_m[1:]) < 7.9
+    assert (np.diff(lost[:, 0])[slow] == 0).all()
+    assert (np.diff(lost[:, 0])[np.abs(s.omega_m[1:]) > 8.1] < 0).all()
 
 
 def test_lost_counts_are_a_step_at_their_instant_and_nothing_else():

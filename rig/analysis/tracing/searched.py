@@ -65,7 +65,8 @@ def _selected(
 ) -> tuple[Selected, Found, Reach]:
     """What stands of a search through all `but` some effects, what it found, and what is covered by then."""
     runs = p.split.fitted
-    found = search_some(start.design, tried.bank, runs, tried.covered, p.floors, quiet=quiet, excluded=but)
+    without = but | p.own.made.keys()
+    found = search_some(start.design, tried.bank, runs, tried.covered, p.floors, quiet=quiet, excluded=without)
     give_back()
     let_go = bool(_remembering(found.solution.design.terms))
     again, found = _again(p, found, tried, but)
@@ -113,7 +114,8 @@ def _again(p: Prepared, found: Found, tried: Tried, but: frozenset[str]) -> tupl
     if any(run.carries for run in again.eq.runs):
         loaded = reach([again.eq.runs[i] for i in runs])
         tried.fill(again, replace(tried.covered, torque=loaded.torque, pulled=loaded.pulled))
-    found = search_some(s.design, tried.bank, runs, tried.covered, again.floors, ranking=found.ranking, excluded=but)
+    how = {"ranking": found.ranking, "excluded": but | again.own.made.keys()}
+    found = search_some(s.design, tried.bank, runs, tried.covered, again.floors, **how)
     return again, found
 
 

@@ -15,7 +15,8 @@ How to write one: subclass `Effect` (rig/model/effect/effect.py), `name` as the 
 - `plausible(fit)`: signs that must hold (friction opposes motion).
 
 Then add it to CATALOGUE. `tests/contract/test_effects.py` checks every member. Effects whose coefficients every run has
-to itself (`each_run`) stand in EACH_RUN: they are looked for run by run, not in the search over shared coefficients.
+to itself (`each_run`) stand in EACH_RUN: they are looked for run by run, not in the search over shared coefficients;
+one whose laws are of both kinds stands in both.
 """
 
 from __future__ import annotations
@@ -73,6 +74,7 @@ CATALOGUE: dict[str, Effect] = {
         TorqueSensorCrosstalk(),
         TorsionalMode(),
         SupportCompliance(),
+        MissedCounts(),
     )
 }
 

@@ -9,14 +9,19 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the encoder that lost them
+LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the encoder that lost them once, at an instant
+GONE, FURTHEST, TURNED = 2.0, 3.0, 4.0  # again and again: with the way gone, the furthest from the start, the turning
+WIDE = 1.5  # fastest over slowest: at one speed the way is the time
 
 
 class MissedCounts(Effect):
-    """From the instant t_0 on the reading of one angle is off by a constant step; every run has its own instants.
+    """Once: from the instant t_0 on the reading of one angle is off by a constant step; every run has its own instants.
 
-    The gear does not move: no torque goes with the step. What a tooth does comes back at the same angle, lost counts
-    do not.
+    Again and again, too little at a time to be seen one by one: the reading falls behind in proportion to the way since
+    the run began, at any speed or faster than ω_0. A disc closes upon itself, so that no scale of an encoder does that.
+    Whatever is lost alike forth and back (TURNED at any speed) is the ratio's.
+
+    The gear does not move: no torque goes with it. What a tooth does comes back at the same angle, lost counts do not.
     """
 
     name: ClassVar[str] = "missed_counts"
@@ -25,31 +30,59 @@ class MissedCounts(Effect):
         "steps": "steps found in all runs",
         "step_theta_l": "usual step of the load encoder's reading, at the output",
         "step_theta_m": "usual step of the motor encoder's reading",
+        "lost_per_turn_gone": "what θ̃ runs away by while the output turns once, whichever way",
+        "lost_per_turn_further": "what θ̃ runs away by while the output gets a turn further from where the run began",
+        "lost_per_turn": "what θ̃ runs away by while the output turns once, and comes back by while it turns back",
+        "above_speed": "ω_0, speed of the motor below which nothing is lost, of a few that were tried",
     }
     source: ClassVar[str] = "usdigital"
     each_run: ClassVar[bool] = True
-    shape_names: ClassVar[tuple[str, ...]] = ("side", "instant")
-    loose: ClassVar[tuple[bool, ...]] = (False, True)
-    INSTANTS: Final = 8  # of a campaign: where a step would show at all; the detector finds the row
+    shape_names: ClassVar[tuple[str, ...]] = ("law", "at")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    SPEEDS: Final = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)  # rad/s of the motor
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Instants all over the campaign, in either encoder."""
-        instants = np.linspace(0.0, reach.duration, self.INSTANTS + 2)[1:-1]
-        return tuple((side, float(t)) for side in (LOAD, MOTOR) for t in instants)
+        """What is lost again and again. The instant of a step is found by the row, not in shapes."""
+        if reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
+            return ()
+        speeds = [w for w in self.SPEEDS if reach.slowest < w < reach.fastest]
+        at_any = ((GONE, 0.0), (FURTHEST, 0.0))
+        return (*at_any, *((law, w) for law in (GONE, TURNED) for w in speeds))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
-        """Within the campaign."""
-        return ((LOAD, MOTOR), (0.0, reach.duration))
+        """Chosen, not fitted: a speed, or an instant within the campaign."""
+        return ((LOAD, TURNED), (0.0, max(reach.duration, *self.SPEEDS)))
+
+    def has_state(self) -> bool:
+        """The way since the run began."""
+        return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """0 before the instant, 1 after it; a filter of rate dt sees it where it falls between two rows."""
-        side, instant = shape
-        after = np.clip((signals.t - instant) / signals.dt + 0.5, 0.0, 1.0)[:, None]
-        return {Port.READS_THETA_M if side == MOTOR else Port.READS_THETA_L: after}
+        """0 before the instant, 1 after it; a filter of rate dt sees it where it falls between two rows. Or the way, in
+        turns of the output."""
+        law, at = shape
+        if law not in (LOAD, MOTOR):
+            return {Port.READS_THETA_L: -self._way(signals, law, at)[:, None]}
+        after = np.clip((signals.t - at) / signals.dt + 0.5, 0.0, 1.0)[:, None]
+        return {Port.READS_THETA_M if law == MOTOR else Port.READS_THETA_L: after}
+
+    def _way(self, signals: Signals, law: float, above: float) -> Array:
+        """Output turns since the run began, (n,), as the motor tells them."""
+        step = np.diff(signals.theta_m, prepend=signals.theta_m[:1]) / (2.0 * np.pi * signals.ratio)
+        step = np.where(np.abs(signals.omega_m) > above, step, 0.0)
+        if law == GONE:  # noise of a reading goes forth and back, and is no way
+            return np.asarray(np.cumsum(signals.way * step))
+        gone = np.cumsum(step)
+        return np.asarray(np.maximum.accumulate(np.abs(gone)) if law == FURTHEST else gone)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """What the reading is off by, at the shaft it belongs to."""
+        """What the reading is off by, at the shaft it belongs to; or by how much more after every turn of the output,
+        and from which speed on."""
+        law, at = fit.shape
         along = np.zeros(fit.covariance.shape[0])
         along[0] = 1.0
-        side = "m" if fit.shape[0] == MOTOR else "l"
-        return (parameter(f"step_theta_{side}", fit.coefficients[0], fit.half_width(along), "rad"),)
+        step = {LOAD: "step_theta_l", MOTOR: "step_theta_m"}
+        lost = {GONE: "lost_per_turn_gone", FURTHEST: "lost_per_turn_further", TURNED: "lost_per_turn"}
+        size = parameter({**step, **lost}[law], fit.coefficients[0], fit.half_width(along), "rad")
+        # neighbours of a speed are half and twice as high
+        return (size, parameter("above_speed", at, at / 2, "rad/s")) if law in lost and at else (size,)

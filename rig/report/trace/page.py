@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.analysis.findings.result import Array
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.outcome.each_run import OWN, beside_the_numbers
+from rig.analysis.tracing.outcome.each_run import beside_the_numbers
 from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.outcome.told import listed, symbol
@@ -51,7 +51,7 @@ def render(trace: Trace, source: Provenance) -> str:
     heads, each = tables.each_run(trace)
     physical, orders = tables.moved(trace)
     plots = _plots((*WHERE, *BEFORE_AFTER), curves, origin.mark)
-    meant = beside_the_numbers(e.effect for e in trace.effects)  # said where the numbers stand
+    meant = beside_the_numbers(trace.effects)  # said where the numbers stand
     view: dict[str, Any] = {
         "trace": trace,
         "origin": origin,
@@ -76,7 +76,7 @@ def render(trace: Trace, source: Provenance) -> str:
         "silent": listed(silent),
         "added": words.added(trace),
         "own": words.of_each_run(trace),
-        "found_first": listed([words.named(e.effect) for e in trace.effects if e.effect in OWN]),
+        "found_first": listed([words.named(e.effect) for e in trace.effects if e.each_run]),
         "effects": [_effect(e.effect, e.parameters, e.share) for e in trace.effects],
         "moved": physical,
         "moved_orders": orders,

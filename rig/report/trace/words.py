@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.outcome import told
 from rig.analysis.tracing.outcome.each_run import LOADED
 from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
@@ -14,7 +13,7 @@ from rig.analysis.tracing.outcome.result import Found, Trace
 from rig.analysis.tracing.outcome.told import PARAMETERS, listed
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
-from rig.model.effects import CATALOGUE, LIBRARY
+from rig.model.effects import LIBRARY
 from rig.report.numbers import counted, plain
 from rig.report.trace import sizes as sized
 from rig.report.trace.channels import CHANNELS
@@ -80,7 +79,7 @@ def named(effect: str) -> str:
 
 def in_short(effect: str) -> str:
     """One line on an effect; "" where nothing is known of it."""
-    return CATALOGUE[effect].in_short if effect in CATALOGUE else IN_SHORT.get(effect, "")
+    return LIBRARY[effect].in_short if effect in LIBRARY else ""
 
 
 def gloss(effect: str, name: str, unit: str) -> str:
@@ -92,7 +91,7 @@ def gloss(effect: str, name: str, unit: str) -> str:
 
 def plainly(text: str) -> str:
     """A sentence of the trace with the effects' machine names as words."""
-    for name in (*CATALOGUE, *IN_SHORT):
+    for name in LIBRARY:
         text = text.replace(name, name.replace("_", " "))
     return text
 
@@ -175,7 +174,7 @@ def added(trace: Trace) -> str:
 
 def of_each_run(trace: Trace) -> str:
     """What was taken from a held-out run itself, "" where nothing was: its error is then not wholly unseen."""
-    return own_words(e.effect for e in trace.effects)
+    return own_words(trace.effects)
 
 
 def under_load(trace: Trace) -> str:

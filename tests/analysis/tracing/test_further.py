@@ -25,7 +25,7 @@ def selected(name: str, unsteady: float, left: float) -> Any:
     score = HeldOutScore(name, 0.9, 1.5, 1.0, 1.0, (), unsteady=unsteady, apart=unsteady)
     p = SimpleNamespace(baseline=SimpleNamespace(design=None))
     return SimpleNamespace(
-        p=p, solution=SimpleNamespace(design=SimpleNamespace(terms=terms)), scores=[score], left=left
+        p=p, solution=SimpleNamespace(design=SimpleNamespace(terms=terms)), scores=[score], left=left, taken=frozenset()
     )
 
 
@@ -103,6 +103,29 @@ def test_what_came_first_counts_where_it_leaves_less_and_loses_no_name(
     assert {term.name for term in kept.solution.design.terms} == expected
 
 
+def test_a_law_without_a_name_is_not_asked_where_nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    def standing(names: tuple[str, ...], loud: bool, left: float) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in names)
+        solution = SimpleNamespace(design=SimpleNamespace(terms=terms))
+        p = SimpleNamespace(own=SimpleNamespace(line=None))
+        return SimpleNamespace(p=p, solution=solution, loud=loud, left=left)
+
+    monkeypatch.setattr(further, "fit", lambda design: SimpleNamespace(design=design))
+    monkeypatch.setattr(further, "reduced", lambda d, gone: SimpleNamespace(terms=d.terms[: min(gone)]))
+    monkeypatch.setattr(further, "replace", lambda found, solution: SimpleNamespace(solution=solution))
+    terms = ("missed_counts", "sensor_scale", "lost_motion", "torsional_mode")
+    found: Any = SimpleNamespace(solution=standing(terms, True, 2.0).solution, names=terms)
+    for loud, expected in ((False, 1), (True, 2)):
+
+        def selected_again(p: Any, found: Any, *_: object, loud: bool = loud) -> Any:
+            names = tuple(term.name for term in found.solution.design.terms)[:2]
+            return standing(names, loud, 1.0 / len(names))
+
+        monkeypatch.setattr(further, "select", selected_again)
+        kept = further.try_prefixes(standing((), True, 2.0), found, (), None)  # type: ignore[arg-type]
+        assert len(kept.solution.design.terms) == expected
+
+
 def test_what_is_all_there_is_in_a_channel_of_its_own_is_named_beside_a_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """A weight stands in L, something loud is left in M: a runout in A is neither's."""
     monkeypatch.setattr(further, "confounders_in", lambda solution: [])
@@ -144,7 +167,9 @@ def test_what_is_found_without_one_of_several_names_counts_where_it_is_better(
         terms = tuple(SimpleNamespace(name=name) for name in sorted(names))
         solution = SimpleNamespace(design=SimpleNamespace(terms=terms))
         scores = [SimpleNamespace(name=name) for name in sorted(names)]
-        return SimpleNamespace(p=p, solution=solution, scores=scores, names=names, left=left, loud=loud)
+        return SimpleNamespace(
+            p=p, solution=solution, scores=scores, names=names, left=left, loud=loud, taken=frozenset()
+        )
 
     def searched(design: Any, *_: object, excluded: frozenset[str], **__: object) -> Any:
         return found_without if excluded == {"mode"} else set()

@@ -14,7 +14,7 @@ from rig.analysis.tracing.floor.steps import Steps, _rested, explained, lost_cou
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.model.effects.missed_counts import LOAD
-from tests.analysis.tracing.spiked import Columns, spiked, started
+from tests.analysis.tracing.spiked import RATIO, Columns, spiked, started
 
 ANY = (0.0, np.inf)
 
@@ -290,6 +290,25 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none_or_noth
     assert "load_10nm_1" in found.fitted
     assert found.verdict.effects == ("missed_counts",)
     assert "held-out ones have none" in found.verdict.sentence
+
+
+@pytest.mark.slow
+def test_a_staircase_of_steps_too_small_to_be_seen_is_told_by_the_way(tmp_path: Path, shared: Path) -> None:
+    """One count on every 0.15 rad or so that the output gets further from where its run began, whichever way."""
+    kinds = ("slow_ke", "speed_60rpm", "speed_200rpm", "speed_400rpm", "speed_minus200rpm")
+    names = [f"{kind}_{k}" for kind in kinds for k in (1, 2)]
+
+    def stepped(c: Columns, began: float) -> Columns:
+        way = np.maximum.accumulate(np.abs(c["theta_m"] - c["theta_m"][0])) / RATIO
+        at = np.cumsum(np.random.default_rng(round(began)).uniform(0.05, 0.25, 100))
+        return {"theta_l": c["theta_l"] - 2 * np.pi / 1296000 * np.searchsorted(at, way)}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", stepped, names)
+    assert found.verdict.effects == ("missed_counts",)
+    values = {p.name: p for p in found.effects[0].parameters}
+    per_turn = 2 * np.pi / 1296000 / 0.15 * 2 * np.pi
+    assert values["lost_per_turn_further"].value == pytest.approx(per_turn, rel=0.1)
+    assert not found.effects[0].each_run
 
 
 @pytest.mark.slow

@@ -74,12 +74,16 @@ def test_the_floors_of_the_page_are_told_apart(pages: dict[str, Reader]) -> None
 
 
 def test_what_each_run_has_to_itself_is_said_of_vibrations_and_steps_alone() -> None:
-    assert of_each_run(["quadratic_drag"]) == ""
-    said = of_each_run(["missed_counts", "external_vibration"])
+    steps, shaken = (Found(name, (), 0.9, each_run=True) for name in ("missed_counts", "external_vibration"))
+    drag, way, load = (
+        Found(name, (), 0.9) for name in ("quadratic_drag", "missed_counts", "load_dependent_kinematic_error")
+    )
+    assert of_each_run([drag]) == of_each_run([way]) == ""  # one law for all runs
+    said = of_each_run([steps, shaken])
     assert "its own instants of the steps or zero after them and phase and amplitude of the vibration" in said
-    assert beside_the_numbers(["missed_counts"]) == [of_each_run(["missed_counts"])]
-    assert beside_the_numbers(["load_dependent_kinematic_error"]) == [AT_LOAD]
-    assert beside_the_numbers(["quadratic_drag"]) == []
+    assert beside_the_numbers([steps]) == [of_each_run([steps])]
+    assert beside_the_numbers([load]) == [AT_LOAD]
+    assert beside_the_numbers([drag]) == []
 
 
 def test_what_stands_beside_its_numbers_is_not_said_again_below() -> None:
@@ -248,7 +252,7 @@ def test_every_candidate_is_shown_with_the_reason_it_was_dismissed(pages: dict[s
 
 
 def test_effects_fitted_in_each_run_are_not_passed_off_as_unseen() -> None:
-    vibration = Found("external_vibration", (parameter("frequency", 8.0, 0.01, "Hz"),), 0.99)
+    vibration = Found("external_vibration", (parameter("frequency", 8.0, 0.01, "Hz"),), 0.99, each_run=True)
     found = read(bare(replace(made_up.explained(), effects=(vibration,))))
     assert found.words.count("read from that run itself") == 2  # where it was added, and where the errors stand
     assert "read from that run itself" not in read(bare(made_up.explained())).words

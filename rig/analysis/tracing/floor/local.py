@@ -11,9 +11,6 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.model.effect import Array
-from rig.model.effects import EACH_RUN
-
-IN_SHORT = {name: effect.in_short for name, effect in EACH_RUN.items()}
 
 
 def clock(eq: Equations, key: Key) -> Array:

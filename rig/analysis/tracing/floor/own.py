@@ -11,7 +11,7 @@ from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.sidebands import sidebands
-from rig.analysis.tracing.floor.steps import explained, find_steps, lost_counts, step_columns
+from rig.analysis.tracing.floor.steps import LOST, explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import find_vibration
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
@@ -58,15 +58,17 @@ def find(s: Solution, parts: Split) -> Own:
         words["external_vibration"] = shaken.parameters()
     elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
+    if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
+        return Own(made, words, line, notes)
     steps = find_steps(eq, everywhere, compliance)
     whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
     if lost_counts(eq, steps, repeats(eq.runs, whole)):
         columns = step_columns(eq, steps)
         if explained(eq, everywhere, columns) > OWN:
-            made["missed_counts"] = columns
-            words["missed_counts"] = steps.parameters()
+            made[LOST.name] = columns
+            words[LOST.name] = steps.parameters()
     elif not steps.rows and (between := find_between(s, whole)):
-        made["missed_counts"] = between.columns(eq)
-        words["missed_counts"] = between.parameters()
-        notes["missed_counts"] = between.sentence(eq)
+        made[LOST.name] = between.columns(eq)
+        words[LOST.name] = between.parameters()
+        notes[LOST.name] = between.sentence(eq)
     return Own(made, words, line, notes)

@@ -7,15 +7,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
+from rig.analysis.tracing.outcome.result import Found
+
 OWN: Final = {
     "external_vibration": "phase and amplitude of the vibration, and of what stands beside its lines there",
     "missed_counts": "instants of the steps or zero after them",
 }
 
 
-def of_each_run(effects: Iterable[str]) -> str:
+def of_each_run(effects: Iterable[Found]) -> str:
     """What was taken from a held-out run itself, "" where nothing was."""
-    own = [OWN[name] for name in effects if name in OWN]
+    own = [OWN[found.effect] for found in effects if found.each_run]
     return f"Each run, held out or not, has its own {' and '.join(own)}, read from that run itself." if own else ""
 
 
@@ -26,8 +28,8 @@ AT_LOAD: Final = (
 )
 
 
-def beside_the_numbers(effects: Iterable[str]) -> list[str]:
+def beside_the_numbers(effects: Iterable[Found]) -> list[str]:
     """Notes on what the numbers of these effects mean, one sentence each."""
-    names = tuple(effects)
-    own = of_each_run(names)
-    return [*([own] if own else []), *([AT_LOAD] if LOADED in names else [])]
+    found = tuple(effects)
+    own = of_each_run(found)
+    return [*([own] if own else []), *([AT_LOAD] if any(f.effect == LOADED for f in found) else [])]

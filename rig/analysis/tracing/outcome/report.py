@@ -68,6 +68,7 @@ def report(
         drift = mean_drifts(p.campaign.runs)
         simulated, drawn = shown()
     named = [name for name in conclusion.verdict.effects if name in shares]
+    effects = tuple(Found(name, words.get(name, ()), shares[name], name in p.own.made) for name in named)
     return Trace(
         campaign=p.campaign.name,
         simulated=p.campaign.simulated,
@@ -84,11 +85,11 @@ def report(
         lives_in=lives,
         candidates=tried,
         verdict=conclusion.verdict,
-        effects=tuple(Found(name, words.get(name, ()), shares[name]) for name in named),
+        effects=effects,
         before=with_free(first, simulated, 0),
         after=with_free(errors(p.eq, p.held_out, final), simulated, 1),
         next_run=conclusion.next_run,
-        notes=(*unlike_declared(refitted, fitted_runs), *_notes(p, named, one_way, ripple, drift)),
+        notes=(*unlike_declared(refitted, fitted_runs), *_notes(p, effects, one_way, ripple, drift)),
         ripple=ripple,
         mean_drift=drift,
         curve=curve,
@@ -101,12 +102,12 @@ def report(
 
 
 def _notes(
-    p: Prepared, named: Sequence[str], one_way: str, ripple: Sequence[Ripple], drift: Sequence[MeanDrift]
+    p: Prepared, effects: Sequence[Found], one_way: str, ripple: Sequence[Ripple], drift: Sequence[MeanDrift]
 ) -> list[str]:
     """What goes with the effects that are named, with torques by order and by day, and with the campaign."""
-    mine = [p.own.notes[name] for name in named if name in p.own.notes]
+    mine = [p.own.notes[found.effect] for found in effects if found.effect in p.own.notes]
     torques = [*(r.sentence() for r in ripple), *(mean.sentence() for mean in drift)]
-    return [*beside_the_numbers(named), *mine, *([one_way] if one_way else []), *torques, *p.campaign.notes]
+    return [*beside_the_numbers(effects), *mine, *([one_way] if one_way else []), *torques, *p.campaign.notes]
 
 
 def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:

@@ -28,7 +28,7 @@ class Found:
     effect: str
     parameters: tuple[Parameter, ...]
     share: float  # of the held-out excess over the floor it removes, in the channel it matters most in
-    shape: dict[str, float] = field(default_factory=dict)
+    each_run: bool = False  # phases or instants that every run has to itself, held out or not
 
 
 @dataclass(frozen=True)

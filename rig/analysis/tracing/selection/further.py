@@ -19,7 +19,7 @@ from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
 from rig.analysis.tracing.fit.some import ranking_of_some, search_some
 from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.selection.candidates import tried
-from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.selected import Selected, select
 from rig.analysis.tracing.thresholds import ALIKE, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
@@ -47,8 +47,11 @@ def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered:
     for end in ends:
         s = fit(reduced(found.solution.design, range(end, len(terms))))
         other = select(selected.p, replace(found, solution=s), runs, covered)
-        if stay < {term.name for term in other.solution.design.terms} and other.left < selected.left:
-            selected, stay = other, {term.name for term in other.solution.design.terms}
+        stands = {term.name for term in other.solution.design.terms}
+        # a law without a name is asked only where something is left
+        more = stands - stay - (frozenset() if selected.loud else CONFOUNDERS.keys())
+        if more and stay < stands and other.left < selected.left:
+            selected, stay = other, stands
     return selected
 
 
@@ -62,7 +65,8 @@ def try_without_eliminated(
     if not eliminated or selected.p.own.line is not None or not selected.loud:
         return selected
     d = selected.solution.design
-    others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=eliminated)
+    without = eliminated | selected.taken
+    others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=without)
     if not set(others.names) - stay:
         return selected
     other = select(selected.p, others, runs, covered)
@@ -83,7 +87,8 @@ def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequenc
         bare = reduced(selected.solution.design, [i for i, term in enumerate(terms) if term.name == name])
         d = settled(fit(bare), runs, covered).design
         without = frozenset({name})
-        others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=without)
+        but = without | selected.taken
+        others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=but)
         other = select(selected.p, others, runs, covered)
         same = replace(other, p=selected.p)  # by the same floors: without repeats they are measured beside the effects
         fewer = other.names <= names - without and same.left < selected.left
@@ -115,9 +120,10 @@ def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[
         return selected
     d = selected.solution.design
     stay = {term.name for term in d.terms}
+    but = stay | selected.taken
     beside = ranking_of_some(d, bank, runs, covered, LAWS)
     only = [r for r in beside if found.names == (r.term.name,)]
-    for term in _in_all_laws(_most_of(found.ranking, stay) + _most_of(beside, stay), only):
+    for term in _in_all_laws(_most_of(found.ranking, but) + _most_of(beside, but), only):
         s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
@@ -145,7 +151,7 @@ def try_each_instead(selected: Selected, found: Found, runs: Sequence[int], cove
     if len(names) != 1 or len(selected.scores) != 1 or selected.scores[0].fairly:
         return selected
     mine = next((r.evidence for r in found.ranking if r.term.name in names), np.inf)
-    alike = [r for r in found.ranking if r.term.name not in names and r.evidence > ALIKE * mine]
+    alike = [r for r in found.ranking if r.term.name not in names | selected.taken and r.evidence > ALIKE * mine]
     for scored in alike[:TRIED]:
         s = settled(refine(selected.p.baseline.design, scored.term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)

@@ -64,6 +64,11 @@ class Selected:
         return {term.name for term in self.solution.design.terms}
 
     @property
+    def taken(self) -> frozenset[str]:
+        """Names that are not looked for beside what is there: those of effects that every run has to itself."""
+        return frozenset(self.p.own.made)
+
+    @property
     def fitted_runs(self) -> list[Recording]:
         """Those the fit has seen."""
         return [self.p.eq.runs[i] for i in self.p.split.fitted]

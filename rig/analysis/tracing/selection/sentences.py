@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
-from rig.analysis.tracing.floor.local import IN_SHORT
 from rig.analysis.tracing.rest.home import Home
-from rig.model.effects import CATALOGUE
+from rig.model.effects import LIBRARY
 
 FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
 
@@ -57,11 +56,7 @@ def how_often(home: Home) -> str:
 
 def in_words(names: Sequence[str]) -> str:
     """Effects, each with what it is in short."""
-    return _listed([f"{name.replace('_', ' ')} ({_in_short(name)})" for name in names])
-
-
-def _in_short(name: str) -> str:
-    return CATALOGUE[name].in_short if name in CATALOGUE else IN_SHORT[name]
+    return _listed([f"{name.replace('_', ' ')} ({LIBRARY[name].in_short})" for name in names])
 
 
 def _listed(words: Sequence[str]) -> str:
