@@ -199,7 +199,7 @@ CONFOUNDERS: Final = {
 
 def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
     """With the confounder in the place of its look-alike, wherever it explains more of the fitted runs, or as much with
-    fewer coefficients."""
+    fewer coefficients; and the zero of its channel every run's own, where it leaves that to it."""
     n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in s.keys)
     for confounder in CONFOUNDERS.values():
         mine = [i for i, term in enumerate(s.design.terms) if term.name in confounder.mimics]
@@ -211,17 +211,17 @@ def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Soluti
             saved = (s.design.size - other.design.size) * np.log(n)
             if confounder.short:
                 saved += confounder.short * (s.gain - fit(bare).gain)
-            s = other if _more(s, other, runs, confounder.zero_of) + saved > 0.0 else s
+            mine_own, its_own = (_with_own_zeros(m, runs, confounder.zero_of) for m in (s, other))
+            s = its_own if its_own.gain - mine_own.gain + saved > 0.0 else s
     return s
 
 
-def _more(s: Solution, other: Solution, runs: Sequence[int], zero_of: str) -> float:
-    """How much more `other` explains of the weighted sum of squares, the zero of that channel being every run's own."""
-    if not zero_of:
-        return other.gain - s.gain
-    eq = replace(s.design.eq, noise=s.design.eq.noise.free(zero_of))
-    gain, its = (fit(design(eq, m.design.terms, runs)).gain for m in (s, other))
-    return its - gain
+def _with_own_zeros(s: Solution, runs: Sequence[int], channel: str) -> Solution:
+    """A model with the zero of that channel every run's own; as it is where none is said."""
+    if not channel:
+        return s
+    eq = replace(s.design.eq, noise=s.design.eq.noise.free(channel))
+    return fit(design(eq, s.design.terms, runs))
 
 
 def of_the_library(ranking: Sequence[Scored]) -> tuple[Scored, ...]:

@@ -234,10 +234,12 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     s, other = kept[0], with_confounders(kept[0], runs, covered)
     again = backward_elimination(other, p.held_out)
     came = {term.name for term in other.design.terms} - {term.name for term in s.design.terms}
-    if came:
-        as_it_was = backward_elimination(s, p.held_out)
-        return min(as_it_was, again, key=lambda one: p.held_out.worst(p.held_out.residuals(one[0], one[1]))[0])
-    return again
+    if not came:
+        return again
+    as_it_was = backward_elimination(s, p.held_out)
+    if came.isdisjoint(term.name for term in again[0].design.terms):
+        return as_it_was
+    return min(as_it_was, again, key=lambda one: p.held_out.worst(p.held_out.residuals(one[0], one[1]))[0])
 
 
 def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
