@@ -93,8 +93,11 @@ def resonated(x: Array, dt: float, omega: float, zeta: float) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def resonance(x: Array, dt: float, omega: float, zeta: float) -> tuple[Array, Array]:
-    """`resonated` and its second derivative, both shapes (n,).
+def resonance(
+    x: Array, dt: float, omega: float, zeta: float, behind: float = 0.0, rate: float = 0.0
+) -> tuple[Array, Array]:
+    """`resonated` and its second derivative, both shapes (n,), from where it is `behind` x[0] by that much and changes
+    at that `rate` [1/s].
 
     The state is how far the output is behind: e = y − x and its rate.
     """
@@ -108,9 +111,9 @@ def resonance(x: Array, dt: float, omega: float, zeta: float) -> tuple[Array, Ar
     rate_by_e, rate_by_v = -decay * omega * omega / wd * s, decay * (c - sigma / wd * s)
     # with a ramp of slope r as input, e = y − (x − 2ζr/ω) decays freely: from row to row e and its rate v alone go
     # into the next ones, and the processor waits for nothing else
-    e = v = slope = 0.0
+    e, v, slope = behind, rate, 0.0
     late = 2.0 * zeta / omega
-    out[0] = x[0]
+    out[0] = x[0] + e
     for i in range(1, x.size):
         before, slope = slope, (x[i] - x[i - 1]) / dt
         e, v = e + late * (slope - before), v - (slope - before)

@@ -58,6 +58,7 @@ REFERENCES: dict[str, str] = {
     "odrive": "ODrive Robotics, CAN protocol (CANSimple) and firmware 0.5.6, odriverobotics.com/docs",
     "usdigital": "US Digital, QSB, list of commands, version 1.28",
     "randall2011": "R. B. Randall, Vibration-based Condition Monitoring, Wiley (2011)",
+    "thomson1993": "W. T. Thomson, Theory of Vibration with Applications, 4th ed., Prentice-Hall (1993)",
     "rife1974": "D. C. Rife, R. R. Boorstyn, Single-tone parameter estimation from discrete-time observations, "
     "IEEE Trans. Information Theory 20 (1974) 591-598",
     "anderson1965": "D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560",

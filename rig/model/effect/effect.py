@@ -71,6 +71,10 @@ class Effect(ABC):
         a piece have to be cut from those of the whole. Not of one that asks for `Signals.states`."""
         return False
 
+    def swings(self, shape: Shape) -> tuple[float, float] | None:
+        """ω [rad/s] and ζ of a mode of its own that a run may begin with in full swing; None of one without."""
+        return None
+
     def moved_by_noise(self) -> bool:
         """True when noise of a reading moves a state of its own, and does not add to its columns."""
         return False

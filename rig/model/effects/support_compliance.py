@@ -8,8 +8,8 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import resonated
 from rig.model.shaken import shaken
+from rig.model.swung import swung
 
 ON_HOUSING, ON_GROUND = 0.0, 1.0  # of the first shape parameter: where the encoders are held
 
@@ -56,12 +56,16 @@ class SupportCompliance(Effect):
         """It swings."""
         return True
 
+    def swings(self, shape: Shape) -> tuple[float, float] | None:
+        """The housing."""
+        return 2.0 * np.pi * shape[1], shape[2]
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, in both readings or, beyond 1/K, in the wind-up."""
         held, frequency, zeta = shape
         torque = signals.once(self.name, lambda: np.ascontiguousarray(np.nan_to_num(signals.torque)))
-        swung = resonated(torque, signals.dt, 2.0 * np.pi * frequency, zeta)
-        beyond = shaken(signals, swung - torque)[:, None]
+        after, _ = swung(signals, torque, 2.0 * np.pi * frequency, zeta)
+        beyond = shaken(signals, after - torque)[:, None]
         if held == ON_GROUND:
             return {Port.WIND_UP: beyond}
         moved = torque[:, None] + beyond
@@ -103,6 +107,10 @@ class StiffSupport(SupportCompliance):
     def has_state(self) -> bool:
         """It follows the torque."""
         return False
+
+    def swings(self, shape: Shape) -> tuple[float, float] | None:
+        """It does not."""
+        return None
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, in both readings."""

@@ -8,9 +8,9 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import resonance, resonated
 from rig.model.second_mode import coupling, output
 from rig.model.shaken import shaken
+from rig.model.swung import swung
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
@@ -21,13 +21,14 @@ FLANGE = 7.0  # or an inertia behind the torque sensor, before the shaft that be
 
 
 class TorsionalMode(Effect):
-    """An inertia J_2 hangs on the load (or the motor) by a spring of its own: it resists with J_2·H·ω̇,
-    H = ω²/(s² + 2ζωs + ω²). Far below ω it is just more inertia, which the baseline already has.
+    """An inertia J_2 hangs on the load (or the motor) by a spring of its own, with a damper beside it: it resists with
+    J_2·H·ω̇, H = (2ζωs + ω²)/(s² + 2ζωs + ω²). Far below ω it is just more inertia, which the baseline already has.
 
-    The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the τ
-    that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and the lever
-    is that of the other angle. Of a mode above what the equations are compared at that is all there is to see. A soft
-    one swings: ψ = H·(τ/k + ω̇_m/ω²), J_2 = k/ω² being the wave generator's inertia, and the motor feels −J_2·ψ̈.
+    The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the
+    τ that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and
+    the lever is that of the other angle. Of a mode above what the equations are compared at that is all there is to
+    see. A soft one swings: ψ = H_0·(τ/k + ω̇_m/ω²), H_0 = ω²/(s² + 2ζωs + ω²), J_2 = k/ω² being the wave
+    generator's inertia, and the motor feels −J_2·ψ̈.
 
     Where the load itself hardly moves because J_2 swings against it, ω̇ is encoder noise, and that is what H is largest
     at. The torque that drives both tells the same: J_l·ω̇ = T + (1/ω² − 1/ω_p²)·s²·H_p·T, H_p being the two inertias
@@ -100,6 +101,11 @@ class TorsionalMode(Effect):
         """A resonance is a peak: where its frequency is known no better than that, something else has been fitted."""
         return scale.ci95[1] - scale.ci95[0] < 2 * self.PEAK * abs(scale.value)
 
+    def swings(self, shape: Shape) -> tuple[float, float] | None:
+        """Of all but a stiff coupling and a hub."""
+        side, frequency, zeta, _ = shape
+        return (2.0 * np.pi * frequency, zeta) if side in (LOAD, MOTOR, DRIVEN, SOFT, FLANGE) else None
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
         two, for J_2 and for J_2/k; of a flange three, for 1/k, J_2/k and 1/ω²; of a soft coupling three, for 1/k, 1/ω²
@@ -121,10 +127,9 @@ class TorsionalMode(Effect):
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
             if side == DRIVEN:
-                torque = np.ascontiguousarray(np.nan_to_num(whole.tau_l))
-                return (shaken(whole, -resonance(torque, whole.dt, omega, zeta)[1]),)
-            alpha = np.ascontiguousarray(whole.alpha_m if side == MOTOR else whole.alpha_l)
-            return (shaken(whole, resonated(alpha, whole.dt, omega, zeta)),)
+                return (shaken(whole, -swung(whole, np.nan_to_num(whole.tau_l), omega, zeta)[1]),)
+            alpha = whole.alpha_m if side == MOTOR else whole.alpha_l
+            return (shaken(whole, alpha - swung(whole, alpha, omega, zeta)[1] / omega**2),)  # H·ω̇
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
         return {port: signals.states(swinging)[0][:, None]}

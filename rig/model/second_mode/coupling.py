@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.memory import resonance
+from rig.model.swung import swung
 from rig.model.waves import sums
 
 Array = npt.NDArray[np.float64]
@@ -27,8 +27,8 @@ def soft(s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, A
     """Three: for 1/k, 1/ω² and J_2/ω², ψ = H·(τ/k + ω̇_m/ω²) being the twist; the motor feels −J_2·ψ̈."""
 
     def swinging(whole: Signals) -> tuple[Array, ...]:
-        torque, alpha = through_it(whole, about), np.ascontiguousarray(whole.alpha_m)
-        return (*resonance(torque, whole.dt, omega, zeta), *resonance(alpha, whole.dt, omega, zeta))
+        torque = through_it(whole, about)
+        return (*swung(whole, torque, omega, zeta), *swung(whole, whole.alpha_m, omega, zeta))
 
     by_torque, jerk_t, by_alpha, jerk_a = s.states(swinging)
     lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.memory import resonance
 from rig.model.shaken import shaken
+from rig.model.swung import swung
 
 Array = npt.NDArray[np.float64]
 
@@ -32,9 +32,9 @@ def flange(s: Signals, omega: float, zeta: float) -> Mapping[Port, Array]:
     """
 
     def swinging(whole: Signals) -> tuple[Array, ...]:
-        torque = np.ascontiguousarray(np.nan_to_num(whole.torque))
-        swung, jerk = resonance(torque, whole.dt, omega, zeta)
-        return shaken(whole, swung - torque), shaken(whole, jerk)
+        torque = np.nan_to_num(whole.torque)
+        after, jerk = swung(whole, torque, omega, zeta)
+        return shaken(whole, after - torque), shaken(whole, jerk)
 
     behind, jerk = s.states(swinging)
     twist, resists = np.zeros((jerk.size, 3)), np.zeros((jerk.size, 3))

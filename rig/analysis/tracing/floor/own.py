@@ -10,6 +10,7 @@ from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
+from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.sidebands import sidebands
 from rig.analysis.tracing.floor.steps import LOST, explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import find_vibration
@@ -22,16 +23,17 @@ from rig.model.effect import Array, Parameter
 @dataclass(frozen=True)
 class Own:
     """Columns (n, q) by effect and block, the effects' parameters, a line beside the motion that is no effect of the
-    library, and notes on effects in a sentence each."""
+    library, notes on effects in a sentence each, and columns of what is no effect but how a run began."""
 
     made: dict[str, dict[Key, Array]]
     parameters: dict[str, tuple[Parameter, ...]]
     line: Interference | None
     notes: Mapping[str, str] = field(default_factory=dict)
+    began: Mapping[Key, Array] = field(default_factory=dict)
 
     def columns(self) -> dict[Key, Array]:
-        """Of all effects together, and of the line."""
-        return joined([*self.made.values(), *([self.line.columns] if self.line else [])])
+        """Of all effects together, of the line and of how runs began."""
+        return joined([*self.made.values(), *([self.line.columns] if self.line else []), self.began])
 
     def without(self, names: Sequence[str]) -> Own:
         """The others."""
@@ -58,8 +60,9 @@ def find(s: Solution, parts: Split) -> Own:
         words["external_vibration"] = shaken.parameters()
     elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
+    began = ringing(eq, s.design.terms, sorted({i for i, _ in everywhere}))
     if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
-        return Own(made, words, line, notes)
+        return Own(made, words, line, notes, began)
     steps = find_steps(eq, everywhere, compliance)
     whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
     if lost_counts(eq, steps, repeats(eq.runs, whole)):
@@ -71,4 +74,4 @@ def find(s: Solution, parts: Split) -> Own:
         made[LOST.name] = between.columns(eq)
         words[LOST.name] = between.parameters()
         notes[LOST.name] = between.sentence(eq)
-    return Own(made, words, line, notes)
+    return Own(made, words, line, notes, began)
