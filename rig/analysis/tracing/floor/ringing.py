@@ -67,8 +67,8 @@ def _of(eq: Equations, run: int, term: Term, swing: tuple[float, float]) -> dict
     """In the channels of one run that the mode itself acts on."""
     ports = term.effect.columns(eq.runs[run].pieces[0], term.shape)
     shapes = [(*swing, float(PORTS.index(port))) for port in ports if port in PORTS]
-    made = [eq.term(run, Term(RING_DOWN, shape)) for shape in shapes]
-    return {c: np.hstack([m[c] for m in made if np.any(m[c])]) for c in made[0] if any(np.any(m[c]) for m in made)}
+    made = [(c, x) for shape in shapes for c, x in eq.term(run, Term(RING_DOWN, shape)).items() if np.any(x)]
+    return {c: np.hstack([x for channel, x in made if channel == c]) for c in dict(made)}
 
 
 def _begins_in_motion(eq: Equations, run: int) -> bool:
