@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.second_mode import coupling, output
-from rig.model.shaken import shaken
+from rig.model.shaken import EXCITED, shaken
 from rig.model.swung import swung
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
@@ -65,7 +65,10 @@ class TorsionalMode(Effect):
     APART: Final = 3.0  # times: how far the two a flange tells its frequency by may differ, as 1/ω² and as a peak
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Frequencies up to what the equations are compared at."""
+        """Frequencies up to what the equations are compared at. A slow motor shakes nothing but where it turns back,
+        and there friction does all kinds of things."""
+        if reach.fastest < EXCITED:
+            return ()
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
         modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)

@@ -11,10 +11,10 @@ from scipy.special import chdtri
 from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.fit.model import Design, Solution, design, inverse
+from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
-from rig.analysis.tracing.floor.uncertain import beside, is_inferred
+from rig.analysis.tracing.floor.uncertain import beside, is_inferred, of_the_inertia
 from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, TURNED
 from rig.model.effect import Array
 
@@ -39,7 +39,7 @@ class HeldOut:
             known = scatter(s)
             e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in inferred}
         if turned := [key for key in e if key[1] == "R"]:
-            known = inverse(s.gram)  # rougher, but most campaigns have reversals, and a scatter takes all rows
+            known = of_the_inertia(s)
             e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in turned}
         return e
 

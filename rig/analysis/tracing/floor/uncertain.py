@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.fit.model import Design
+from rig.analysis.tracing.fit.model import Design, Solution, inverse
 from rig.model.effect import Array
 
 PIECES: Final = 50  # of a run that its floor counts as independent: its rows follow one another too closely
@@ -28,6 +28,21 @@ def is_inferred(eq: Equations, key: Key) -> bool:
     run, channel = key
     leans = channel == "M" or (channel == "A" and eq.runs[run].locked)
     return leans and "theta_l" not in eq.runs[run].has
+
+
+def of_the_inertia(s: Solution) -> Array:
+    """What is known of the coefficients (p, p), rougher than `scatter`, but most campaigns have reversals, and that one
+    takes all rows; of the motor's inertia as much less as sensor noise is more of its column than acceleration is: of
+    a slow motor it comes out several times too small."""
+    known, d, (at,) = inverse(s.gram), s.design, INERTIA
+    noise = 0.0
+    for (run, c), parts in d.parts.items():
+        spoilt, where = parts[0].spoilt, np.flatnonzero(parts[0].at == at)
+        if spoilt is not None and where.size:
+            column = spoilt.times((parts[0].at == at).astype(float))
+            noise += d.eq.noise.weight(c) * d.eq.stands_for.get((run, c), 0.0) * float(column @ column)
+    known[at, at] += (s.x[at] * noise * known[at, at]) ** 2
+    return known
 
 
 def beside(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Array:

@@ -34,6 +34,7 @@ from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import (
     AS_WELL,
     AT_THE_FLOOR,
+    EXPLAINED,
     KNOWN,
     MISSING,
     NAMED,
@@ -41,6 +42,7 @@ from rig.analysis.tracing.thresholds import (
     QUIET,
     SEEN,
     VOUCHED_FOR,
+    WORSE,
 )
 from rig.model.effect import Array, Parameter, Reach
 
@@ -221,11 +223,18 @@ Kept = tuple[Solution, Design, list[HeldOutScore]]
 
 
 def _polished(p: Prepared, s: Solution, so_far: Kept, runs: Sequence[int], covered: Reach) -> Kept:
-    """Laws fitted again beside those that stayed; as they were where that loses one: two terms of one effect can trade
-    what single runs show, and foretell nonsense of others."""
+    """Laws fitted again beside those that stayed; as they were where that loses one, or leaves much more of unseen
+    runs: two terms of one effect can trade what single runs show, and foretell nonsense of others."""
     again = backward_elimination(polished(s, runs, covered), p.held_out)
     kept = {term.name for term in again[0].design.terms}
-    return again if kept >= {term.name for term in s.design.terms} else so_far
+    now, before = (_left(p, one) for one in (again, so_far))
+    worse = now > max(WORSE * before, EXPLAINED)
+    return again if kept >= {term.name for term in s.design.terms} and not worse else so_far
+
+
+def _left(p: Prepared, kept: Kept) -> float:
+    """RMS over floor of the worst channel on unseen runs."""
+    return p.held_out.worst(p.held_out.residuals(kept[0], kept[1]))[0]
 
 
 def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) -> Kept:
@@ -239,7 +248,7 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     as_it_was = backward_elimination(s, p.held_out)
     if came.isdisjoint(term.name for term in again[0].design.terms):
         return as_it_was
-    return min(as_it_was, again, key=lambda one: p.held_out.worst(p.held_out.residuals(one[0], one[1]))[0])
+    return min(as_it_was, again, key=lambda one: _left(p, one))
 
 
 def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
