@@ -37,6 +37,9 @@ OTHER_LAW: Final = 0.01  # of an effect's evidence and of the noise's: a tenth o
 
 NAMED: Final = 0.6  # of the held-out excess an effect must remove; true ones 0.73 and more, mimics 0.21 at most
 EXPLAINED: Final = 1.3  # held-out RMS over floor below which nothing more is looked for
+NOTEWORTHY: Final = (
+    1.15  # the same where one coordinate foretells all of it; 29 clean campaigns of seven exams end at 1.15
+)
 WHATEVER: Final = 5.0  # of the floor, RMS: twice such a floor would still be far below
 MOST: Final = 10  # terms: a rig with more effects than that is not explained by adding another
 SMALLEST: Final = 0.35  # of the floor, RMS where it matters most: smaller ones move no error by 6 %

@@ -10,6 +10,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.trace import trace
+from tests.analysis.tracing.spiked import Columns, spiked, under
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
 
@@ -33,3 +34,21 @@ def test_numbers_made_up_without_any_noise_have_nothing_hidden_in_their_rounding
     columns = {"t": t, "theta_m": theta, "theta_l": theta / 50, "tau_l": still, "tau_m": 0.1 * still}
     pq.write_table(pa.table(columns), folder / "samples.parquet")
     assert trace(tmp_path / "campaign").verdict.status == Status.NOTHING
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("height", "where"), [(0.16, "load_angle"), (0.0, None)])
+def test_what_is_a_little_above_the_floor_is_said_where_one_coordinate_foretells_it(
+    tmp_path: Path, shared: Path, height: float, where: str | None
+) -> None:
+    """A dent in the output's bearing, which brakes over 3 degrees of the output: 1.28 floors in the shaft torque."""
+    names = [
+        f"{kind}_{k}" for kind in ("slow_ke", "load_2.5nm", "load_10nm", "speed_60rpm", "speed_200rpm") for k in (1, 2)
+    ]
+
+    def dented(c: Columns, began: float) -> Columns:
+        return under(c, height * np.exp(-0.5 * ((c["theta_l"] - 0.17) / 0.05) ** 2))
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", dented, names)
+    assert (found.verdict.effects, found.verdict.coordinate) == ((), where)
+    assert found.ratios_before["tau_l"] < 1.3

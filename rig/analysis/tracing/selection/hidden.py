@@ -13,19 +13,21 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
+from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
+from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, plainest
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
-from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.rest.unknown import home, homes
 from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.next_run import along
-from rig.analysis.tracing.selection.sentences import how_often
-from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING
+from rig.analysis.tracing.selection.sentences import how_often, of_the_rest
+from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING, NOTEWORTHY
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
 
@@ -36,6 +38,7 @@ def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     return (
         _in_the_floor(p, s, after, floors)
         or _at_one_speed(p, s, after, floors)
+        or _nearly_loud(p, s, after, floors)
         or _in_one_run(p, s)
         or _in_lock_tests(p, s, after)
         or _in_a_burst(p, s)
@@ -88,6 +91,29 @@ def _at_one_speed(
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, None, None, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _nearly_loud(
+    p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Conclusion | None:
+    """A channel of unseen runs has a little more left than repeats tell of, and nearly all of that is foretold along
+    one coordinate; None where there is none."""
+    if not repeats(p.eq.runs, p.split.fitted):
+        return None
+    left, floors = {key: s.residual(key) for key in s.keys}, {**floors, **p.held_out.floors}
+    for c in WHOLE:
+        mine = [key for key in after if key[1] == c]
+        if not mine or (before := p.held_out.ratio(after, mine)) < NOTEWORTHY:
+            continue
+        most = rest(p.eq, left, floors, c)
+        where = plainest(homes(most, c)) if most is not None else []
+        if where and p.held_out.ratio(smooth_term(p.eq, left, after, floors, where[0]), mine) < 1.0:
+            best = where[0]
+            verdict = Verdict(
+                Status.UNKNOWN, (), (), best.coordinate, best.order, best.frequency_hz, of_the_rest(best, before)
+            )
+            return Conclusion(verdict, best, (best.coordinate,), along(best.coordinate))
+    return None
 
 
 def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
