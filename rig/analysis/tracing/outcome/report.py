@@ -30,6 +30,7 @@ from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.runs.cannot import cannot, together
+from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.candidates import candidates
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.one_sided import COGGING, one_sided
@@ -55,7 +56,7 @@ def report(
     one_way = one_sided(fitted)
     ranked = tuple(name for name in ranked if not (one_way and name == COGGING))
     baseline = honest(parameters.baseline(empty), fitted_runs)
-    conclusion = decide(p, s, ranked, scores, before, after, p.floors, found)
+    conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found))
     conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
     final, curve = _with_a_curve(p, s, after, conclusion.home)
     confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)

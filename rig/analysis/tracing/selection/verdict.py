@@ -18,18 +18,17 @@ from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.conclusion import Conclusion
-from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
+from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.falls import most, share, share_of_all
 from rig.analysis.tracing.selection.hidden import hidden
 from rig.analysis.tracing.selection.inseparable import inseparable
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
-from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
 from rig.analysis.tracing.selection.standing import standing
-from rig.analysis.tracing.thresholds import ALONE, AMISS, EXPLAINED, MISSING, MOSTLY, PART, QUIET
+from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MOSTLY, PART, QUIET
 from rig.model.effect import Array
 
 DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
@@ -38,51 +37,58 @@ HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may b
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
-def decide(
-    p: Prepared,
-    s: Solution,
-    ranked: Sequence[str],
-    scores: Sequence[HeldOutScore],
-    before: Mapping[Key, Array],
-    after: Mapping[Key, Array],
-    floors: Mapping[Key, float],
-    found: Found,
-) -> Conclusion:
-    """From held-out ratios and the effects that may be named, `ranked`, the one that does most first; those shared by
-    all runs have `scores`."""
-    total, _ = p.held_out.worst(after)
-    first, _ = p.held_out.worst(before)
-    line = p.own.line
-    names = tuple(name for name in ranked if name not in CONFOUNDERS)
-    one = MISSING if names else ALONE
-    loud = p.held_out.loud(after, one, bool(names)) or line is not None
-    plain = {score.name for score in scores if score.plain}
-    if confounders := [confounder for confounder in confounders_in(s) if not loud or confounder.effect.name in plain]:
-        own = () if loud else p.own.made.keys()
-        stand = beside_a_law(confounders[0].coordinate, names, scores, plain, own)
-        larger = () if loud else larger_than(confounders, names, scores, plain)
-        if larger:
-            named = tuple(name for name in names if name in stand or name in larger)
-            return beside_little(confounders[0], _settled(p, named, found, *_falls(p, before, after)))
-        return confounded(confounders[0], stand)
+def decide(asked: Asked) -> Conclusion:
+    """The verdict, from held-out residuals and the effects that may be named."""
+    p, s, names = asked.p, asked.s, asked.names
+    if said := _by_a_law(asked):
+        return said
+    if not asked.loud:
+        inside = None if names else hidden(p, s, asked.after, asked.floors)
+        drifting = inside or _drifting(p, s, names, asked.floors)
+        return drifting or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+    where = _where(p, s, asked.after, asked.floors, asked.one)
+    return _with_a_remainder(asked, where) or _unknown(asked, where)
+
+
+def _by_a_law(asked: Asked) -> Conclusion | None:
+    """A law without a name is in the model, beside names or alone; None where there is none."""
+    p, names, scores, plain = asked.p, asked.names, asked.scores, asked.plain
+    laws = [law for law in confounders_in(asked.s) if not asked.loud or law.effect.name in plain]
+    if not laws:
+        return None
+    own = () if asked.loud else p.own.made.keys()
+    stand = beside_a_law(laws[0].coordinate, names, scores, plain, own)
+    larger = () if asked.loud else larger_than(laws, names, scores, plain)
+    if not larger:
+        return confounded(laws[0], stand)
+    named = tuple(name for name in names if name in stand or name in larger)
+    return beside_little(laws[0], _settled(p, named, asked.found, *_falls(p, asked.before, asked.after)))
+
+
+def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
+    """Names explain nearly all there was, and what is left beside them is little; None where they do not."""
+    first, total = asked.worst
     done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
-    if not loud:
-        inside = None if names else hidden(p, s, after, floors)
-        return inside or _drifting(p, s, names, floors) or _settled(p, names, found, *_falls(p, before, after))
-    where = _where(p, s, after, floors, one)
-    known = bool(repeats(p.eq.runs, p.split.fitted))  # without repeats no floor is known so well that a rest may stand
-    mostly = done > MOSTLY and total < 2 * EXPLAINED and max((score.left for score in scores), default=0.0) < AMISS
-    sure = known or (bool(plain) and all(score.name in plain for score in scores))
-    if line is None and names and sure and mostly:
-        conclusion = _settled(p, names, found, first, total)
-        return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
+    left = max((score.left for score in asked.scores), default=0.0)
+    mostly = done > MOSTLY and total < 2 * EXPLAINED and left < AMISS
+    all_plain = bool(asked.plain) and all(score.name in asked.plain for score in asked.scores)
+    sure = asked.has_repeats or all_plain
+    if asked.p.own.line is not None or not (asked.names and sure and mostly):
+        return None
+    conclusion = _settled(asked.p, asked.names, asked.found, first, total)
+    return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
+
+
+def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
+    """Much is left, and no effect explains it; names whose own part is plain stand beside it."""
+    p, before, after = asked.p, asked.before, asked.after
+    line, best, (_, total) = p.own.line, where[0], asked.worst
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
-    best = where[0]
-    shared = [name for name in names if name not in p.own.made and name not in _of_the_same_order(s, best)]
-    told = line is None and (known or total <= EXPLAINED)
+    shared = [name for name in asked.names if name not in p.own.made and name not in _of_the_same_order(asked.s, best)]
+    told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
-    stand = standing(best.coordinate, shared, scores, plain, told) if taken > PART else ()
+    stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
         sentence = f"{lacks(stand, *most(p.held_out, before, after), 'most improved')} {sentence}"
