@@ -26,7 +26,7 @@ def test_the_weight_is_named_and_what_is_left_goes_with_the_angle_of_the_joint(s
     assert low < 37_000 < high  # N·m/rad, the slope of torsion over torque
 
 
-def test_a_log_of_two_seconds_is_refused_with_what_is_missing(tmp_path: Path) -> None:
+def test_a_log_of_two_seconds_is_refused_with_what_is_missing(shared: Path, tmp_path: Path) -> None:
     campaign = imported(tmp_path)
     samples = next(campaign.glob("**/samples.parquet"))
     samples.parent.chmod(0o755)
@@ -36,7 +36,9 @@ def test_a_log_of_two_seconds_is_refused_with_what_is_missing(tmp_path: Path) ->
         trace(campaign)
 
 
-def test_a_campaign_that_is_called_here_has_its_folders_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_campaign_that_is_called_here_has_its_folders_name(
+    shared: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     campaign = imported(tmp_path)
     monkeypatch.chdir(campaign)
     assert read_campaign(Path()).name == campaign.name
