@@ -18,6 +18,8 @@ GIVES_WAY = 0.15  # of the wind-up at tau_max: a load that moved this far is not
 OVERSHOOT = 1.3  # of tau_max: a slip may end beyond it by what stick-slip is long
 OVERSHOOT_BY = 3.0  # N·m, and so much more
 PATIENCE = 3.0  # times what unwinding should take: a gear that still shows torque then is let go, and it is said
+SLIP = 2.5  # N·m that the last slip of the motor may leave in the shaft
+LITTLE = 1.0  # N·m: to turn the motor for less would only slip to the other side
 AT_REST = 0.5  # s with the reference at rest, before the first ramp and after unwinding
 
 Part = Generator[Setpoint, Sample, Sample]
@@ -133,10 +135,14 @@ class StiffnessLock(Procedure):
         return WoundUp(stiffness, left, told)
 
     def to_rest(self, setting: Setting) -> Steps:
-        """Unwind along a ramp until the shaft shows no torque: neither held nor let go. Returns an Unwound."""
+        """Unwind along a ramp until the shaft shows next to no torque: neither held nor let go. Returns an Unwound."""
         sample = yield Torque(0.0)
         winding = Winding(setting, self.gain, sample)
         wound = winding.torque
+        if abs(wound) <= LITTLE:
+            told = f"the shaft shows {wound:+.2f} N·m, not more than {LITTLE:g} N·m: nothing was turned"
+            setting.note(told)
+            return Unwound(wound, wound, told)
         yield from self._unwind(setting, winding, sample)
         told = f"unwound from {wound:+.2f} to {winding.torque:+.2f} N·m"
         setting.note(told)
@@ -146,7 +152,7 @@ class StiffnessLock(Procedure):
         direction, begin = -math.copysign(1.0, winding.torque), sample.t
         patience = PATIENCE * abs(winding.torque) / self.unwind_rate + AT_REST
         omega = direction * setting.ratio * self.unwind_rate / setting.stiffness
-        while direction * winding.torque < 0 and sample.t - begin < patience:
+        while direction * winding.torque < -LITTLE and sample.t - begin < patience:
             sample = yield winding.step(sample, omega)
         return (yield from self._stay(winding, sample, AT_REST))
 

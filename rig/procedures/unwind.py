@@ -5,16 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from rig.core.errors import NotReady
 from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.procedures.stiffness_lock import StiffnessLock
+from rig.procedures.stiffness_lock import SLIP, StiffnessLock
 
 MOST = 45.0  # N·m a locked gear may hold: friction of the motor times N, and the sensors of such rigs end at 50 N·m
 
 
 @dataclass(frozen=True)
 class Unwind(Procedure):
-    """Turn the motor of a locked gear back along a ramp until the shaft shows no torque; then the pin may be pulled."""
+    """Turn the motor of a locked gear back along a ramp until the shaft shows next to no torque: then the pin may be
+    pulled. What friction of the motor holds in the end is a slip of it, told with what was let out."""
 
     name: ClassVar[str] = "other"
     label: ClassVar[str] = "unwind"
@@ -37,5 +39,12 @@ class Unwind(Procedure):
         return {"output_locked": True, "note": "unwinding before the lock pin is pulled"}
 
     def steps(self, setting: Setting) -> Steps:
-        """As the lock test does when it is stopped. Returns an Unwound."""
-        return StiffnessLock(unwind_rate=self.rate).to_rest(setting)
+        """As the lock test does when it is stopped. Returns an Unwound. Raises NotReady where the shaft still shows
+        more than a slip of the motor leaves."""
+        unwound = yield from StiffnessLock(unwind_rate=self.rate).to_rest(setting)
+        if abs(unwound.after) > SLIP:
+            raise NotReady(
+                f"{unwound.sentence}; a slip of the motor leaves {SLIP:g} N·m at most: the pin stays in. Run unwind "
+                "once more; if that changes nothing, is the sign of torque, and the zero of the torque sensor, right?"
+            )
+        return unwound

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,9 +16,11 @@ from rig.cli import main
 from rig.control.winding import stiffer
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.core.operator import LockOutput
+from rig.core.sample import Sample, Torque
 from rig.guard import Guard
 from rig.loop import Ending, Loop
-from rig.procedures.stiffness_lock import StiffnessLock
+from rig.procedures.stiffness_lock import StiffnessLock, Unwound
+from rig.procedures.unwind import Unwind
 from rig.process.interrupts import Interrupts
 from rig.supervisor import Act, Supervisor
 from rig.timing.ticks import LoopTiming
@@ -150,6 +152,36 @@ def test_a_stiffer_loop_keeps_its_damping() -> None:
 
 
 @pytest.mark.slow
-def test_unwinding_by_name_says_what_was_let_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unwinding_by_name_turns_nothing_for_less_than_a_slip_of_the_motor(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["run", "unwind", "--out", str(tmp_path)]) == 0
-    assert re.search(r"^unwound from [+-]\d\.\d\d to [+-]\d\.\d\d N·m$", capsys.readouterr().out, re.MULTILINE)
+    said = r"^the shaft shows [+-]0\.\d\d N·m, not more than 1 N·m: nothing was turned$"
+    assert re.search(said, capsys.readouterr().out, re.MULTILINE)
+
+
+def unwound(shaft: Callable[[float], float]) -> Unwound:
+    """What unwinding makes of a gear that gives `shaft` N·m for so many rad that the motor has turned."""
+    bench = read("twin")
+    setting = bench.setting(lambda text: None)
+    steps, theta, now = Unwind().steps(setting), 0.0, 0.0
+    next(steps)
+    while True:
+        sample = Sample(now, theta, 0.0, 0.0, 0.0, shaft(theta), 0.0, 0, 0, 0, "")
+        try:
+            asked = steps.send(sample)
+        except StopIteration as end:
+            return end.value  # type: ignore[no-any-return]
+        theta = asked.theta_ref if isinstance(asked, Torque) and np.isfinite(asked.theta_ref) else theta
+        now += setting.period
+
+
+def test_a_gear_that_is_wound_up_is_let_out_till_a_slip_would_not_better_it() -> None:
+    done = unwound(lambda theta: 12.0 + 7200.0 / 50.0 * theta)
+    assert done.before == pytest.approx(12.0)
+    assert 0.0 < done.after <= 1.05
+
+
+def test_a_shaft_that_goes_on_showing_torque_is_no_gear_whose_pin_may_be_pulled() -> None:
+    with pytest.raises(NotReady, match=r"unwound from \+8\.00 to \+8\.00 N·m; .* 2\.5 N·m at most: the pin stays in"):
+        unwound(lambda theta: 8.0)
