@@ -173,7 +173,7 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
     if keys:
         return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)))
     as_one, sizes = _as_one(eq, e, columns)
-    spread = float(np.std(sizes)) / np.sqrt(max(len(sizes), 1))
+    spread = float(np.std(sizes)) / np.sqrt(len(sizes)) if sizes else 0.0
     return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)) if sizes else 0.0, as_one)
 
 

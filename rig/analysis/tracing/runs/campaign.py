@@ -21,7 +21,7 @@ from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
-from rig.analysis.tracing.runs.units import odd_angles, refuse_odd_angles
+from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
@@ -181,7 +181,7 @@ def _gave_way(run: Recording) -> str:
 
 def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Runs whose angles are not what the others' are are left out."""
-    return _apart(runs, {r.name: said for r in runs if (said := odd_angles(r)) is not None})
+    return _apart(runs, faster_by_degrees(runs) | {r.name: said for r in runs if (said := odd_angles(r)) is not None})
 
 
 def _copies(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
