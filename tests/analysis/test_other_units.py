@@ -33,6 +33,13 @@ def test_angles_in_degrees_meet_no_limit(shared: Path) -> None:
     assert "kinematic_error_peak_to_peak" not in {e.name for e in in_degrees.estimates}
 
 
+def test_a_slow_run_without_a_load_angle_is_no_pass(shared: Path) -> None:
+    run = Run.open(shared / "cases" / "open-1" / "slow_ke_1")
+    without = analyse(changed(run, {}, theta_l=np.nan))
+    assert (without.verdict, without.rejected) == (Verdict.INCONCLUSIVE, False)
+    assert "theta_l has no reading" in without.sentence
+
+
 def test_a_torque_in_another_unit_meets_no_limit_of_the_stiffness(shared: Path) -> None:
     run = Run.open(shared / "cases" / "open-1" / "lock_60_1")
     limits = {"torsional_stiffness": {"lower": 5000.0}}

@@ -27,7 +27,7 @@ from rig.analysis.turning.units import wrong_unit
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 
-NO_LOAD = "No load angle was recorded: kinematic error, torsion and orders of θ̃ cannot be had."
+NO_LOAD = "The run has no reading of the load angle: kinematic error, torsion and orders of θ̃ cannot be had."
 
 
 def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | None, slow: bool) -> None:
@@ -55,7 +55,9 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.cannot.append(NO_LOAD)
         add_speed_figures(found, motion, strokes)
         found.estimates += evenness
-        found.sentence = found.sentence or "The motor turned, the load angle is missing."
+        found.sentence = found.sentence or "The motor turned, theta_l has no reading."
+        if slow:  # what the run was taken for cannot be had
+            found.inconclusive = found.inconclusive or found.sentence
         return
     _with_load(found, run, motion, strokes, slow, evenness)
 
