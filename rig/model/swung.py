@@ -35,7 +35,7 @@ def swung(s: Signals, x: Array, omega: float, zeta: float) -> tuple[Array, Array
     from the first row on it did so before, and what the orders in `x` make the mode do has built up; else it begins at
     rest. A lightly damped one takes a second to forget where it began.
     """
-    x = np.ascontiguousarray(x)
+    x = _between_rows(x)
     first = s.once("as it began", lambda: _as_it_began(s))
     if first is None:
         after, second = resonance(x, s.dt, omega, zeta)
@@ -46,6 +46,14 @@ def swung(s: Signals, x: Array, omega: float, zeta: float) -> tuple[Array, Array
     behind, changes = float((passed - waves).real.sum()), float((passed * rate).real.sum())
     after, second = resonance(x, s.dt, omega, zeta, behind, changes)
     return after, second
+
+
+def _between_rows(x: Array) -> Array:
+    """`x` (n,) so raised that a line from row to row has its waves at full height: of 13 Hz in rows of 4 ms such a line
+    lacks 0.9 %, which moves a sharp resonance by a sixth of that."""
+    out = np.array(x, dtype=np.float64)
+    out[1:-1] -= np.diff(x, 2) / 12.0
+    return out
 
 
 def _as_it_began(s: Signals) -> First | None:

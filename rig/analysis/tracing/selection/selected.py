@@ -44,6 +44,7 @@ from rig.analysis.tracing.thresholds import (
     VOUCHED_FOR,
     WORSE,
 )
+from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
@@ -114,7 +115,8 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution = fit(design(carrying(p.eq, ()), (), runs))
         held = unseen(solution, p.held_out)
     selected = Selected(p, solution, held, scores, _in_words(solution, runs, covariance))
-    return _without_needless(_without_insignificant(selected, runs, covered), runs, covered)
+    selected = _without_needless(_without_insignificant(selected, runs, covered), runs, covered)
+    return _without_idle(selected, runs, covered)
 
 
 def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
@@ -182,6 +184,31 @@ def _without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -
         if len(fewer.scores) == len(selected.scores) - 1 and fewer.left < as_well:
             return _without_needless(fewer, runs, covered)
     return selected
+
+
+def _without_idle(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without further terms of an effect that may as well be nothing: what the search put beside the first one of them
+    while that was not yet what it is now."""
+    terms = selected.solution.design.terms
+    several = [i for i, term in enumerate(terms) if sum(term.name == other.name for other in terms) > 1]
+    if not several:
+        return selected
+    known = covariance(selected.solution)
+    least = min(several, key=lambda i: _told(selected.solution, known, i))
+    if _told(selected.solution, known, least) > Z95**2:
+        return selected
+    s = polished(fit(reduced(selected.solution.design, [least])), runs, covered)
+    kept = backward_elimination(s, selected.p.held_out)
+    fewer = Selected(selected.p, *kept, _in_words(kept[0], runs, covariance))
+    same = fewer.names == selected.names and fewer.left <= AS_WELL * selected.left and fewer.loud <= selected.loud
+    return _without_idle(fewer, runs, covered) if same else selected
+
+
+def _told(s: Solution, known: Array, term: int) -> float:
+    """Squares of the coefficients of a term over what is known of them (p, p), a coefficient."""
+    at = s.design.place(term)
+    x = s.x[at]
+    return float(x @ np.linalg.pinv(known[at, at]) @ x) / max(x.size, 1)
 
 
 def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach) -> Selected:
