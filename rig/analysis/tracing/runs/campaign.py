@@ -13,6 +13,7 @@ import numpy as np
 from rig.analysis.motion.held import not_held
 from rig.analysis.motion.one_rig import refuse_other_gears
 from rig.analysis.tracing.runs.balance import odd_balances
+from rig.analysis.tracing.runs.clocked import rate_by_speed, said_of
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.mixed import mixed
@@ -84,7 +85,8 @@ def read_campaign(folder: Path) -> Campaign:
     refuse_other_gears(name, opened)
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
-        found = list(pool.map(_record, opened, begun))
+        hz = rate_by_speed(opened)
+        found = list(pool.map(lambda run, start: _record(run, start, hz), opened, begun))
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, name)
@@ -93,6 +95,8 @@ def read_campaign(folder: Path) -> Campaign:
         out += odd
     runs, carrying = weighed(runs)
     out += carrying
+    clocked = [r for r in runs if r.clocked]
+    unfit += [said_of(len(clocked), len(runs) - len(clocked), hz)] if hz is not None and clocked else []
     notes = unfit + mixed(opened) + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
@@ -147,16 +151,16 @@ def _closed(folder: Path) -> list[Said]:
     return [left_out(name, "it cannot be read: permission denied") for name in closed]
 
 
-def _record(run: Run, start: float) -> Recording | Said:
+def _record(run: Run, start: float, hz: float | None = None) -> Recording | Said:
     """What the tracer reads of `run`, or why it cannot use it."""
-    made = _read(run, start)
+    made = _read(run, start, hz)
     return made if isinstance(made, Said) or not (why := _unfit(made)) else left_out(run.name, why)
 
 
-def _read(run: Run, start: float) -> Recording | Said:
+def _read(run: Run, start: float, hz: float | None = None) -> Recording | Said:
     """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
-        return record(run, start)
+        return record(run, start, hz)
     except (HdrigError, ValueError) as error:
         return left_out(run.name, error)
 
@@ -213,6 +217,8 @@ def _lacking(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     for kind in (False, True):
         mine = [r for r in runs if r.locked is kind and r.procedure != "standstill"]
         for name, words in LEANT_ON.items():
+            if name == "t" and any(r.clocked for r in mine):
+                continue  # nobody has a time of its own
             without = [r for r in mine if name not in r.knows]
             if 2 * len(without) < len(mine):
                 said = f"it has no {words}, which {len(mine) - len(without)} of {len(mine)} runs of its kind have"

@@ -13,6 +13,7 @@ from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.motion.source import Motion, Source, increases, motion_of, not_seconds
 from rig.analysis.motion.tame import RATIOS, Tame
+from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.look import Look
@@ -60,6 +61,7 @@ class Recording(Once):
     speed_rpm: float = 0.0  # as the conditions declare it, 0 where they do not
     declared: Mapping[str, float] = field(default_factory=dict)  # K, J_m, J_l as far as the manifest states them
     look: Look = field(default_factory=Look)  # what of it is looked at
+    clocked: bool = False  # its seconds are those of the speed that it and others declare
     load_stated: bool = True  # whether the manifest says what hangs on the output
     load_known: bool = True  # but for friction; else the mean of its shaft torque is its own
 
@@ -127,15 +129,19 @@ def mean_way(run: Recording) -> float:
     return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
 
 
-def record(whole_run: Run, start: float) -> Recording:
-    """Read the columns the tracer uses; what is absurd counts as missing. Raises UsageError when the run has no angle
-    it can use, rows too far apart or too close, or a ratio no gear has.
+def record(whole_run: Run, start: float, hz: float | None = None) -> Recording:
+    """Read the columns the tracer uses; what is absurd counts as missing. Rows of a run without a time that declares
+    its speed come `hz` times a second, where that is known. Raises UsageError when the run has no angle it can use,
+    rows too far apart or too close, or a ratio no gear has.
     """
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)
     motion = motion_of(run)
     _refuse_other_time(run.column("t"), motion)
     channels, breaks, holes = without_holes(_channels(run, motion), motion.breaks if motion else ())
+    clocked = is_clocked(run)
+    if hz is not None and clocked:
+        channels["t"] = np.arange(next(x.size for x in channels.values() if x is not None)) / hz
     has = frozenset(name for name, values in channels.items() if values is not None)
     rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
     t, dt, steady = _grid(channels["t"], rows, run)
@@ -152,6 +158,8 @@ def record(whole_run: Run, start: float) -> Recording:
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
         for lo, hi in _joined(t, dt, breaks, steady)
     ]
+    if hz is not None and "t" not in has and run.procedure == "kinematic_error":
+        made = [piece if piece is None else slowed(piece) for piece in made]
     return Recording(
         name=run.name,
         procedure=run.procedure,
@@ -172,6 +180,7 @@ def record(whole_run: Run, start: float) -> Recording:
         step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
         load_stated=states(run.conditions, "tau_ext"),
+        clocked=hz is not None and clocked,
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
     )
 
