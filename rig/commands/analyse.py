@@ -49,7 +49,9 @@ def run(args: argparse.Namespace) -> int:
         """One of them, by the limits that are made for it."""
         mine = limits_for(folder, limits)
         if len(folders) == 1:  # nothing else it could be meant for
-            refuse_not_given(procedure_in(folder), {n: x for n, x in limits.items() if x is not None})
+            procedure = procedure_in(folder)
+            asked = {n: x for n, x in limits.items() if x is not None}
+            refuse_not_given(procedure, procedure.replace("_", "-"), asked)
             mine = limits
         result, simulated = analyse_folder(folder, places[folder], reference, mine)
         print_result(result, places[folder], folder, simulated)

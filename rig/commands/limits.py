@@ -10,6 +10,7 @@ from typing import Any
 
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
+from rig.core.procedure import Procedure
 
 FORM = (
     "expected NAME=UPPER, NAME=LOWER.. or NAME=LOWER..UPPER, in the figure's unit or with a space and another, for "
@@ -52,8 +53,18 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
     return limits
 
 
-def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
-    """Raises UsageError when a run of that procedure is not made for a figure it is to be judged by."""
+def refuse_unanswerable(kind: type[Procedure], called: str, limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run of `kind`, `called` so, gives no figure to judge, or none of those asked about."""
+    if limits and kind.answers:
+        raise UsageError(
+            f"--limit: a {called} run says what it found in a sentence and gives no figure to limit; expected no --limit"
+        )
+    refuse_not_given(kind.name, called, limits)
+
+
+def refuse_not_given(procedure: str, called: str, limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run of `procedure`, as manifests name it, is not made for a figure it is to be judged
+    by; people call it `called`."""
     if not limits:
         return
     from rig.analysis.findings.figure_names import figures_of, is_run_for
@@ -61,10 +72,12 @@ def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
     given = figures_of(procedure)
     for name in limits:
         if given and not is_run_for(procedure, name):
-            raise UsageError(
-                f"--limit: a {procedure.replace('_', '-')} run gives no figure {name}; expected one of "
-                f"{', '.join(given[:TOLD])}{f' and {len(given) - TOLD} more' if len(given) > TOLD else ''}"
-            )
+            raise UsageError(f"--limit: a {called} run gives no figure {name}; expected one of {_some(given)}")
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of them, and how many more there are."""
+    return f"{', '.join(names[:TOLD])}{f' and {len(names) - TOLD} more' if len(names) > TOLD else ''}"
 
 
 def _figure(assignment: str, word: str) -> str:

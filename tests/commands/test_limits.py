@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.limits import limits_of, refuse_not_given
+from rig.commands.limits import limits_of, refuse_unanswerable
 from rig.core.errors import UsageError
+from rig.procedures import CATALOGUE, procedure_class
 from tests.commands.made_run import made_run
 
 
@@ -147,6 +148,11 @@ def test_of_many_runs_a_limit_judges_those_made_for_its_figure_and_checks_are_le
             "a coast-down run gives no figure coulomb; expected one of inertia_at_motor, cou",
         ),
         ("kinematic-error", "K1=7000..", "a kinematic-error run gives no figure stiffness_K1; expected one of kinemat"),
+        (
+            "held-standstill",
+            "C_2=9",
+            "a held-standstill run gives no figure fourier_amplitude_2; expected one of noise",
+        ),
     ],
 )
 def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
@@ -157,13 +163,27 @@ def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("more", [[], ["--dry-run"]])
+@pytest.mark.parametrize("procedure", [name for name in CATALOGUE if procedure_class(name).answers])
+def test_a_run_that_answers_in_a_sentence_is_not_judged_by_a_limit(
+    tmp_path: Path, procedure: str, more: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It moved, and nothing was judged."""
+    assert main(["run", procedure, "--out", str(tmp_path / "out"), "--limit", "peak-to-peak=5", *more]) == 2
+    said = capsys.readouterr()
+    words = f"a {procedure} run says what it found in a sentence and gives no figure to limit; expected no --limit"
+    assert said.err == f"hdrig: --limit: {words}\n"
+    assert not said.out
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("procedure", "limit"),
-    [("kinematic_error", "C_4=10"), ("stiffness_lock", "hysteresis-loss=1"), ("friction", "friction=0.5"),
-        ("skew", "peak-to-peak=60")],
+    [("kinematic-error", "C_4=10"), ("stiffness-lock", "hysteresis-loss=1"), ("friction", "friction=0.5"),
+        ("skew", "latch_skew_load=5.."), ("compensated", "peak-to-peak=60"), ("held-standstill", "noise_tau_l=0.1")],
 )  # fmt: skip
 def test_a_run_may_be_judged_by_what_it_measures_or_might(procedure: str, limit: str) -> None:
-    refuse_not_given(procedure, limits_of([limit]))
+    refuse_unanswerable(procedure_class(procedure), procedure, limits_of([limit]))
 
 
 def test_one_run_is_not_judged_by_what_it_is_not_made_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
