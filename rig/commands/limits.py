@@ -57,7 +57,7 @@ def refuse_unanswerable(kind: type[Procedure], called: str, limits: Mapping[str,
     """Raises UsageError when a run of `kind`, `called` so, gives no figure to judge, or none of those asked about."""
     if limits and kind.answers:
         raise UsageError(
-            f"--limit: a {called} run says what it found in a sentence and gives no figure to limit; expected no --limit"
+            f"--limit: a {called} run says what it found in a sentence and gives no figure to limit; expected no limit"
         )
     refuse_not_given(kind.name, called, limits)
 

@@ -171,7 +171,7 @@ def test_a_run_that_answers_in_a_sentence_is_not_judged_by_a_limit(
     """It moved, and nothing was judged."""
     assert main(["run", procedure, "--out", str(tmp_path / "out"), "--limit", "peak-to-peak=5", *more]) == 2
     said = capsys.readouterr()
-    words = f"a {procedure} run says what it found in a sentence and gives no figure to limit; expected no --limit"
+    words = f"a {procedure} run says what it found in a sentence and gives no figure to limit; expected no limit"
     assert said.err == f"hdrig: --limit: {words}\n"
     assert not said.out
     assert not (tmp_path / "out").exists()
