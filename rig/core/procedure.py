@@ -27,6 +27,8 @@ class Envelope:
     torque: float  # N·m, motor side
     coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
     shaft_torque: float = math.inf  # N·m at the torque sensor, either way; inf: nothing below the bench's own limit
+    loop: float = 0.0  # rad/s, how fast a position loop stiffer than the bench's answers; 0: none is
+    loop_by: str = ""  # in words, what makes it so fast and the most that may be
     reserve: str = ""  # in words, what of speed and shaft torque (output locked: of that alone) nobody asked for
 
 
