@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import signal
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,7 +16,7 @@ from rig import __version__
 from rig.commands import CATALOGUE
 from rig.core.errors import Exit
 from rig.core.way_out import ending_in_a_sentence
-from rig.process.ctrl_c import after_imports
+from rig.process.ctrl_c import Ears, after_imports, leave
 from rig.process.streams import Tolerant, show_what_fits, standard
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
@@ -72,9 +73,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         show_what_fits(stream)
     out, err = (Tolerant(stream) for stream in streams)
     sys.stdout, sys.stderr = cast(TextIO, out), cast(TextIO, err)
+    # of a process of its own nothing is left to interrupt after that; who calls this function goes on
+    then = leave if argv is None else signal.default_int_handler
     try:
-        code = ending_in_a_sentence(lambda: _interruptible(list(sys.argv[1:] if argv is None else argv)))
-        return _after_output(code, out)
+        with after_imports(_verb, then) as ears:
+            return _to_the_end(ears, list(sys.argv[1:] if argv is None else argv), out, err)
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+def _to_the_end(ears: Ears, args: list[str], out: Tolerant, err: Tolerant) -> int:
+    """The exit code once everything is said and written: Ctrl-C is heard in the verb alone, and ends nothing else."""
+    try:
+        return _after_output(ending_in_a_sentence(lambda: _interruptible(ears, args)), out)
     except SystemExit as end:  # --help, --version and a wrong command line end so
         if isinstance(end.code, int) and (code := _after_output(end.code, out)) != end.code:
             raise SystemExit(code) from None
@@ -82,7 +93,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     finally:
         out.flush()
         err.flush()
-        sys.stdout, sys.stderr = before
 
 
 def _after_output(code: int, out: Tolerant) -> int:
@@ -94,8 +104,8 @@ def _after_output(code: int, out: Tolerant) -> int:
     return code or int(Exit.USAGE)
 
 
-def _interruptible(args: list[str]) -> int:
-    with after_imports():
+def _interruptible(ears: Ears, args: list[str]) -> int:
+    with ears.kept():
         return _verb(args)
 
 

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from rig.bench import Bench
+from rig.control.winding import PER_TICK
 from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
@@ -14,12 +15,19 @@ from rig.core.units import DEG, RPM
 from rig.parameters.read import make
 from rig.parameters.told import Told, told
 
-TOLD = {"travel": "motor travel", "speed": "motor speed", "torque": "motor torque", "shaft": "shaft torque"}
+TOLD = {
+    "travel": "motor travel",
+    "speed": "motor speed",
+    "torque": "motor torque",
+    "shaft": "shaft torque",
+    "loop": "the position loop",
+}
 LIMITS = {
     "travel": "limits.travel_turns",
     "speed": "limits.speed_rpm",
     "torque": "the smaller of limits.torque and motor.torque_limit",
     "shaft": "limits.shaft_torque, what the torque sensor may carry",
+    "loop": f"{PER_TICK:g} rad a tick of loop.rate, beyond which it shakes",
 }
 LONGEST = 31 * 86400.0  # s
 LARGEST = 1e100  # in any unit: its square is still a number
@@ -93,7 +101,8 @@ def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
     for what, asked, limit, unit, scale in by_torque_first:
         if asked > limit:
             wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
-            why = f" ({envelope.reserve})" if envelope.reserve and what in reserved else ""
+            said = envelope.loop_by if what == "loop" else envelope.reserve if what in reserved else ""
+            why = f" ({said})" if said else ""
             raise NotReady(
                 f"{procedure.title()} asks for up to {wanted} of {TOLD[what]}{why}, the bench allows {allowed}: "
                 f"{LIMITS[what]}"
@@ -110,4 +119,6 @@ def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float,
     ]
     if limits.shaft_torque is not None and math.isfinite(envelope.shaft_torque):
         found.append(("shaft", envelope.shaft_torque, limits.shaft_torque, "N·m", 1.0))
+    if envelope.loop:
+        found.append(("loop", envelope.loop, PER_TICK * bench.file.loop.rate, "rad/s", 1.0))
     return found

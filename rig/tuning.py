@@ -34,10 +34,13 @@ BREAKAWAY = 1.6  # times the measured friction: what the proportional part must 
 def find_gains(session: Session, bench: Bench, say: Say, note: Say) -> tuple[Bench, Smoothness] | None:
     """The bench with gains that pass, and how evenly the motor turned with them; None when no bandwidth does.
 
-    `say` is told what was measured, `note` of the proof. Raises NotReady when no gain can break the motor loose, Ended
-    when a run comes to no end.
+    `say` is told what was measured, `note` of the proof, and that the motor will turn before it does. Raises NotReady
+    when no gain can break the motor loose, Ended when a run comes to no end.
     """
-    step = torque_steps(session)  # open loop, so that gains too weak to move anything cannot stand in the way
+    steps = StepTest(torque=0.25 * bench.gains.torque_limit)
+    session.check(steps)
+    note(steps.announcement(bench.setting(lambda text: None)))
+    step = torque_steps(session, steps)  # open loop, so that gains too weak to move anything cannot stand in the way
     say(f"step test: {step.sentence}")
     candidates = candidates_of(bench, step)
     session.rewire(candidates[0])
@@ -98,9 +101,9 @@ def as_it_was(session: Session, bench: Bench) -> Smoothness | str:
         return str(end)
 
 
-def torque_steps(session: Session) -> StepResponse:
+def torque_steps(session: Session, steps: StepTest) -> StepResponse:
     """Inertia and friction at the motor, open loop. Raises Ended when the steps are stopped or trip."""
-    done = session.run(StepTest(torque=0.25 * session.bench.gains.torque_limit))
+    done = session.run(steps)
     if done.ending.exit is not Exit.PASS:
         raise Ended(f"tuning was ended: {done.ending.reason}", done.ending.exit)
     return response_of(done.folder)

@@ -7,6 +7,8 @@ import math
 from rig.bench import Bench
 from rig.campaign.swing import ORDER_2, swing
 from rig.core.procedure import Procedure
+from rig.core.units import DEG, RPM
+from rig.guard import Guard
 from rig.refusals import TOLD, margins
 from rig.runfile.room import rows_bytes
 
@@ -30,8 +32,19 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
         lines.append(f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, {margin(asked / limit)}")
     what, left = tightest(bench, procedure)
     said = f"{100 * left:.0f} % of its limit left" if left >= 0 else margin(1 - left)
-    lines.append(f"tightest    {what}: {said}")
+    lines += [f"tightest    {what}: {said}", f"guard       {guard_words(bench, procedure)}"]
     return [*lines, *procedure.remarks(bench.setting(lambda text: None))]
+
+
+def guard_words(bench: Bench, procedure: Procedure) -> str:
+    """At what the guard will end this run: often long before the limits of the bench, which hold for every run."""
+    setting = bench.setting(lambda text: None)
+    guard = Guard(bench.limits, procedure.envelope(setting), setting.ratio)
+    shaft = "" if guard.shaft_torque is None else f", {guard.shaft_torque:.4g} N·m at the shaft"
+    return (
+        f"ends this run beyond {guard.travel / DEG:.1f} deg of the motor from its start, "
+        f"{guard.limits.speed / RPM:g} rpm{shaft}"
+    )
 
 
 def margin(share: float) -> str:

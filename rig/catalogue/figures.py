@@ -59,11 +59,16 @@ def names_of(word: str) -> tuple[str, ...]:
     return known.get(word.lower().replace("_", "-"), (word,))
 
 
-def refuse_unknown(word: str, seen: set[str]) -> None:
-    """Raises UsageError for a figure that is neither a word nor in any of the runs looked at."""
-    if not seen & set(names_of(word)):
-        others = {*WORDS, *seen} - {word}  # a word people use that none of these runs can answer
-        raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}")
+def refuse_unknown(word: str, seen: set[str], unanalysed: str) -> None:
+    """Raises UsageError for a figure that is in none of the runs looked at, which have those `seen`; `unanalysed` says
+    which of them were not analysed, "" where all were."""
+    if seen & set(names_of(word)):
+        return
+    if unanalysed and not seen and names_of(word) != (word,):  # nothing is wrong with the word
+        raise UsageError(f"none of the runs has a figure '{word}' yet; {unanalysed}")
+    others = {*WORDS, *seen} - {word}  # a word people use that none of these runs can answer
+    more = f"; {unanalysed}" if unanalysed else ""
+    raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}{more}")
 
 
 def figures(folder: Path) -> Mapping[str, Figure]:

@@ -120,7 +120,7 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     if not found:
         raise UsageError(f"there are no runs in {root}" + (f" of a gear '{gear}'" if gear else ""))
     if not kept:
-        refuse_unknown(figure, _seen(found))
+        refuse_unknown(figure, _seen(found), _unanalysed(root, found))
     numbers = _numbers(counted)
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
     told = (*doubts, *(f"{folder.name} is left out: {why}" for folder, why in copies.items()))
@@ -141,6 +141,18 @@ def _sound(there: Row, copies: dict[Path, str], doubts: list[str]) -> Row | None
             return copy
     doubts.append(f"{there.path.name} is left out: its figures are in doubt: {doubt}")
     return None
+
+
+def _unanalysed(root: Path | str, found: Sequence[Row]) -> str:
+    """Says how many of the runs have no figures yet, and what makes them; "" where all have some."""
+    waiting = sum(1 for row in found if not _names(row))
+    if not waiting:
+        return ""
+    one = waiting == 1
+    return (
+        f"{waiting} of {len(found)} {'is' if one else 'are'} not analysed yet: `hdrig analyse {root}` makes "
+        f"{'its' if one else 'their'} figures"
+    )
 
 
 def _seen(found: Sequence[Row]) -> set[str]:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rig.commands.folders import expand, for_each, runs_argument
-from rig.commands.limits import limit_argument, limits_of, refuse_not_given
+from rig.commands.limits import limit_argument, limits_of, refuse_absent, refuse_not_given
 from rig.core.errors import Exit
 from rig.core.loading import load
 from rig.evaluation.reference import reference_named
-from rig.evaluation.run import NEEDED, analyse_folder, exit_of, limits_for, procedure_in
+from rig.evaluation.run import NEEDED, analyse_folder, exit_of, limits_for, procedure_in, whatever
 
 if TYPE_CHECKING:
     from rig.analysis.findings.result import Result
@@ -47,17 +48,29 @@ def run(args: argparse.Namespace) -> int:
 
     def analyse_one(folder: Path) -> Exit:
         """One of them, by the limits that are made for it."""
-        mine = limits_for(folder, limits)
         if len(folders) == 1:  # nothing else it could be meant for
-            refuse_not_given(procedure_in(folder), {n: x for n, x in limits.items() if x is not None})
-            mine = limits
-        result, simulated = analyse_folder(folder, places[folder], reference, mine)
-        print_result(result, places[folder], folder, simulated)
+            return judged(folder, limits, only_by(folder, limits))
+        mine = limits_for(folder, limits)
+        code = judged(folder, mine, whatever)
         for name in [n for n in limits if n not in mine]:
             print(f"  not judged by {name}, for which such a run is not made")
+        return code
+
+    def judged(folder: Path, by: Mapping[str, Any], accept: Callable[[Result], None]) -> Exit:
+        result, simulated = analyse_folder(folder, places[folder], reference, by, accept)
+        print_result(result, places[folder], folder, simulated)
         return exit_of(result)
 
     return for_each(folders, analyse_one)
+
+
+def only_by(folder: Path, limits: Mapping[str, Any]) -> Callable[[Result], None]:
+    """What refuses a result without the figures the run is to be judged by. Raises UsageError at once when such a run
+    is not made for one."""
+    procedure = procedure_in(folder)
+    asked = {name: limit for name, limit in limits.items() if limit is not None}
+    refuse_not_given(procedure, procedure.replace("_", "-"), asked)
+    return lambda result: refuse_absent([e.name for e in result.estimates], asked)
 
 
 def without_checks(folders: list[Path], named: list[Path]) -> list[Path]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
+from rig.core.procedure import Procedure
 
 FORM = (
     "expected NAME=UPPER, NAME=LOWER.. or NAME=LOWER..UPPER, in the figure's unit or with a space and another, for "
@@ -48,12 +49,23 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
         name = _figure(assignment, word)
         limits[name] = None if text == NONE else _bounds(assignment, text)
         if limits[name] is not None:
+            _refuse_order(assignment, word, name)
             _refuse_senseless(assignment, word, name, limits[name])
     return limits
 
 
-def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
-    """Raises UsageError when a run of that procedure is not made for a figure it is to be judged by."""
+def refuse_unanswerable(kind: type[Procedure], called: str, limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run of `kind`, `called` so, gives no figure to judge, or none of those asked about."""
+    if limits and kind.answers:
+        raise UsageError(
+            f"--limit: a {called} run says what it found in a sentence and gives no figure to limit; expected no limit"
+        )
+    refuse_not_given(kind.name, called, limits)
+
+
+def refuse_not_given(procedure: str, called: str, limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run of `procedure`, as manifests name it, is not made for a figure it is to be judged
+    by; people call it `called`."""
     if not limits:
         return
     from rig.analysis.findings.figure_names import figures_of, is_run_for
@@ -61,10 +73,21 @@ def refuse_not_given(procedure: str, limits: Mapping[str, Any]) -> None:
     given = figures_of(procedure)
     for name in limits:
         if given and not is_run_for(procedure, name):
-            raise UsageError(
-                f"--limit: a {procedure.replace('_', '-')} run gives no figure {name}; expected one of "
-                f"{', '.join(given[:TOLD])}{f' and {len(given) - TOLD} more' if len(given) > TOLD else ''}"
-            )
+            raise UsageError(f"--limit: a {called} run gives no figure {name}; expected one of {_some(given)}")
+
+
+def refuse_absent(have: Sequence[str], limits: Mapping[str, Any]) -> None:
+    """Raises UsageError when a run that has figures lacks one it is to be judged by; one without any is for the
+    analysis to tell of, which knows why."""
+    for name in limits:
+        if have and name not in have:
+            like = [one for one in have if one.rpartition("_")[0] == name.rpartition("_")[0]]
+            raise UsageError(f"--limit: this run has no figure {name}; expected one of {_some(like or have)}")
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of them, and how many more there are."""
+    return f"{', '.join(names[:TOLD])}{f' and {len(names) - TOLD} more' if len(names) > TOLD else ''}"
 
 
 def _figure(assignment: str, word: str) -> str:
@@ -97,6 +120,16 @@ def _refuse_senseless(assignment: str, word: str, name: str, bounds: Mapping[str
     if min(numbers) < 0 and not may_be_negative(name):
         least = "0" if wanted == "1" else f"0 {wanted}"
         raise UsageError(f"--limit '{assignment}': {said}, and {word} is never below zero; expected {least} or more")
+
+
+def _refuse_order(assignment: str, word: str, name: str) -> None:
+    """Raises UsageError for an order whose amplitude is no figure of any run."""
+    from rig.analysis.findings.figure_names import SHOWN_ORDERS
+
+    order = name.removeprefix("fourier_amplitude_")
+    if order != name and order not in map(str, SHOWN_ORDERS):
+        orders = ", ".join(f"C_{n}" for n in SHOWN_ORDERS)
+        raise UsageError(f"--limit '{assignment}': no run has a figure {word}; of the orders expected one of {orders}")
 
 
 def _bounds(assignment: str, text: str) -> dict[str, Any]:

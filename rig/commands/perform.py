@@ -88,6 +88,8 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
         if job.procedure.closes_loop:
             show.say("the motor is about to turn: sign-and-scale proof, one turn forth and back")
             show.say(f"sign and scale: {session.prove().sentence}")
+        elif said := job.procedure.announcement(job.bench.setting(lambda text: None)):
+            show.say(said)
         if job.procedure.output_locked:
             show.say(session.change(LockOutput()))
         for remark in job.procedure.remarks(job.bench.setting(lambda text: None)):

@@ -10,7 +10,7 @@ from rig.campaign.plan import plan_of
 from rig.campaign.sweeps import CATALOGUE as SWEEPS
 from rig.campaign.sweeps import sweep_class
 from rig.commands.campaign import begin
-from rig.commands.limits import limit_argument, limits_of, refuse_not_given
+from rig.commands.limits import limit_argument, limits_of, refuse_unanswerable
 from rig.commands.options import (
     bench_arguments,
     make_procedure,
@@ -87,9 +87,10 @@ def _run(args: argparse.Namespace) -> int:
         return begin(plan_of(name, parameters_of(args.parameters)), args)
     if name not in CATALOGUE:
         raise UsageError(f"no procedure called '{args.procedure}'; {nearest(name, [*CATALOGUE, *SWEEPS])}")
-    refuse_not_given(name.replace("-", "_"), limits)
+    kind = procedure_class(name)
+    refuse_unanswerable(kind, name, limits)
     bench, clock = open_bench(args)
-    procedure = make_procedure(procedure_class(name), args.parameters, name)
+    procedure = make_procedure(kind, args.parameters, name)
     refuse_endless(bench, procedure)
 
     def check() -> None:

@@ -11,6 +11,7 @@ from rig.core.procedure import Setting
 from rig.core.sample import Sample, Torque
 
 SMOOTHING = 0.02  # s, of the shaft torque: single readings of a noisy sensor must not end a ramp early
+PER_TICK = 0.5  # rad: a torque comes 1.5 ticks late on the mean, 43° there, and no gains of ours have that to spare
 
 
 def stiffer(gains: Gains, gain: float) -> Gains:
@@ -27,6 +28,20 @@ def stiffer(gains: Gains, gain: float) -> Gains:
         Kd=math.sqrt(gain) * gains.Kd,
         integrator_limit=gains.torque_limit,  # it has to hold the wound-up spring besides friction
     )
+
+
+def answers_at(setting: Setting, gain: float) -> float:
+    """rad/s at which the motor swings on a loop stiffened by `gain`, and on the gear wound up behind it.
+
+    ω = √((gain·K_p + K/N²)/J_m)
+    """
+    return math.sqrt((gain * setting.control.Kp + setting.stiffness / setting.ratio**2) / setting.drivetrain.J_m)
+
+
+def stiffest(setting: Setting) -> float:
+    """The gain with which the loop turns by PER_TICK rad a tick; inf where there is nothing to multiply."""
+    omega, spring, Kp = PER_TICK / setting.period, setting.stiffness / setting.ratio**2, setting.control.Kp
+    return (omega**2 * setting.drivetrain.J_m - spring) / Kp if Kp else math.inf
 
 
 class Winding:

@@ -12,6 +12,7 @@ from rig.core.drivetrain import Drivetrain
 from rig.core.gains import Gains
 from rig.core.kinds import Regime
 from rig.core.sample import Sample, Setpoint
+from rig.core.units import TURN
 
 Steps = Generator[Setpoint, Sample, Any]
 """Receives the newest sample, yields what to ask of the drive, once a tick; what it returns is the run's finding."""
@@ -27,6 +28,8 @@ class Envelope:
     torque: float  # N·m, motor side
     coupled: bool = True  # the load must follow the motor: trips when the gear seems to twist or slip
     shaft_torque: float = math.inf  # N·m at the torque sensor, either way; inf: nothing below the bench's own limit
+    loop: float = 0.0  # rad/s, how fast a position loop stiffer than the bench's answers; 0: none is
+    loop_by: str = ""  # in words, what makes it so fast and the most that may be
     reserve: str = ""  # in words, what of speed and shaft torque (output locked: of that alone) nobody asked for
 
 
@@ -72,6 +75,16 @@ class Procedure(ABC):
     def remarks(self, setting: Setting) -> list[str]:
         """What a person should know before it starts, one sentence each: stored energy, how it is let out."""
         return []
+
+    def announcement(self, setting: Setting) -> str:
+        """What is said before it moves the motor, at most how far and with which torque; "" of one that gives none."""
+        most = self.envelope(setting)
+        if not most.torque:
+            return ""
+        return (
+            f"the motor is about to turn: {self.title()}, at most {most.travel / TURN:.1f} turns either way and "
+            f"{most.torque:g} N·m"
+        )
 
     def title(self) -> str:
         """What people call it, with hyphens, as on the command line."""

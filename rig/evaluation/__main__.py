@@ -13,7 +13,7 @@ from pathlib import Path
 
 from rig.core.loading import load
 from rig.core.way_out import ending_in_a_sentence
-from rig.process.ctrl_c import after_imports
+from rig.process.ctrl_c import Ears, after_imports, leave
 from rig.process.streams import show_what_fits
 
 
@@ -37,8 +37,20 @@ def campaign(folder: Path) -> int:
 
 WHAT = {"run": run, "campaign": campaign}
 
+
+def act() -> int:
+    """What the command line asks for."""
+    return WHAT[sys.argv[1]](Path(sys.argv[2]))
+
+
+def interruptible(ears: Ears) -> int:
+    """The same; an interrupt that was lost in it is one."""
+    with ears.kept():
+        return act()
+
+
 if __name__ == "__main__":
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # our matrices are small, and a loop may run beside us
     show_what_fits(sys.stderr)
-    with after_imports():
-        sys.exit(ending_in_a_sentence(lambda: WHAT[sys.argv[1]](Path(sys.argv[2]))))
+    with after_imports(act, leave) as ears:
+        sys.exit(ending_in_a_sentence(lambda: interruptible(ears)))

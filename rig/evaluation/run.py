@@ -29,17 +29,25 @@ KEPT = (
 NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
 
 
+def whatever(result: Result) -> None:
+    """Any result is taken."""
+
+
 def analyse_folder(
-    folder: Path, target: Path, reference: Run | None = None, limits: Mapping[str, Any] = NO_LIMITS
+    folder: Path,
+    target: Path,
+    reference: Run | None = None,
+    limits: Mapping[str, Any] = NO_LIMITS,
+    accept: Callable[[Result], None] = whatever,
 ) -> tuple[Result, bool]:
     """Analyse one run; write result.json and report.html into `target`, which may be the run folder itself. A verdict
     that stands there already is kept in the result as a former one.
 
     `reference` is the slow run to split a run at speed with, or to take off a lock test's wind-up; without it the one
     in the same folder is taken. `limits` go before those the run was judged by the last time, and those before the ones
-    of its manifest; one that is None lifts the limit. Returns the result, and whether the run is simulated. Raises
-    UsageError: no run folder, or `target` cannot be written; DataError: samples that are not those the run was closed
-    with.
+    of its manifest; one that is None lifts the limit. What `accept` raises of the result leaves all as it was. Returns
+    the result, and whether the run is simulated. Raises UsageError: no run folder, or `target` cannot be written;
+    DataError: samples that are not those the run was closed with.
     """
     from rig.analysis.analyse import analyse
     from rig.report.history import asked_before, with_former
@@ -58,6 +66,7 @@ def analyse_folder(
     if reference is None:
         reference = BESIDE.get(regime_of(run.procedure), without)(run)
     result = with_former(target, analyse(run, reference, doubt, beyond_ranges(run, bench(folder))))
+    accept(result)
     result = replace(result, asked=limits_in(run), cannot=(*result.cannot, *_kept(result, before, limits_in(there))))
     if result.broke_off:
         result = replace(result, sentence=f"{result.sentence} Where it did stands in {TRACEBACK}.")

@@ -18,6 +18,9 @@ from rig.procedures.speed_list import speeds_of
 REST = 0.3  # s between two legs
 SETTLE = 0.5  # s at speed before a row counts, either way: the gear's own swing, 25 Hz at 4 % damping, is over in 0.5 s
 FEWEST = 2  # speeds: what grows with speed against what does not
+FEWEST_PAIRS = 4  # forth and back: the analysis fits two parameters, and something is left to see their scatter
+SLOWEST = 2.0  # rpm: the analysis takes slower legs, below 0.2 rad/s, for standing still
+APART = 10.0  # rpm between slowest and fastest: the analysis wants a lever of 1 rad/s
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,16 @@ class Skew(Procedure):
     def __post_init__(self) -> None:
         if len(set(self.speeds)) < FEWEST:
             raise UsageError(f"speeds_rpm = {self.speeds_rpm}: expected at least {FEWEST} different speeds in rpm")
+        if min(self.speeds) < SLOWEST or max(self.speeds) - min(self.speeds) < APART:
+            raise UsageError(
+                f"speeds_rpm = {self.speeds_rpm}: expected speeds of at least {SLOWEST:g} rpm, the slowest and the "
+                f"fastest at least {APART:g} rpm apart"
+            )
+        if (pairs := len(self.speeds) * self.repeats) < FEWEST_PAIRS:
+            raise UsageError(
+                f"repeats = {self.repeats}: {pairs} times forth and back with {len(self.speeds)} speeds, expected at "
+                f"least {FEWEST_PAIRS}, which is repeats = {math.ceil(FEWEST_PAIRS / len(self.speeds))}"
+            )
 
     @property
     def speeds(self) -> tuple[float, ...]:

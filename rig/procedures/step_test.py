@@ -33,7 +33,7 @@ class StepTest(Procedure):
     regime: ClassVar[Regime] = Regime.LOSSES
     answers: ClassVar[bool] = True
     checks: ClassVar[bool] = True
-    closes_loop: ClassVar[bool] = False
+    closes_loop: ClassVar[bool] = False  # no sign to prove: none can run away, and `tune` has no gains yet
     needs: ClassVar[tuple[str, ...]] = ("theta_m",)
 
     torque: float = 1.25  # N·m, well above breakaway

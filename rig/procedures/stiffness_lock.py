@@ -7,7 +7,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-from rig.control.winding import Winding
+from rig.control.winding import Winding, answers_at, stiffest
 from rig.core.errors import NotReady, UsageError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
@@ -95,6 +95,8 @@ class StiffnessLock(Procedure):
             speed=self.wind_up(setting) * fastest / self.tau_max,
             torque=setting.control.torque_limit,
             shaft_torque=OVERSHOOT * self.tau_max + OVERSHOOT_BY,
+            loop=answers_at(setting, self.gain),
+            loop_by=f"gain = {self.gain:g} times K_p, at most {stiffest(setting):.3g} times here",
             reserve=(
                 f"tau_max = {self.tau_max:g} N·m, and {100 * (OVERSHOOT - 1):.0f} % and {OVERSHOOT_BY:g} N·m more "
                 "that a slip of the motor may wind it up by"

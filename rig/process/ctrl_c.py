@@ -1,20 +1,22 @@
 """Ctrl-C and a service manager's stop outside of a session: KeyboardInterrupt, but not in the middle of an import.
 
 Raised there it is lost in a callback of the import system, or leaves half a module behind, which shows as an error of
-another kind. So it waits until the import is done. In a session `rig.process.interrupts` takes over.
+another kind. So it waits until the import is done. Raised again while a program says that it was interrupted, it would
+be a traceback. So it is raised only where somebody catches it. In a session `rig.process.interrupts` takes over.
 """
 
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import FrameType
-from typing import Any
+from typing import Any, final
 
-from rig.core.errors import HdrigError
+from rig.core.errors import Exit, HdrigError
 
 MACHINERY = "<frozen importlib._bootstrap"  # how names of files begin whose frames are imports
 USUAL: dict[signal.Signals, Any] = {
@@ -24,60 +26,91 @@ USUAL: dict[signal.Signals, Any] = {
 AGAIN = 0.02  # s until it is tried again: no person notices, and an import takes longer
 
 
-@contextlib.contextmanager
-def after_imports() -> Iterator[None]:
-    """While active, SIGINT and SIGTERM raise KeyboardInterrupt, after the import that one falls into. A signal that is
-    not Python's own to handle, and in another thread than the main one all, are left as they are.
+@final
+class Ears:
+    """SIGINT and SIGTERM as KeyboardInterrupt while `act` runs, after the import that one falls into; without an `act`
+    wherever they come. One that comes outside of `act` waits for it, and is let go where it is over.
 
     Raised in a callback of a library in C it may be lost, and show as an error of that library's: an error nobody
     foresaw that comes after an interrupt is taken for it. Raised where Python itself lets nothing out, as in what is
     called when an object goes, it comes again.
     """
+
+    def __init__(self, act: Callable[..., Any] | None) -> None:
+        self._act = getattr(act, "__code__", None)
+        self._came: list[int] = []
+        self._raised = False
+        self._told: Callable[[sys.UnraisableHookArgs], Any] = sys.unraisablehook
+
+    def hear(self, signum: int, frame: FrameType | None) -> None:
+        """What SIGINT and SIGTERM call."""
+        if importing(frame) or not self._acting(frame):
+            self._wait(signum)
+            return
+        self._raised = True
+        raise KeyboardInterrupt
+
+    def again(self, signum: int, frame: FrameType | None) -> None:
+        """What SIGALRM calls: to whoever handles it by now, for a session counts it."""
+        signal.raise_signal(self._came.pop())
+
+    def let_out(self, lost: sys.UnraisableHookArgs) -> None:
+        """What Python calls with an error that it lets nowhere."""
+        if self._raised and lost.exc_type is KeyboardInterrupt:
+            self._wait(signal.SIGINT)
+            return
+        self._told(lost)
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """While active, an interrupt that a library made another error of is one again."""
+        try:
+            yield
+        except Exception as error:
+            if self._raised and not isinstance(error, HdrigError):
+                raise KeyboardInterrupt from error
+            raise
+
+    def _wait(self, signum: int) -> None:
+        self._came.append(signum)
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
+    def _acting(self, frame: FrameType | None) -> bool:
+        """True when `frame` is of `act`, or of what it called. Asked of where the program is: a mark set at the end of
+        `act` would be set too late for a signal just before it."""
+        return self._act is None or any(one.f_code is self._act for one in callers(frame))
+
+
+@contextlib.contextmanager
+def after_imports(
+    act: Callable[..., Any] | None = None, then: Callable[[int, FrameType | None], Any] = signal.default_int_handler
+) -> Iterator[Ears]:
+    """While active, signals are heard by the `Ears` of `act`; `then` hears SIGINT after it. A signal that is not
+    Python's own to handle, and in another thread than the main one all, are left as they are."""
+    ears = Ears(act)
     ours = threading.current_thread() is threading.main_thread()
     mine = [number for number, usual in USUAL.items() if ours and signal.getsignal(number) is usual]
     if not mine:
-        yield
+        yield ears
         return
-    came: list[int] = []
-    raised = False
-
-    def wait(signum: int) -> None:
-        came.append(signum)
-        signal.setitimer(signal.ITIMER_REAL, AGAIN)
-
-    def interrupt(signum: int, frame: FrameType | None) -> None:
-        nonlocal raised
-        if importing(frame):
-            wait(signum)
-            return
-        raised = True
-        raise KeyboardInterrupt
-
-    def let_out(lost: sys.UnraisableHookArgs) -> None:
-        if raised and lost.exc_type is KeyboardInterrupt:
-            wait(signal.SIGINT)
-            return
-        told(lost)
-
-    def again(signum: int, frame: FrameType | None) -> None:
-        signal.raise_signal(came.pop())  # to whoever handles it by now: a session counts it
-
-    alarm = signal.signal(signal.SIGALRM, again)
-    told, sys.unraisablehook = sys.unraisablehook, let_out
+    alarm = signal.signal(signal.SIGALRM, ears.again)
+    told, sys.unraisablehook = sys.unraisablehook, ears.let_out
     for number in mine:
-        signal.signal(number, interrupt)
+        signal.signal(number, ears.hear)
     try:
-        yield
-    except Exception as error:
-        if raised and not isinstance(error, HdrigError):
-            raise KeyboardInterrupt from error
-        raise
+        with ears.kept():
+            yield ears
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number in mine:
-            signal.signal(number, USUAL[number])
+            signal.signal(number, then if number is signal.SIGINT else USUAL[number])
+        signal.setitimer(signal.ITIMER_REAL, 0.0)  # from here nobody sets it: the alarm may be given back
         signal.signal(signal.SIGALRM, alarm)
         sys.unraisablehook = told
+
+
+def leave(signum: int, frame: FrameType | None) -> None:
+    """The end at once and without a traceback, of a program that has said its last word and written all it had."""
+    os._exit(int(Exit.HALTED))
 
 
 @contextlib.contextmanager
@@ -111,8 +144,11 @@ def deaf() -> Iterator[None]:
 
 def importing(frame: FrameType | None) -> bool:
     """True when `frame` runs because something is being imported."""
+    return any(one.f_code.co_filename.startswith(MACHINERY) for one in callers(frame))
+
+
+def callers(frame: FrameType | None) -> Iterator[FrameType]:
+    """`frame`, what called it, what called that, up to the first."""
     while frame is not None:
-        if frame.f_code.co_filename.startswith(MACHINERY):
-            return True
+        yield frame
         frame = frame.f_back
-    return False

@@ -158,6 +158,23 @@ def test_a_trend_over_no_runs_says_so_and_blames_no_figure(tmp_path: Path) -> No
         trend(tmp_path, "peak-to-peak", gear="SN9")
 
 
+def test_a_trend_over_runs_that_were_not_analysed_says_what_analyses_them(tmp_path: Path) -> None:
+    folders = [run(tmp_path, DAYS[0], number) for number in range(3)]
+    for folder in folders[:2]:
+        (folder / "result.json").unlink()
+    assert len(trend(tmp_path, "peak-to-peak").series[0].spots) == 1
+    others = f"; 2 of 3 are not analysed yet: `hdrig analyse {tmp_path}` makes their figures"
+    with pytest.raises(UsageError, match=f"none of the runs has a figure 'K1'; expected one of .*{others}$"):
+        trend(tmp_path, "K1")
+    (folders[2] / "result.json").unlink()
+    told = f"; 3 of 3 are not analysed yet: `hdrig analyse {tmp_path}` makes their figures$"
+    for word in ("peak-to-peak", "PEAK_to_peak"):
+        with pytest.raises(UsageError, match=f"^none of the runs has a figure '{word}' yet{told}"):
+            trend(tmp_path, word)
+    with pytest.raises(UsageError, match=f"^none of the runs has a figure 'peek-to-peak'; did you mean .*{told}"):
+        trend(tmp_path, "peek-to-peak")
+
+
 def test_both_are_json_for_programs_and_lines_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     first = many(tmp_path, [90.0, 90.2, 89.9, 90.1], DAYS[0])
     (other,) = many(tmp_path, [93.0], DAYS[1])

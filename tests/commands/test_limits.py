@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.limits import limits_of, refuse_not_given
+from rig.commands.limits import limits_of, refuse_unanswerable
 from rig.core.errors import UsageError
+from rig.procedures import CATALOGUE, procedure_class
 from tests.commands.made_run import made_run
 
 
@@ -39,6 +40,8 @@ def test_what_is_no_limit_is_refused_with_the_form_expected(said: str) -> None:
         ("peak-to-peak=60 N·m", "expected a number in arcsec, rad, mrad, deg, arcmin"),
         ("revolutions_forward=5.. m", "expected a number in no unit"),
         ("peak-to-peak=-5", "-5 arcsec, and peak-to-peak is never below zero; expected 0 arcsec or more"),
+        ("C_17=3", "no run has a figure C_17; of the orders expected one of C_1, C_2, C_4, C_6, C_8, C_10"),
+        ("fourier_amplitude_3=3", "no run has a figure fourier_amplitude_3; of the orders expected one of C_1, C_2,"),
         ("C_2=-1..", "-1 arcsec, and C_2 is never below zero"),
         ("revolutions_forward=-1..", "-1, and revolutions_forward is never below zero; expected 0 or more"),
     ],
@@ -56,8 +59,9 @@ def test_a_limit_no_run_can_be_judged_by_is_refused_before_anything_is_read_or_w
     assert [path.name for path in run.iterdir()] == ["manifest.json"]
 
 
-def test_any_order_of_the_kinematic_error_can_have_a_limit() -> None:
+def test_any_order_whose_amplitude_is_a_figure_can_have_a_limit_and_any_other_lose_one() -> None:
     assert limits_of(["C_4=10"]) == {"fourier_amplitude_4": {"upper": 10.0}}
+    assert limits_of(["C_17=none"]) == {"fourier_amplitude_17": None}
 
 
 @pytest.mark.slow
@@ -147,6 +151,11 @@ def test_of_many_runs_a_limit_judges_those_made_for_its_figure_and_checks_are_le
             "a coast-down run gives no figure coulomb; expected one of inertia_at_motor, cou",
         ),
         ("kinematic-error", "K1=7000..", "a kinematic-error run gives no figure stiffness_K1; expected one of kinemat"),
+        (
+            "held-standstill",
+            "C_2=9",
+            "a held-standstill run gives no figure fourier_amplitude_2; expected one of noise",
+        ),
     ],
 )
 def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
@@ -157,13 +166,27 @@ def test_a_run_is_not_made_to_be_judged_by_what_it_does_not_measure(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("more", [[], ["--dry-run"]])
+@pytest.mark.parametrize("procedure", [name for name in CATALOGUE if procedure_class(name).answers])
+def test_a_run_that_answers_in_a_sentence_is_not_judged_by_a_limit(
+    tmp_path: Path, procedure: str, more: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It moved, and nothing was judged."""
+    assert main(["run", procedure, "--out", str(tmp_path / "out"), "--limit", "peak-to-peak=5", *more]) == 2
+    said = capsys.readouterr()
+    words = f"a {procedure} run says what it found in a sentence and gives no figure to limit; expected no limit"
+    assert said.err == f"hdrig: --limit: {words}\n"
+    assert not said.out
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("procedure", "limit"),
-    [("kinematic_error", "C_4=10"), ("stiffness_lock", "hysteresis-loss=1"), ("friction", "friction=0.5"),
-        ("skew", "peak-to-peak=60")],
+    [("kinematic-error", "C_4=10"), ("stiffness-lock", "hysteresis-loss=1"), ("friction", "friction=0.5"),
+        ("skew", "latch_skew_load=5.."), ("compensated", "peak-to-peak=60"), ("held-standstill", "noise_tau_l=0.1")],
 )  # fmt: skip
 def test_a_run_may_be_judged_by_what_it_measures_or_might(procedure: str, limit: str) -> None:
-    refuse_not_given(procedure, limits_of([limit]))
+    refuse_unanswerable(procedure_class(procedure), procedure, limits_of([limit]))
 
 
 def test_one_run_is_not_judged_by_what_it_is_not_made_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,3 +196,39 @@ def test_one_run_is_not_judged_by_what_it_is_not_made_for(tmp_path: Path, capsys
     assert "a kinematic-error run gives no figure stiffness_K1; expected one of" in capsys.readouterr().err
     assert not (run / "result.json").exists()
     assert main(["analyse", str(run), "--limit", "K1=none"]) == 0
+
+
+@pytest.mark.slow
+def test_one_run_is_not_judged_by_a_figure_it_turns_out_not_to_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was kept with the run, and from then on no analysis of it could settle anything."""
+    run = made_run(tmp_path / "run")
+    assert main(["analyse", str(run)]) == 0
+    before = {path.name: path.read_bytes() for path in run.iterdir()}
+    capsys.readouterr()
+    for limit, words in (
+        ("torsion_span=3", "this run has no figure torsion_span; expected one of kinematic_error_peak"),
+        (
+            "C_10=3",
+            "this run has no figure fourier_amplitude_10; expected one of fourier_amplitude_1, fourier_amplitude_",
+        ),
+    ):
+        assert main(["analyse", str(run), "--limit", limit, "--limit", "peak-to-peak=60 arcsec"]) == 2
+        said = capsys.readouterr()
+        assert f"hdrig: {run}: --limit: {words}" in said.err
+        assert not said.out
+        assert {path.name: path.read_bytes() for path in run.iterdir()} == before
+
+
+@pytest.mark.slow
+def test_a_limit_that_a_run_was_given_for_a_figure_it_does_not_have_can_be_lifted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = made_run(tmp_path / "run", {"limits": {"fourier_amplitude_17": {"upper": 3.0}}})
+    assert main(["analyse", str(run)]) == 6
+    for _ in range(2):
+        assert main(["analyse", str(run), "--limit", "C_17=none"]) == 0
+    capsys.readouterr()
+    assert main(["analyse", str(run)]) == 0
+    assert "no limit set" in capsys.readouterr().out

@@ -38,7 +38,7 @@ SHORTER: dict[str, dict[str, Any]] = {
     "sentinel": {"revolutions": 10, "settle": 1.0},
     "standstill": {"duration": 3.0},
     "held-standstill": {"duration": 3.0},
-    "skew": {"speeds_rpm": "60,120", "repeats": 1},
+    "skew": {"speeds_rpm": "60,120", "repeats": 2},
     "stiffness-lock": {"tau_max": 6.0, "rate": 3.0, "cycles": 1, "hold": 0.2, "rates": (1.0,)},
 }
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rig.bench import read
+from rig.cli import main
 from rig.core.errors import NotReady
 from rig.guard import Guard
 from rig.loop import Loop
@@ -55,3 +57,18 @@ def test_a_torque_that_friction_eats_is_refused_with_that_torque() -> None:
 def test_a_free_output_gets_its_steps_both_ways() -> None:
     asked = {tau for _, tau, *_ in steps(lambda world: None).rows}
     assert {1.25, -1.25, 0.0} <= asked
+
+
+@pytest.mark.slow
+def test_it_is_announced_before_the_motor_turns_and_so_is_the_first_of_tune(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With how far and how hard, as every other run that turns the motor; at rest nothing is announced."""
+    assert main(["run", "step-test", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().err
+    told = "the motor is about to turn: step-test, at most 5.5 turns either way and 1.25 N·m\n"
+    assert 0 <= said.index(told) < said.index("step-test: at most")
+    assert main(["tune", "--set", "limits.twist_deg=0.012", "--out", str(tmp_path)]) == 5  # ends at the first trial
+    assert told in capsys.readouterr().err
+    assert main(["run", "standstill", "--with", "duration=0.5", "--out", str(tmp_path)]) in (0, 6)
+    assert "about to turn" not in capsys.readouterr().err

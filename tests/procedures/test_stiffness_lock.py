@@ -185,3 +185,35 @@ def test_a_gear_that_is_wound_up_is_let_out_till_a_slip_would_not_better_it() ->
 def test_a_shaft_that_goes_on_showing_torque_is_no_gear_whose_pin_may_be_pulled() -> None:
     with pytest.raises(NotReady, match=r"unwound from \+8\.00 to \+8\.00 N·m; .* 2\.5 N·m at most: the pin stays in"):
         unwound(lambda theta: 8.0)
+
+
+def test_a_gain_that_the_loop_cannot_follow_is_refused_with_the_most_it_may_be(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It wound the gear up beyond the limit of the run, as the loop shook."""
+    for more in ([], ["--dry-run"]):
+        assert main(["run", "stiffness-lock", "--with", "gain=1e6", "--out", str(tmp_path / "out"), *more]) == 3
+        assert (
+            "asks for up to 52223.3 rad/s of the position loop (gain = 1e+06 times K_p, at most 90.7 times here), the "
+            "bench allows 500 rad/s"
+        ) in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+    assert main(["run", "stiffness-lock", "--with", "gain=90.7", "--dry-run"]) == 0
+    assert re.search(r"^loop +499\.\d+ of 500 rad/s, margin 0 %$", capsys.readouterr().out, re.M)
+
+
+@pytest.mark.slow
+def test_the_most_gain_that_is_allowed_winds_up_within_the_limit_of_the_run() -> None:
+    ran = run(StiffnessLock(**SHORT, gain=90.0))
+    assert not isinstance(ran.ending, NotReady)
+    assert ran.ending.exit is Exit.PASS
+
+
+def test_a_dry_run_says_at_what_the_guard_ends_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    """Which is not the limit of the bench: the shaft may carry 45 N·m, in this run it trips at half of it."""
+    assert main(["run", "stiffness-lock", "--dry-run"]) == 0
+    told = "guard       ends this run beyond 28.4 deg of the motor from its start, 600 rpm, 22.5 N·m at the shaft"
+    assert told in capsys.readouterr().out.splitlines()
+    bench = read("twin", [])
+    setting = bench.setting(lambda text: None)
+    assert Guard(bench.limits, StiffnessLock().envelope(setting), setting.ratio).shaft_torque == 22.5

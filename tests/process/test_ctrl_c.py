@@ -194,3 +194,44 @@ def test_a_stop_in_an_import_comes_when_the_module_is_whole(slow: str, tmp_path:
         load(slow)
     assert sys.modules[slow].WHOLE == 499500
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+PRESSED_AGAIN = """
+import atexit, builtins, os, signal, sys
+import rig.cli, rig.commands.list_, rig.core.way_out
+def press(*args):
+    os.kill(os.getpid(), signal.SIGINT)
+    signal.sigtimedwait({{signal.SIGUSR1}}, 0.1)
+def after(act):
+    def both(*args, **words):
+        press()
+        done = act(*args, **words)
+        press()
+        return done
+    return both
+rig.commands.list_.run = {verb}
+rig.core.way_out.print = after(print)
+rig.cli._after_output = after(rig.cli._after_output)
+if {late}: atexit.register(press)
+sys.argv = ["hdrig", "list"]
+sys.exit(rig.cli.main())
+"""
+
+
+@pytest.mark.parametrize(
+    ("verb", "late", "code", "said"),
+    [
+        ("press", False, 130, "hdrig: interrupted\n"),  # the verb is, and again while that is said, and afterwards
+        ("press", True, 130, "hdrig: interrupted\n"),
+        ("lambda args: 0", False, 0, ""),  # it had come to its end
+        ("lambda args: 0", True, 130, ""),
+        ("lambda args: 1 / 0", False, 70, "hdrig: internal error, please report it: ZeroDivisionError"),
+    ],
+)
+def test_pressed_once_more_at_the_very_end_it_shows_no_traceback(verb: str, late: bool, code: int, said: str) -> None:
+    """Also while Python itself goes: whoever presses twice hits any line there is."""
+    program = PRESSED_AGAIN.format(verb=verb, late=late)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert done.returncode == code
+    assert done.stderr.startswith(said)
+    assert done.stderr.count("\n") == (1 if said else 0)

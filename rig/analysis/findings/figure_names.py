@@ -49,6 +49,8 @@ TURNING: Final = {
     "torsion_span": "arcmin",
     "torsional_stiffness_apparent": "N·m/rad",
 }
+SHOWN_ORDERS: Final = (1, 2, 4, 6, 8, 10)
+"""The `fourier_amplitude_{n}` that are figures where they are resolved; all orders stand in the table of a report."""
 FRICTION: Final = {
     "coulomb": "N·m",
     "viscous": "N·m·s/rad",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rig.analysis.findings.collected import Findings
+from rig.analysis.findings.figure_names import SHOWN_ORDERS
 from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Array, Check, Estimate, Part
 from rig.analysis.kinematic_error.measure import KinematicError
@@ -13,7 +14,6 @@ from rig.analysis.orders.revolutions import GRID, TERMS
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
-SHOWN_ORDERS = (1, 2, 4, 6, 8, 10)  # figures of their own when resolved; all orders stand in the table
 CURVES = 400  # revolutions drawn at most
 TRIFLE = 0.01  # of the peak to peak: with so much left, orders that no figure has move it by a few times as much
 

@@ -17,6 +17,7 @@ from rig.model.gear import sigma_of
 
 LABEL = "skew"  # of the runs that measure it
 FEWEST = 4  # pairs: two parameters, and something left to see their scatter
+LEVER = 1.0  # rad/s between the slowest and the fastest pair
 MICRO = 1e6  # µs in a s
 
 
@@ -29,7 +30,7 @@ def add_latch_skew(found: Findings, run: Source, motion: Motion) -> None:
         return
     ways = legs(motion.t, motion.theta_m, motion.theta_l, ref, motion.pick(run.column("tau_l")))
     both = pairs(ways, motion.ratio)
-    if len(both) < FEWEST or np.ptp([p.omega for p in both]) < 1.0:
+    if len(both) < FEWEST or np.ptp([p.omega for p in both]) < LEVER:
         _nothing(
             found, f"The run has {len(both)} legs there and back at constant speed, expected {FEWEST} at 2 speeds."
         )
