@@ -52,7 +52,8 @@ def test_halt_by_escape(terminal: Terminal) -> None:
     assert "SIMULATED RUNNING kinematic-error" in terminal.seen
     terminal.press("\x1b")
     assert terminal.end() == 130
-    assert "halted by the operator: torque off at once" in terminal.seen
+    assert "halted by the operator: torque off at once; the drive confirms it, the rig is ready" in terminal.seen
+    assert "ready: halted" not in terminal.seen
     assert terminal.modes == terminal.before
 
 
