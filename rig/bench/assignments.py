@@ -8,7 +8,6 @@ from typing import Any
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 
-
 OF_MANIFESTS = {
     "gear.ratio": "manifests and mappings write gear.ratio, a bench file gear.N: did you mean 'gear.N'?"
 }  # keys of run folders that people know, and what a bench file has for them

@@ -8,7 +8,6 @@ from pydantic import BaseModel, ValidationError
 
 from rig.core.nearest import nearest
 
-
 WORDS = {
     "float_type": "a number",
     "int_type": "a whole number",

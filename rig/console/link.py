@@ -119,9 +119,9 @@ class Link:
         run = self.picture["run"]
         rest = f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
         return (
-            f"the control process {self.pid} has ended{ended_by(self._process.returncode)}: nobody looks after the rig, "
-            "and nobody confirms that its torque is off. Use the hard-wired stop. Then end this with Ctrl-C and start "
-            f"hdrig serve again{rest}"
+            f"the control process {self.pid} has ended{ended_by(self._process.returncode)}: nobody looks after the "
+            "rig, and nobody confirms that its torque is off. Use the hard-wired stop. Then end this with Ctrl-C and "
+            f"start hdrig serve again{rest}"
         )
 
     async def act(self, message: Mapping[str, Any]) -> str:

@@ -65,10 +65,8 @@ class Recording:
             if problem:
                 print(f"hdrig: {problem}", file=sys.stderr)
             if failed is not None:  # no report follows by itself
-                closed = rows and not problem
-                failed.add_note(
-                    f"what was recorded is in {folder}" + (f"; hdrig analyse {folder} makes its report" if closed else "")
-                )
+                report = f"; hdrig analyse {folder} makes its report" if rows and not problem else ""
+                failed.add_note(f"what was recorded is in {folder}{report}")
         if problem:
             raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)

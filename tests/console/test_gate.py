@@ -43,7 +43,7 @@ def test_hold_stop_and_halt_pass_on_any_revision(act: str) -> None:
 
 
 @pytest.mark.parametrize(("act", "key", "said"), [
-    ("start", "with_", "start: unknown key 'with_'; known keys (beside id, act, based_on): procedure, parameters, note"),
+    ("start", "with_", "start: unknown key 'with_'; known keys (beside id, act, based_on): procedure, para"),
     ("start", "parameter", "did you mean 'parameters'?"),
     ("connect", "override", "did you mean 'overrides'?"),
     ("jog", "turn", "did you mean 'turns'?"),

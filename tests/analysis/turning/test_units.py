@@ -71,7 +71,10 @@ def test_a_gap_is_named_with_its_channel_and_rows_and_the_figure_is_that_of_the_
     theta_l[5000:60000] = np.nan
     result = analyse(replace(made, columns={**made.columns, "theta_l": theta_l}))
     said = " ".join(result.cannot)
-    assert f"55000 of {theta_l.size} rows left out: theta_l has no finite value in 55000 of them (row 5000 to 59999)" in said
+    assert (
+        f"55000 of {theta_l.size} rows left out: theta_l has no finite value in 55000 of them (row 5000 to 59999)"
+        in said
+    )
     assert "gap of 55 s at t = 5.0 s" in said
     (found,) = (e for e in result.estimates if e.name == "kinematic_error_peak_to_peak")
     (whole,) = (e for e in analyse(made).estimates if e.name == "kinematic_error_peak_to_peak")
