@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from rig.control.setpoints import AsTorque, Setpoints
@@ -26,6 +26,9 @@ LONG = 0.01  # s without a command: by less no gains that hold a reference lose 
 RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
+SETTLED = 0.3  # s after the torque is off: the load of a wound-up gear has swung by then
+LOOKS, APART = 10, 0.01  # looks at the shaft torque then, s between two
+WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
 
@@ -265,6 +268,23 @@ class Loop:
         self.sink.put(sample, self.setpoints.off, self.setpoints.off, asked.theta_ref)
         self.rows += 1
 
+    def _wound_up(self) -> str:
+        """That the shaft carries torque though the motor gives none, as of a gear halted while it was wound up, in
+        words; "" where nothing is seen of it."""
+        limit = self.guard.limits.shaft_torque
+        if limit is None:
+            return ""
+        clock, looks = self.instruments.clock, []
+        clock.wait_until(clock.now() + SETTLED)
+        for _ in range(LOOKS):
+            clock.wait_until(clock.now() + APART)
+            looks.append(self.instruments.look())
+        told = [look.tau_l for look in looks if look.age <= self.guard.limits.stale]
+        left = sum(told) / len(told) if told else 0.0  # a sensor that is silent says nothing of now
+        if not abs(left) > WOUND * limit:
+            return ""
+        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, keep clear of it"
+
     def _unconfirmed(self, why: str) -> str:
         """A reason, and that there may be torque still."""
         broken = f" ({self.instruments.broken})" if self.instruments.broken else ""
@@ -278,6 +298,7 @@ class Loop:
         if ending.status == "tripped":
             self.supervisor.act(Act.TRIP, ending.reason)
         elif ending.exit is Exit.HALTED:
+            ending = replace(ending, reason=f"{ending.reason}{self._wound_up()}")
             self.supervisor.act(Act.HALT, ending.reason)
         else:
             self.supervisor.act(Act.FINISH, ending.reason)

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from rig.cli import main
-from rig.commands.ask_twin import understood
+from rig.commands.ask_twin import told, understood
 from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
 from sim.wire.control import describe, perform
@@ -101,6 +101,11 @@ def test_a_weight_is_hung_by_its_number_alone(twin: Assembly, tmp_path: Path) ->
     assert twin.world.plant.tau_ext == -2.5
     assert ask(tmp_path, "hang", "0") == 0
     assert twin.world.plant.tau_ext == 0.0
+
+
+def test_a_list_of_an_answer_is_told_as_words() -> None:
+    assert told("stations", ["node 1", "node 2"]) == "node 1, node 2"
+    assert told("stations", []) == "none"
 
 
 def test_what_there_is_to_ask_for_is_told(twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

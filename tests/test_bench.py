@@ -36,6 +36,7 @@ def test_an_override_changes_one_number_says_so_and_keeps_the_rest() -> None:
         (["devices.load_encoder.type=cia406"], ["real and simulated devices on one bench"]),
         (["limits.shaft_torque=60"], ["60 N·m", "range of 50 N·m"]),
         (["nothing.here=1"], ["no section 'nothing'"]),
+        (["gear.ratio=80"], ["no key 'gear.ratio'", "did you mean 'gear.N'?"]),
         (["devices.load_encoder.type=twin.drive"], ["that device is no load encoder"]),
         (["loop.rate=20"], ["watchdog", "three periods"]),
         (["control.Kp.value.x=5"], ["no key"]),

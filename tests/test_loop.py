@@ -197,6 +197,27 @@ def test_two_interrupts_take_the_torque_off_at_once() -> None:
     assert bench.torque_free()
 
 
+@pytest.mark.parametrize(
+    ("left", "said"),
+    [
+        (14.84, "; the shaft still carries +14.8 N·m: the gear is wound up or loaded, keep clear of it"),
+        (-9.0, "; the shaft still carries -9.0 N·m: the gear is wound up or loaded, keep clear of it"),
+        (1.0, ""),  # what friction leaves
+    ],
+)
+def test_a_halt_of_a_wound_up_gear_says_how_much_torque_is_left(left: float, said: str) -> None:
+    bench, told = Bench(), []
+    bench.supervisor.announce = lambda state, act, why: told.append((state, why))
+
+    def halt() -> None:
+        bench.world.tau_l = left
+        bench.interrupts.halt()
+
+    ending = bench.run(halt)
+    assert ending.reason == f"halted by the operator: torque off at once{said}"
+    assert told[-1] == (State.READY, ending.reason)
+
+
 @pytest.mark.parametrize("error", [NotReady("the load is locked"), RecorderError("disk full"), ValueError("a bug")])
 def test_an_error_inside_a_procedure_leaves_no_torque(error: Exception) -> None:
     bench = Bench()

@@ -8,6 +8,10 @@ from typing import Any
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 
+OF_MANIFESTS = {
+    "gear.ratio": "manifests and mappings write gear.ratio, a bench file gear.N: did you mean 'gear.N'?"
+}  # keys of run folders that people know, and what a bench file has for them
+
 
 def override(text: str, assignments: list[str], source: str, origin: str = "declared") -> str:
     """The TOML `text` with `a.b=value` assignments made, said to be from `origin`; comments and the rest stay."""
@@ -31,7 +35,8 @@ def override(text: str, assignments: list[str], source: str, origin: str = "decl
                 raise UsageError(f"--set {assignment}: no section '{part}' in {source}; {nearest(part, keys(at))}")
             at = at[part]
         if not isinstance(at, dict) or last not in at:
-            raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {nearest(last, keys(at))}")
+            hint = OF_MANIFESTS.get(key.strip()) or nearest(last, keys(at))
+            raise UsageError(f"--set {assignment}: no key '{key.strip()}' in {source}; {hint}")
         parsed = toml_value(value)
         if isinstance(at[last], dict) and "value" in at[last]:
             at[last]["value"], at[last]["from"] = parsed, origin

@@ -53,9 +53,15 @@ class Compared:
 
 
 def compensate(
-    session: Session, gear: GearFile, speeds_rpm: Sequence[float], revolutions: int, say: Callable[[str], None]
+    session: Session,
+    gear: GearFile,
+    speeds_rpm: Sequence[float],
+    revolutions: int,
+    say: Callable[[str], None],
+    measured: Callable[[Compared], None],
 ) -> tuple[list[Compared], Alignment]:
-    """Proof, then two runs a speed, slowest first; the encoder's zero is found from the first of them.
+    """Proof, then two runs a speed, slowest first; the encoder's zero is found from the first of them. `measured` is
+    told of each speed at once: what follows may be halted.
 
     Raises NotReady when the series does not fit the rig, Ended when a run comes to no end, DataError.
     """
@@ -73,7 +79,7 @@ def compensate(
         with_it, fed = _run(session, fed_forward, say)
         before, after = expected(gear, speed, plain, np.random.default_rng(SEED))
         found.append(Compared(speed, plain, fed, before, after, (without, with_it)))
-        say(sentence(found[-1]))
+        measured(found[-1])
     assert where is not None
     return found, where
 

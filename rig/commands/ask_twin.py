@@ -58,6 +58,8 @@ def told(key: str, value: Any) -> str:
         return "; ".join(map(str, value)) or "none put in"
     if key == "load" and isinstance(value, float):
         return f"{100 * value:.1f} % of the bus"
+    if isinstance(value, list):
+        return ", ".join(map(str, value)) or "none"
     return f"{value:.6g} {UNITS[key]}" if key in UNITS and isinstance(value, float) else str(value)
 
 

@@ -61,10 +61,12 @@ def run(args: argparse.Namespace) -> int:
     ):
         if session.simulated and not bench.simulated:
             say(wired_twin(bench.file.name))
-        found, where = compensate(session, gear, args.speed, args.revolutions, say)
-    write_compensation(folder, found, where, gear, bench.simulated)
-    for one in found:
-        print(f"{'SIMULATED ' if bench.simulated else ''}{sentence(one)}")
+        simulated = session.simulated
+        mark = "SIMULATED " if simulated else ""
+        found, where = compensate(
+            session, gear, args.speed, args.revolutions, say, lambda one: print(f"{mark}{sentence(one)}", flush=True)
+        )
+    write_compensation(folder, found, where, gear, simulated)
     print(f"report {write(folder)}")
     return int(Exit.PASS if all(one.improvement > 1.0 for one in found) else Exit.OUT_OF_LIMITS)
 

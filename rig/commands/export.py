@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from rig.commands.folders import expand, for_each, runs_argument
+from rig.commands.folders import expand, for_each, runs_argument, say_simulated
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 
@@ -35,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
     def export_one(folder: Path) -> Exit:
         recorded = Run.open(folder)
         refuse_changed(folder, recorded.manifest)
+        say_simulated(folder, recorded.manifest)
         print(export(recorded, args.kind, args.to))
         return Exit.PASS
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from rig.core.errors import Exit, HdrigError, UsageError, said_of
 from rig.runfile.listing import runs_in
@@ -29,6 +30,12 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
             code = Exit(error.exit)
         worst = worst or code
     return int(worst)
+
+
+def say_simulated(folder: Path, manifest: Mapping[str, Any]) -> None:
+    """On stderr, where the samples are the twin's: stdout is the path of what is made of them, and no more."""
+    if manifest.get("backend") == "sim":
+        print(f"SIMULATED: {folder} was recorded on the twin", file=sys.stderr)
 
 
 def say_unread(error: OSError) -> None:

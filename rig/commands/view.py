@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from rig.commands.folders import say_simulated
 from rig.core.errors import NotReady, UsageError
 
 BEAT = 0.5  # s between looks whether the page is still wanted
@@ -38,7 +39,9 @@ def run(args: argparse.Namespace) -> int:
     if args.where is None:
         if goes_on:
             raise UsageError(f"{args.run} is still being made: --web or --native follows it, a file is made afterwards")
+        say_simulated(args.run, manifest)
         return _record(args.run, args.out)
+    say_simulated(args.run, manifest)
     return _follow(args.run, args.where) if goes_on else _show(args.run, args.where)
 
 

@@ -8,6 +8,15 @@ from pydantic import BaseModel, ValidationError
 
 from rig.core.nearest import nearest
 
+WORDS = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "a text in quotes",
+    "bool_type": "true or false",
+    "dict_type": "a table",
+}  # what pydantic calls by Python's names
+
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """The first complaint of pydantic as one sentence: key, value, what was expected, nearest valid key."""
@@ -23,11 +32,18 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             return f"'{key}' is missing" + (f"; expected a number in {unit}" if unit else "")
         case "value_error":
             return f"{'.'.join(path)}: {first['ctx']['error']}" if path else str(first["ctx"]["error"])
-        case _:
-            expected = _expected(first["msg"], first["input"])
-            shown = repr(first["input"])
-            shown = shown if len(shown) <= 60 else shown[:57] + "..."
-            return f"{key} = {shown}{_unit_note(model, path)}: expected {expected}"
+        case "model_type":
+            keys = ", ".join(_keys_beside(model, [*path, ""])[:3])
+            return f"{key} = {_shown(first['input'])}: expected a table of keys such as {keys}"
+        case kind:
+            expected = WORDS.get(kind) or _expected(first["msg"], first["input"])
+            return f"{key} = {_shown(first['input'])}{_unit_note(model, path)}: expected {expected}"
+
+
+def _shown(given: object) -> str:
+    """A value as TOML writes it, not too long."""
+    text = str(given).lower() if isinstance(given, bool) else repr(given)
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _expected(said: str, given: object) -> str:

@@ -15,6 +15,7 @@ from rig.campaign.plan import read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.preview import plan_lines, shaft_torque, stored_energy, tightest
 from rig.campaign.sweeps import plan_named
+from rig.console.bodies import OF_CHECK, unknown
 from rig.core.errors import HdrigError, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
@@ -31,6 +32,9 @@ def check(asked: Mapping[str, Any], source: str, overrides: list[str]) -> dict[s
     """For a procedure, a plan, or a campaign to go on with (`resume`, its folder), on the bench called `source`. Never
     raises for what a person could have typed.
     """
+    mistyped = unknown("check-parameters", asked, OF_CHECK)
+    if mistyped:
+        return wrong({WHOLE: mistyped})
     try:
         bench = read(source, overrides)
         if asked.get("resume"):

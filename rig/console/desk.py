@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, final
 
+from rig.console.bodies import FORWARDED, OF_CHECK
 from rig.console.campaigns import ours
 from rig.console.check import WHOLE, check, wrong
 from rig.console.gate import CONTROL, Answer, Gate
@@ -14,11 +15,8 @@ from rig.console.state import rights
 from rig.core.errors import UsageError
 from rig.runfile.manifest import utc_now
 
-FORWARDED = (
-    "id", "act", "bench", "overrides", "clock", "procedure", "parameters", "note", "plan", "resume", "turns",
-    "speed_rpm", "text", "prompt_id", "done",
-)  # fmt: skip
 PRESSED = ("stop", "halt")  # whatever the id, the page, the revision; the same id again presses again
+CLOCKS = ("wall", "virtual", None)  # None: the wall's
 LONGEST_TEXT = 2000  # characters of a note
 
 
@@ -96,13 +94,15 @@ class ActDesk:
         """What can be said against an act before the station is bothered with it."""
         if act == "note" and not 0 < len(str(asked.get("text") or "").strip()) <= LONGEST_TEXT:
             return f"a note has 1 to {LONGEST_TEXT} characters"
+        if act == "connect" and asked.get("clock") not in CLOCKS:
+            return f"clock is {str(asked['clock'])[:60]!r}; expected wall or virtual"
         if act == "answer" and not isinstance(asked.get("done"), bool):
             return "an answer says done: true or false"
         if act == "jog":
             given = {key: asked[key] for key in ("turns", "speed_rpm") if asked.get(key) is not None}
             return await self._problem({"procedure": "jog", "parameters": given})
         if act in ("start", "campaign"):
-            return await self._problem(asked)
+            return await self._problem({key: asked[key] for key in OF_CHECK if key in asked})
         return ""
 
     async def _problem(self, asked: Mapping[str, Any]) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -21,8 +23,16 @@ EVENTS = 200  # the newest, for pages that come later
 REPLY = 5.0  # s a station has to say yes or no: it does so within 0.1 s unless the machine stalls
 LOOK = 0.001  # s between two looks whether the loop has seen a switch
 SEEN = 0.25  # s after which nobody waits any longer for that
+REAPED = 0.2  # s until a process whose line is gone has ended as well
 STARTING = "starting the control process"
 GONE = "the control process has ended: start hdrig serve again; its run, if there was one, is in the run folder"
+
+
+def ended_by(code: int | None) -> str:
+    """How a process with that return code ended: " by signal SIGKILL"; "" where it is not known."""
+    if code is None:
+        return ""
+    return f" by signal {signal.Signals(-code).name}" if code < 0 else f" with exit code {code}"
 
 
 @final
@@ -37,6 +47,8 @@ class Link:
         self.idle: deque[dict[str, Any]] = deque(maxlen=40)  # readings nobody has fetched yet: two seconds
         self.heard = time.monotonic()  # s, when anything came
         self.changed: Callable[[], None] = lambda: None  # told of every new picture or event
+        self.lost: Callable[[str], None] = lambda sentence: None  # told when the station ended unasked
+        self._asked_to_end = False
         self._replies: dict[str, asyncio.Future[str]] = {}
         self._process: subprocess.Popen[bytes] | None = None
         self._channel: Channel | None = None
@@ -90,12 +102,27 @@ class Link:
                     waiting.set_result(str(message.get("why", "")))
 
     def _gone(self) -> None:
+        if not self._asked_to_end:
+            self.lost(self._post_mortem())
         self.picture = Status(last_run=self.picture["last_run"]).picture() | {"fault": GONE}
         for waiting in self._replies.values():
             if not waiting.done():
                 waiting.set_result(GONE)
         self._replies.clear()
         self.changed()
+
+    def _post_mortem(self) -> str:
+        """What died, what that means, what to do; one line for whoever looks at the terminal."""
+        assert self._process is not None
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(REAPED)
+        run = self.picture["run"]
+        rest = f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
+        return (
+            f"the control process {self.pid} has ended{ended_by(self._process.returncode)}: nobody looks after the "
+            "rig, and nobody confirms that its torque is off. Use the hard-wired stop. Then end this with Ctrl-C and "
+            f"start hdrig serve again{rest}"
+        )
 
     async def act(self, message: Mapping[str, Any]) -> str:
         """Hand an act on; why the station refuses it, or ""."""
@@ -127,6 +154,7 @@ class Link:
     async def close(self, patience: float) -> bool:
         """Have the station let go of its bench and end; False when it had not within `patience` s."""
         if self._channel is not None and self.alive:
+            self._asked_to_end = True
             self._channel.post({"act": "close"})
         give_up = time.monotonic() + patience
         while self._process is not None and self._process.poll() is None:

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import signal
 import socket
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import final
@@ -50,6 +51,7 @@ class Serving:
             ws_per_message_deflate=False,  # a line of this machine: packing costs time, unpacking a flood memory
         )  # fmt: skip
         self._server = Server(config)
+        self.console.link.lost = _tell
         self._asked = 0  # times somebody asked for the end
         self._ending: asyncio.Task[None] | None = None
 
@@ -95,6 +97,11 @@ class Serving:
             self.console.link.switches.halt()
             await self.console.link.close(GOODBYE)
         self._server.should_exit = True
+
+
+def _tell(sentence: str) -> None:
+    """On the terminal: the page may be looked at by nobody."""
+    print(f"hdrig: {sentence}", file=sys.stderr, flush=True)
 
 
 def _listen(host: str, port: int) -> socket.socket:

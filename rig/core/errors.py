@@ -51,6 +51,11 @@ class RecorderError(HdrigError):
     exit = Exit.TRIPPED
 
 
+def with_notes(error: BaseException) -> str:
+    """The sentence of `error` and what was added to it on its way: where what was recorded is, what may be on still."""
+    return "; ".join([str(error), *getattr(error, "__notes__", [])])
+
+
 def said_of(place: Path, error: HdrigError) -> str:
     """The sentence of `error`, to stand behind `place`: a path that it begins with is not said twice."""
     sentence = str(error)

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 
-from rig.core.errors import Exit, HdrigError
+from rig.core.errors import Exit, HdrigError, with_notes
 
 
 def ending_in_a_sentence(act: Callable[[], int]) -> int:
@@ -14,7 +14,7 @@ def ending_in_a_sentence(act: Callable[[], int]) -> int:
     try:
         return act()
     except HdrigError as error:
-        print(f"hdrig: {'; '.join([str(error), *getattr(error, '__notes__', [])])}", file=sys.stderr)
+        print(f"hdrig: {with_notes(error)}", file=sys.stderr)
         return int(error.exit)
     except KeyboardInterrupt:
         print("hdrig: interrupted", file=sys.stderr)

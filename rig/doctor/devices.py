@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from rig.bench import Bench
+from rig.core.devices import Identity
 from rig.core.errors import HdrigError
 from rig.doctor.finding import Finding, Health
 
@@ -14,16 +17,30 @@ def check_devices(bench: Bench) -> list[Finding]:
         identities = instruments.connect()
     except HdrigError as why:
         return [Finding("devices", Health.BAD, str(why))]
-    found = [
-        Finding(name, Health.GOOD, " ".join(filter(None, (who.model, who.serial, who.firmware))), who.simulated)
-        for name, who in identities.items()
-    ]
+    found = identified(identities)
     found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]
     guarded = getattr(instruments.drive, "guarded", None)
     instruments.close()
     if guarded is not None:
         found.append(_watchdog(guarded))
     return found
+
+
+def identified(identities: Mapping[str, Identity]) -> list[Finding]:
+    """Who the devices of one bench say they are. Where one says that it is the twin's all count as simulated, as they
+    do in a run: lines of text from a torque sensor cannot say it."""
+    twins = [name for name, who in identities.items() if who.simulated]
+    told = f"; it cannot say so itself, {' and '.join(twins)} of this bench say{'s' if len(twins) == 1 else ''} so"
+    return [
+        Finding(
+            name,
+            Health.GOOD,
+            " ".join(filter(None, (who.model, who.serial, who.firmware)))
+            + (told if twins and name not in twins else ""),
+            bool(twins),
+        )
+        for name, who in identities.items()
+    ]
 
 
 def _watchdog(guarded: str) -> Finding:

@@ -21,4 +21,4 @@ class Finding:
     what: str
     health: Health
     sentence: str  # the number with its unit, and what was expected
-    simulated: bool = False  # a device that says it is the twin's
+    simulated: bool = False  # a device of a bench on which one says that it is the twin's

@@ -42,9 +42,11 @@ def read(folder: Path) -> Manifest:
         raise UsageError(f"{path} cannot be read: {error.strerror}") from error
     except ValueError as error:
         raise UsageError(f"{path} is not JSON: {error}") from error
-    if not isinstance(found, dict) or found.get("schema") != SCHEMA:
-        got = found.get("schema") if isinstance(found, dict) else type(found).__name__
-        raise UsageError(f'{path} has schema {json.dumps(got)}, expected "{SCHEMA}"')
+    if not isinstance(found, dict):
+        raise UsageError(f'{path} is {_kind(found)}, expected an object with schema "{SCHEMA}"')
+    if found.get("schema") != SCHEMA:
+        said = f"has schema {_short(found['schema'])}" if "schema" in found else "has no schema"
+        raise UsageError(f'{path} {said}, expected "{SCHEMA}"')
     found = {key: value for key, value in found.items() if value is not None}
     _refuse_other_kinds(path, found)
     return found
@@ -89,6 +91,21 @@ def _refuse_other_kinds(path: Path, found: Manifest) -> None:
     for name, entry in found.get("files", {}).items():
         if not isinstance(entry, dict):
             raise UsageError(f"{path}: files.{name} is {_short(entry)}, expected an object")
+
+
+def _kind(value: Any) -> str:
+    """What JSON it is, in words."""
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return "text"
+        case list():
+            return "a list"
+        case _:
+            return "a number"
 
 
 def _short(value: Any) -> str:

@@ -16,6 +16,7 @@ from rig.runfile.process import Process, lives
 from rig.runfile.remains import ring_of, to_recover_from
 from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.run import ratio_of
+from rig.runfile.samples import open_samples
 
 FAULT = "fault: "  # how the event of a trip begins: the state it leads to
 
@@ -46,6 +47,7 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
         done = f"{folder.name} is closed already, as {about.get('status')}, with {rows} rows: nothing to recover"
         return Recovery(rows, seconds, False, done)
     if _is_whole(folder, about):
+        _refuse_unreadable(folder)
         done = f"{folder.name} has its {archive.NAME}, and neither a journal nor a ring: nothing to recover"
         return Recovery(rows, seconds, False, done)
     ratio_of(folder, about)
@@ -64,6 +66,15 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
 def _is_whole(folder: Path, about: Mapping[str, Any]) -> bool:
     """Samples and nothing they could be made of again: a folder of somebody else, or imported."""
     return (folder / archive.NAME).exists() and not to_recover_from(folder, about)
+
+
+def _refuse_unreadable(folder: Path) -> None:
+    """Raises DataError where the samples cannot be read, to the last of them."""
+    try:
+        for _ in open_samples(folder).batches():
+            pass
+    except DataError as error:
+        raise DataError(f"{error}; there is no journal and no ring to make it anew from") from error
 
 
 def _refuse_empty(folder: Path, about: Mapping[str, Any]) -> None:

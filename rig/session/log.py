@@ -32,7 +32,10 @@ class SessionLog:
 
     def announce(self, state: State, act: Act, why: str) -> None:
         """The supervisor's change of state, as an event."""
-        self.event(KINDS.get(act, "state"), f"{state}: {why}" if why else str(state))
+        text = f"{state}: {why}" if why else str(state)
+        if act is Act.HALT:  # "ready" in front of a halt would be understood by nobody
+            text = f"{why}; the drive confirms it, the rig is {state} for another run"
+        self.event(KINDS.get(act, "state"), text)
 
     def event(self, kind: str, text: str) -> None:
         """`kind` as in `events.jsonl`: state, trip, operator, note, finding."""

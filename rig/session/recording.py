@@ -46,6 +46,7 @@ class Recording:
         """
         recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
         ending, problem, rows = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), "", 0
+        failed: HdrigError | None = None
         try:
             recorder.start()
             loop = self._loop(recorder, folder, procedure, mode, watch)
@@ -55,7 +56,7 @@ class Recording:
                 rows = loop.rows
         except HdrigError as error:
             ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
-            error.add_note(f"what was recorded is in {folder}")
+            failed = error
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
@@ -63,6 +64,9 @@ class Recording:
             problem = self._close(recorder, folder, ending, rows)
             if problem:
                 print(f"hdrig: {problem}", file=sys.stderr)
+            if failed is not None:  # no report follows by itself
+                report = f"; hdrig analyse {folder} makes its report" if rows and not problem else ""
+                failed.add_note(f"what was recorded is in {folder}{report}")
         if problem:
             raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)

@@ -12,7 +12,7 @@ from rig.core.errors import HdrigError, UsageError
 from rig.core.operator import FreeOutput, LockOutput
 from rig.core.procedure import Procedure
 from rig.doctor import CHECKS
-from rig.doctor.devices import check_devices
+from rig.doctor.devices import check_devices, identified
 from rig.doctor.finding import Finding, Health
 from rig.parameters.read import make
 from rig.procedures import CATALOGUE, procedure_class
@@ -80,9 +80,7 @@ def check(station: Station, message: Mapping[str, Any]) -> None:
 
 
 def _devices(session: Session) -> list[Finding]:
-    found = [
-        Finding(name, Health.GOOD, " ".join(part for part in who if part)) for name, who in session.identities.items()
-    ]
+    found = identified(session.identities)
     trouble = session.instruments.causes()
     return [*found, Finding("devices", Health.BAD, trouble)] if trouble else found
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, final
 
-from rig.core.errors import HdrigError, NotReady
+from rig.core.errors import HdrigError, NotReady, with_notes
 from rig.core.operator import Change
 from rig.live.switches import Counts, Switches
 from rig.session import Session
@@ -193,7 +193,7 @@ class Station:
         try:
             job(self, message)
         except HdrigError as error:
-            self.teller.say("refused", str(error))
+            self.teller.say("refused", with_notes(error))
         finally:
             self.panel.disarm()
             self._halts = self.switches.pressed.halt  # what was halted is not halted again

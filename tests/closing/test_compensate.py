@@ -36,7 +36,11 @@ def turned_gear(shift: float) -> GearFile:
 
 def made(root: Path, known: GearFile, speed: float) -> tuple[Compared, float]:
     with Session(read("twin"), "virtual", root, Interrupts()) as session:
-        found, where = compensate(session, known, [speed], 3, lambda text: None)
+        said: list[str] = []
+        told: list[Compared] = []
+        found, where = compensate(session, known, [speed], 3, said.append, told.append)
+    assert told == found
+    assert not any("the load left its reference" in line for line in said)  # the figures are told once
     return found[0], where.shift
 
 

@@ -49,6 +49,6 @@ def test_at_a_slow_speed_the_error_is_the_series() -> None:
 
 def test_nothing_moves_before_the_refusal(tmp_path: Path) -> None:
     with Session(read("twin"), "virtual", tmp_path, Interrupts()) as session, pytest.raises(HdrigError):
-        compensate(session, gear(), [700.0], 3, lambda text: None)
+        compensate(session, gear(), [700.0], 3, lambda text: None, lambda one: None)
     assert session.proof is None
     assert list(tmp_path.iterdir()) == []

@@ -23,6 +23,19 @@ def test_several_runs_do_not_go_into_one_file_and_nothing_is_written(
 
 
 @pytest.mark.parametrize("command", ["export", "view"])
+def test_it_is_said_of_the_twins_samples_that_they_are_simulated_and_stdout_is_the_path(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for backend, said in (("sim", f"SIMULATED: {tmp_path / 'sim'} was recorded on the twin\n"), ("can", "")):
+        run = made_run(tmp_path / backend, {"backend": backend})
+        assert main([command, str(run)]) == 0
+        told = capsys.readouterr()
+        assert told.err == said
+        (made,) = told.out.splitlines()
+        assert Path(made).is_file()
+
+
+@pytest.mark.parametrize("command", ["export", "view"])
 def test_samples_that_are_not_those_the_run_was_closed_with_go_nowhere(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -31,7 +31,8 @@ def in_fault(rig: Wired) -> None:
 def test_the_doctor_says_so_of_every_device_and_of_the_bench(rig: Wired, capsys: pytest.CaptureFixture[str]) -> None:
     main(["doctor", "--bench", "twin-can"])
     said = capsys.readouterr().out
-    assert "drive (SIMULATED): " in said
+    for device in ("drive", "load_encoder", "torque_sensor"):
+        assert f"{device} (SIMULATED): " in said
     assert "twin-can (SIMULATED): " in said
 
 

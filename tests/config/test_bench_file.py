@@ -1,9 +1,11 @@
 """Configuration is read strictly: the sentence names file, key, value with unit, and what was expected."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
+import tomlkit
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,6 +57,21 @@ def test_a_mistake_is_one_sentence_with_everything_needed_to_mend_it(old: str, n
     message = refusal(TEXT.replace(old, new, 1))
     for word in words:
         assert word in message
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("gear", "3", "gear = 3: expected a table of keys such as serial, output, N"),
+        ("console", "true", "console = true: expected a table of keys such as page_lost, page_lost_s"),
+        ("bus", "4", "bus = 4: expected a table"),
+        ("bus", "{ rig = 3 }", "bus.rig = 3: expected a table of keys such as interface, channel, bitrate"),
+        ("name", "7", "name = 7: expected a text in quotes"),
+    ],
+)
+def test_what_is_no_table_and_no_text_is_told_in_words_of_toml(key: str, value: str, said: str) -> None:
+    raw = tomllib.loads(TEXT) | {key: tomllib.loads(f"x = {value}")["x"]}
+    assert refusal(tomlkit.dumps(raw)).endswith(said)
 
 
 def test_a_bare_number_is_allowed_and_an_integer_will_do_for_a_float() -> None:

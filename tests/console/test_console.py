@@ -112,6 +112,18 @@ def test_wrong_parameters_are_refused_with_their_sentence_before_anything_moves(
     assert ready.state()["last_run"] == before
 
 
+def test_an_unknown_key_is_refused_with_the_known_ones_before_anything_moves(ready: Hand) -> None:
+    before = ready.state()["last_run"]
+    status, said = ready.ask("start", procedure="kinematic-error", with_=SHORT)
+    assert (status, "unknown key 'with_'; known keys" in said["why"]) == (409, True)
+    status, said = ready.ask("jog", turns=0.25, rpm=10)
+    assert (status, "did you mean 'speed_rpm'?" in said["why"]) == (409, True)
+    looked = ready.client.post("/api/check-parameters", json={"procedure": "friction", "parameter": {}}).json()
+    assert "did you mean 'parameters'?" in looked["problems"]["*"]
+    assert ready.state()["last_run"] == before
+    assert ready.state()["job"] == ""
+
+
 def test_only_one_page_holds_control_and_it_can_be_taken(ready: Hand) -> None:
     status, said = ready.ask("note", page="second", text="me too")
     assert (status, "another page holds control" in said["why"]) == (409, True)
@@ -314,6 +326,11 @@ def test_the_doctor_is_heard_with_and_without_a_bench(hand: Hand) -> None:
     state = hand.finish("check")
     assert {"disk", "drive", "load_encoder"} <= {c["name"] for c in state["checks"]}
     assert all(c["text"] and c["health"] in ("good", "doubtful", "bad") for c in state["checks"])
+
+
+def test_a_clock_that_is_none_is_refused(hand: Hand) -> None:
+    status, said = hand.ask("connect", bench="twin", clock="virtul")
+    assert (status, said["why"]) == (409, "clock is 'virtul'; expected wall or virtual")
 
 
 def test_a_bench_that_is_not_there_is_refused_with_its_sentence(hand: Hand) -> None:

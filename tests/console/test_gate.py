@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from rig.console.gate import Answer, Gate
-from rig.station.rules import ALWAYS, allowed
+from rig.console.bodies import OF_ACT
+from rig.console.gate import CONTROL, Answer, Gate
+from rig.station.rules import ACTS, ALWAYS, allowed
 from rig.station.status import Status
 
 IDLE = allowed(Status().picture())
@@ -39,6 +40,27 @@ def test_the_second_click_is_based_on_what_was_before_the_first() -> None:
 @pytest.mark.parametrize("act", ALWAYS)
 def test_hold_stop_and_halt_pass_on_any_revision(act: str) -> None:
     assert Gate().refuse(asked(act, based_on=-7), "a", IDLE) == ""
+
+
+@pytest.mark.parametrize(("act", "key", "said"), [
+    ("start", "with_", "start: unknown key 'with_'; known keys (beside id, act, based_on): procedure, para"),
+    ("start", "parameter", "did you mean 'parameters'?"),
+    ("connect", "override", "did you mean 'overrides'?"),
+    ("jog", "turn", "did you mean 'turns'?"),
+    ("campaign", "with", "known keys (beside id, act, based_on): plan, resume, parameters, note"),
+    ("take_control", "force", "known keys (beside id, act, based_on): none of its own"),
+])  # fmt: skip
+def test_a_key_an_act_does_not_have_is_refused_with_those_it_has(act: str, key: str, said: str) -> None:
+    assert said in Gate().refuse(asked(act, **{key: 1}), "a", IDLE | {act: True})
+
+
+def test_every_act_says_which_keys_it_has_but_those_that_are_always_done() -> None:
+    assert set(OF_ACT) == {*ACTS, CONTROL} - set(ALWAYS)
+
+
+@pytest.mark.parametrize("act", ALWAYS)
+def test_hold_stop_and_halt_pass_whatever_else_is_said(act: str) -> None:
+    assert Gate().refuse(asked(act, wiht=1), "a", IDLE) == ""
 
 
 @pytest.mark.parametrize("act", ["stop", "halt"])

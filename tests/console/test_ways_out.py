@@ -29,7 +29,9 @@ class Served(Client):
 
     def __init__(self, root: Path) -> None:
         command = [sys.executable, "-m", "rig.cli", "serve", "--port", "0", "--out", str(root)]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.said = root / "terminal.txt"  # what it has to say beside its address
+        with self.said.open("w") as terminal:
+            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=terminal, text=True)
         assert self.process.stdout is not None
         super().__init__(self.process.stdout.readline().split()[1])
 
@@ -101,6 +103,7 @@ def test_ctrl_c_brings_the_motor_to_rest_and_closes_the_run_before_the_server_en
     station = served.station
     served.process.send_signal(signal.SIGINT)
     assert served.process.wait(PATIENCE) == 0
+    assert served.said.read_text() == ""  # the control process ended because it was told to
     assert gone(station)
     about = read(folder)
     assert (about["status"], "brought to rest" in about["exit_reason"]) == ("stopped", True)
@@ -123,9 +126,13 @@ def test_ctrl_backslash_takes_the_torque_off_at_once_and_closes_the_run(served: 
 
 
 def test_a_killed_control_process_is_told_and_its_run_can_be_recovered(served: Served) -> None:
-    folder = served.running()
-    os.kill(served.station, signal.SIGKILL)
+    folder, station = served.running(), served.station
+    os.kill(station, signal.SIGKILL)
     state = served.until(lambda s: not s["station"])
+    (line,) = served.said.read_text().splitlines()
+    assert line.startswith(f"hdrig: the control process {station} has ended by signal SIGKILL: nobody looks after")
+    assert "nobody confirms that its torque is off. Use the hard-wired stop." in line
+    assert line.endswith(f"hdrig recover {folder}")
     assert "the control process has ended" in state["fault"]
     assert state["run"] is None
     said = served.client.post("/api/act", json={"id": str(uuid.uuid4()), "act": "halt"})

@@ -86,6 +86,7 @@ def test_a_parameter_nobody_measured_has_no_interval() -> None:
         ('from = "measured", runs = ["lock_1"', 'from = "guessed", runs = ["lock_1"', "measured, declared, assumed"),
         ("low = 7150.1", "low = 7160.1", "lies outside its own interval"),
         ("value = 7159.123456789", "value = -1.0", "expected more than 0"),
+        ("value = 50.0", "value = -50.0", "parameters.N.value = -50: expected more than 0"),
         ("value = 7159.123456789", "value = nan", "expected a finite number"),
         ('output = "flexspline"', 'output = "wave_generator"', "expected flexspline or circular_spline"),
         ('unit = "rad"', 'unit = "arcsec"', "expected 'rad' at the output"),

@@ -116,6 +116,7 @@ def test_a_second_stop_lets_go_at_once() -> None:
     done = run(StiffnessLock(**SHORT), stop_at=4000, presses=2)
     assert isinstance(done.ending, Ending)
     assert done.ending.exit is Exit.HALTED
+    assert "the shaft still carries" in done.ending.reason  # the pin holds it, and friction the motor
     assert len(done.t) < 4300
 
 

@@ -361,6 +361,21 @@ def test_samples_without_a_journal_are_never_replaced(tmp_path: Path, about: dic
     assert whole(tmp_path) == before
 
 
+@pytest.mark.parametrize("about", [{}, {"status": "completed"}, {"status": "running"}])
+@pytest.mark.parametrize("end", [10, -200])
+def test_samples_that_cannot_be_read_and_no_journal_are_said_to_be_so(
+    tmp_path: Path, about: dict[str, str], end: int
+) -> None:
+    (tmp_path / "manifest.json").write_text(json.dumps(LEAST | about))
+    samples = tmp_path / "samples.parquet"
+    pq.write_table(pa.table({"theta_m": [0.1 * k for k in range(1000)]}), samples)
+    samples.write_bytes(samples.read_bytes()[:end])
+    before = whole(tmp_path)
+    with pytest.raises(DataError, match=r"samples.parquet cannot be read: .*; there is no journal and no ring"):
+        recover(tmp_path)
+    assert whole(tmp_path) == before
+
+
 def test_a_journal_with_fewer_rows_does_not_replace_the_samples(tmp_path: Path) -> None:
     folder = ended_run(tmp_path)
     with pytest.raises(Killed):

@@ -84,9 +84,14 @@ def test_none_removes_a_key(tmp_path: Path) -> None:
     [
         (None, "is not a run folder: it has no manifest.json"),
         ("{", "is not JSON"),
-        ("[]", 'has schema "list", expected "hdrig.run/1"'),
+        ("[]", 'manifest.json is a list, expected an object with schema "hdrig.run/1"'),
+        ("null", 'manifest.json is null, expected an object with schema "hdrig.run/1"'),
+        ("true", "manifest.json is true, expected an object"),
+        ("2.5", "manifest.json is a number, expected an object"),
+        ('"x"', "manifest.json is text, expected an object"),
+        ('{"schema": [1]}', r'has schema \[1\], expected "hdrig.run/1"'),
         ('{"schema": "hdrig.run/9"}', 'has schema "hdrig.run/9", expected "hdrig.run/1"'),
-        ("{}", 'has schema null, expected "hdrig.run/1"'),
+        ("{}", 'has no schema, expected "hdrig.run/1"'),
     ],
 )
 def test_a_manifest_that_is_none_is_refused_with_a_sentence(tmp_path: Path, text: str | None, sentence: str) -> None:

@@ -133,7 +133,7 @@ def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(procedure: lis
     _, err = process.communicate(timeout=120)
     assert process.returncode == 5, err
     assert "recorder died" in err
-    assert f"what was recorded is in {folder}" in " ".join(err.split())
+    assert f"what was recorded is in {folder}; hdrig analyse {folder} makes its report" in " ".join(err.split())
     manifest = json.loads((folder / "manifest.json").read_text())
     assert manifest["status"] == "tripped"
     assert [f for f in verify(folder) if f.level == "error"] == []

@@ -73,16 +73,11 @@ class Tame:
             return None
         most = FARTHEST if name.startswith("theta") else LARGEST
         absurd = [some.start + np.flatnonzero(np.abs(values[some]) > most) for some in stretches(values.size)]
-        count = sum(rows.size for rows in absurd)  # infinite too; NaN compares false
-        if count:
-            first = int(np.concatenate(absurd)[0])
-            words = f"{count} values of {name} are" if count > 1 else f"One value of {name} is"
-            self.notes.append(
-                f"{words} infinite or absurdly large: taken as missing ({values[first]:.3g} in row {first}; expected "
-                f"up to {most:.0e})."
-            )
+        rows = np.concatenate(absurd) if absurd else np.empty(0, np.int64)  # infinite too; NaN compares false
+        if rows.size:
+            self.notes.append(_absurd(name, values, rows, most))
             values = values.copy()
-            values[np.concatenate(absurd)] = np.nan
+            values[rows] = np.nan
         if name in READ:
             values = self._without_lone(name, values)
         if name == "tau_l":
@@ -163,3 +158,12 @@ class Tame:
         if not good:
             self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
         return good
+
+
+def _absurd(name: str, values: Array, rows: np.ndarray[Any, np.dtype[np.int64]], most: float) -> str:
+    """That what stands in those rows of a column is no value, and which of the two it is: infinite, or too large."""
+    infinite = int(np.count_nonzero(np.isinf(values[rows])))
+    kind = "infinite" if infinite == rows.size else "infinite or absurdly large" if infinite else "absurdly large"
+    first = int(rows[0])
+    words = f"{rows.size} values of {name} are" if rows.size > 1 else f"One value of {name} is"
+    return f"{words} {kind}: taken as missing ({values[first]:.3g} in row {first}; expected up to {most:.0e})."

@@ -7,6 +7,7 @@ from typing import Any, final
 
 from rig.commands.show.screens import Screen
 from rig.core.errors import HdrigError
+from rig.supervisor import State
 
 
 @final
@@ -27,7 +28,7 @@ class Enriched:
             case "bench":
                 self._ratio = event["ratio"]
             case "state" | "operator" | "trip":
-                self._state = str(event["text"]).partition(":")[0]
+                self._state = _state_in(str(event["text"])) or self._state
             case "run":
                 self._begin(Path(event["ring"]))
             case "progress":
@@ -69,3 +70,9 @@ class Enriched:
         if self._tail is not None:
             self._tail.close()
             self._tail = None
+
+
+def _state_in(text: str) -> str:
+    """The state that an event begins with; "" where it begins otherwise, as that of a halt does."""
+    word = text.partition(":")[0]
+    return word if word in set(State) else ""

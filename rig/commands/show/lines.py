@@ -21,7 +21,7 @@ class Lines(Screen):
         match event["event"]:
             case "bench" if event["simulated"]:
                 self.write(f"SIMULATED: bench '{event['bench']}' is the twin, {event['clock']} clock\n")
-            case "said" | "simulated" | "prompt" | "figure":
+            case "said" | "simulated" | "prompt":  # a figure is printed on stdout
                 self.write(f"{event['text']}\n")
             case "trip" | "operator":
                 self.write(f"{event['text']}\n")

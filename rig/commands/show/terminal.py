@@ -37,7 +37,7 @@ class Terminal(Screen):
             case "simulated":
                 self._mark = "SIMULATED "
                 self._say(event["text"])
-            case "said" | "prompt" | "trip" | "operator" | "figure":
+            case "said" | "prompt" | "trip" | "operator":  # a figure is printed on stdout
                 self._say(event["text"])
             case "run":
                 self._run, self._t, self._first = event, 0.0, (0.0, 0.0)

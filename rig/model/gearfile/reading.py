@@ -119,7 +119,7 @@ def _read_parameter(where: str, name: str, raw: Any, unit: str) -> Parameter:
         raise DataError(f"{where}.unit = {raw.get('unit')!r}: expected '{unit}'; units are never converted")
     value = number_at(raw, "value", where)
     if value <= 0.0 if name in ("N", "J_m", "J_l", "K", "omega_s") else name.startswith("tau") and value < 0.0:
-        raise DataError(f"{where}.value = {value:g} {unit}: expected more than 0")
+        raise DataError(f"{where}.value = {value:g}{'' if unit == '1' else f' {unit}'}: expected more than 0")
     interval = (math.nan, math.nan)
     if "low" in raw or "high" in raw:
         interval = (number_at(raw, "low", where), number_at(raw, "high", where))

@@ -105,7 +105,7 @@ def read_mapping(text: str, source: str) -> Mapping:
         source=source,
         text=text,
         description=top.text("description", ""),
-        procedure=top.text("procedure", choices=tuple(KINDS)),
+        procedure=_procedure(top),
         gear=_gear(top.table("gear")),
         declared=_numbers(top.table("declared", {}), ("J_m", "J_l", "K"), whole=("fourier_terms",)),
         conditions=_conditions(top.table("conditions", {})),
@@ -117,6 +117,15 @@ def read_mapping(text: str, source: str) -> Mapping:
     top.done()
     _angles(result)
     return replace(result, encoders=_encoders(result))
+
+
+def _procedure(top: Section) -> str:
+    """As manifests write it; the command line's name, with dashes, means the same."""
+    said = top.text("procedure")
+    name = said.replace("-", "_")
+    if name not in KINDS:
+        raise UsageError(f"{top.file}: procedure = '{said}'; {nearest(name, KINDS)}")
+    return name
 
 
 def _gear(raw: Section) -> dict[str, Any]:

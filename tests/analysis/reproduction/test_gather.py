@@ -72,4 +72,4 @@ def test_a_folder_that_is_no_run_of_ours_is_left_out_and_said(tmp_path: Path, sh
     said: list[str] = []
     found = entries(tmp_path, said.append)
     assert [e.folder.name for e in found] == [SOME[2]]
-    assert said == ['theirs: manifest.json has schema null, expected "hdrig.run/1"']
+    assert said == ['theirs: manifest.json has no schema, expected "hdrig.run/1"']

@@ -47,13 +47,34 @@ def test_milliseconds_taken_for_seconds_are_named_as_such() -> None:
     assert "1/1000: is t in ms? Expected s." in result.sentence
 
 
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({500: np.inf}, "One value of theta_m is infinite: taken as missing (inf in row 500; expected up to 1e+09)."),
+        ({500: -np.inf, 700: np.inf}, "2 values of theta_m are infinite: taken as missing (-inf in row 500;"),
+        ({500: 1e12}, "One value of theta_m is absurdly large: taken as missing (1e+12 in row 500;"),
+        ({500: 1e12, 700: np.inf}, "2 values of theta_m are infinite or absurdly large: taken as missing (1e+12"),
+    ],
+)
+def test_a_value_that_is_none_is_said_to_be_infinite_or_too_large(wrong: dict[int, float], said: str) -> None:
+    made = slow_run(1)
+    theta_m = made.columns["theta_m"].copy()
+    theta_m[list(wrong)] = list(wrong.values())
+    told = " ".join(analyse(replace(made, columns={**made.columns, "theta_m": theta_m})).cannot)
+    assert said in told
+    assert "theta_m has no finite value in" in told
+
+
 def test_a_gap_is_named_with_its_channel_and_rows_and_the_figure_is_that_of_the_rest() -> None:
     made = slow_run(1)
     theta_l = made.columns["theta_l"].copy()
     theta_l[5000:60000] = np.nan
     result = analyse(replace(made, columns={**made.columns, "theta_l": theta_l}))
     said = " ".join(result.cannot)
-    assert f"55000 of {theta_l.size} rows left out: theta_l has no value in 55000 of them (row 5000 to 59999)" in said
+    assert (
+        f"55000 of {theta_l.size} rows left out: theta_l has no finite value in 55000 of them (row 5000 to 59999)"
+        in said
+    )
     assert "gap of 55 s at t = 5.0 s" in said
     (found,) = (e for e in result.estimates if e.name == "kinematic_error_peak_to_peak")
     (whole,) = (e for e in analyse(made).estimates if e.name == "kinematic_error_peak_to_peak")

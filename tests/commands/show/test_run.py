@@ -31,6 +31,13 @@ def terminal(tmp_path: Path) -> Iterator[Terminal]:
         found.close()
 
 
+def test_what_a_procedure_found_is_said_once(tmp_path: Path) -> None:
+    command = [*HDRIG, "run", "step-test", "--clock", "virtual", "--out", str(tmp_path)]
+    made = subprocess.run(command, capture_output=True, text=True, timeout=100)
+    assert made.stdout.count("inertia at the motor") == 1
+    assert "inertia at the motor" not in made.stderr
+
+
 def test_hold_then_stop_by_key(terminal: Terminal) -> None:
     terminal.press("h")
     terminal.wait_for(lambda seen: "HOLDING kinematic-error" in seen)
@@ -45,7 +52,8 @@ def test_halt_by_escape(terminal: Terminal) -> None:
     assert "SIMULATED RUNNING kinematic-error" in terminal.seen
     terminal.press("\x1b")
     assert terminal.end() == 130
-    assert "halted by the operator: torque off at once" in terminal.seen
+    assert "halted by the operator: torque off at once; the drive confirms it, the rig is ready" in terminal.seen
+    assert "ready: halted" not in terminal.seen
     assert terminal.modes == terminal.before
 
 

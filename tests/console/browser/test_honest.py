@@ -17,6 +17,36 @@ STRUCK = "#state, #run-title, .tile .value, #events"
 CROSSED = "node => getComputedStyle(node).textDecorationLine"
 
 
+def test_before_the_first_state_the_page_says_that_it_waits_and_claims_nothing(
+    open_page: Open, station: Puppet, wrong: list[str]
+) -> None:
+    station.tell(state="ready", bench=BENCH)
+    station.silent = True
+    page = open_page(station.url, link="waiting")
+    page.wait_for_timeout(1000)  # the list of benches is here, no state is
+    assert text(page, "#link .text") == "waiting for the state"
+    shown = page.locator("body").inner_text().lower()
+    for claim in ("live", "disconnected", "no bench connected", "nothing runs", "stale"):
+        assert claim not in shown
+    page.click("[data-act=connect]", force=True)
+    assert text(page, "#answer") == "Not possible now: waiting for the first state"
+    page.keyboard.press("F8")  # a halt is sent all the same
+    until(lambda: [act["act"] for act in station.acts] == ["halt"], "halt")
+    station.silent = False
+    in_state(page, "ready")
+    page.wait_for_selector("html[data-link=live]", state="attached")
+    page.wait_for_selector("#simulated", state="visible")
+    assert text(page, "#link .text").startswith("live, state ")
+    assert wrong == []
+
+
+def test_a_first_state_that_never_comes_is_stale_as_well(open_page: Open, station: Puppet) -> None:
+    station.silent = True
+    page = open_page(station.url, link="waiting")
+    page.wait_for_selector("#stale", state="visible")
+    assert "no word from the station for" in text(page, "#stale")
+
+
 def test_without_a_word_for_half_a_second_the_page_says_stale_and_strikes_out_what_it_shows(
     page: Page, station: Puppet
 ) -> None:

@@ -51,11 +51,17 @@ def test_an_unknown_name_is_answered_with_the_nearest(tmp_path: Path) -> None:
         load_mapping(tmp_path / "junk.toml")
 
 
+def test_a_procedure_is_known_by_the_command_lines_name_too() -> None:
+    dashed = MAPPING.replace('"kinematic_error"', '"kinematic-error"')
+    assert dashed != MAPPING
+    assert read_mapping(dashed, "map.toml").procedure == "kinematic_error"
+
+
 WRONG = [
     ('schema = "hdrig.import/1"', 'schema = "hdrig.import/2"', "schema = 'hdrig.import/2'; did you mean"),
     ('schema = "hdrig.import/1"', "", "'schema' is missing"),
     ("procedure", "proceedure", "'procedure' is missing; is 'proceedure' meant for it?"),
-    ('"kinematic_error"', '"kinematic-error"', "procedure = 'kinematic-error'; did you mean 'kinematic_error'?"),
+    ('"kinematic_error"', '"kinematic-eror"', "procedure = 'kinematic-eror'; did you mean 'kinematic_error'?"),
     ("ratio = 50", 'ratio = "50"', "gear.ratio = '50': expected a number"),
     ("ratio = 50", "ratio = true", "gear.ratio = True: expected a number"),
     ("ratio = 50", "ratio = -50", "gear.ratio = -50: expected a finite number above 1"),

@@ -5,10 +5,12 @@ import { decode } from "./rows.js";
 
 const AGAIN = 500; // ms between two attempts
 const STALE = 500; // ms without a state after which nothing on the page may pass for the present
+const FIRST = 5000; // ms the first state may take: a loaded machine still sends the page then
 
 export class Link extends EventTarget {
   #socket = null;
-  heard = performance.now(); // when the last state came
+  heard = performance.now(); // when the last state came; before the first, when the page began to wait
+  waiting = true; // for the first state
 
   open() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
@@ -24,7 +26,7 @@ export class Link extends EventTarget {
   }
 
   get stale() {
-    return this.age > STALE;
+    return this.age > (this.waiting ? FIRST : STALE);
   }
 
   #hear(data) {
@@ -34,6 +36,7 @@ export class Link extends EventTarget {
       return;
     }
     this.heard = performance.now();
+    this.waiting = false;
     const state = JSON.parse(data);
     this.#socket?.send(JSON.stringify({ seen: state.seq })); // the page's sign of life
     this.dispatchEvent(new CustomEvent("state", { detail: state }));

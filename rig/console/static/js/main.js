@@ -53,6 +53,14 @@ function draw(next) {
   const fresh = outcome(state.events);
   if (fresh) answer((came = fresh));
   else if (notNow !== null && notNow !== state.revision) answer({ ok: true, text: "" }); // what refused it may be over
+  look(); // last: live is a page that shows the state it heard
+}
+
+/** How old the page is; where that is too old, or nothing came yet, nothing but stopping may be pressed. */
+function look() {
+  const unsure = { stale: "the page is stale: what may be done now is not known", waiting: "waiting for the first state" };
+  const why = unsure[freshness(link, state)];
+  if (why) forbid(why);
 }
 
 function answer({ ok, text }) {
@@ -110,9 +118,8 @@ link.addEventListener("closed", ({ detail }) => {
   answer({ ok: false, text: "This page has no valid token: it shows nothing live. Open the address that hdrig serve printed." });
 });
 link.open();
-setInterval(() => {
-  if (freshness(link, state) === "stale") forbid("the page is stale: what may be done now is not known");
-}, LOOK_AT_AGE);
+look();
+setInterval(look, LOOK_AT_AGE);
 
 const offered = await get("/api/catalogue");
 benches(offered.benches ?? []);

@@ -13,7 +13,7 @@ export function permissions(state, refused) {
   const look = refused ? "this page has no valid token: it only looks" : null;
   for (const button of buttons()) permit(button, look ?? state.allowed?.[button.dataset.act]);
   const connect = document.querySelector('[data-act="connect"]');
-  if (!document.getElementById("bench-name").options.length) permit(connect, look ?? "the list of benches is not here yet");
+  if (!document.getElementById("bench-name").value) permit(connect, look ?? "the list of benches is not here yet");
   for (const button of document.querySelectorAll("[data-jog]")) permit(button, look ?? state.allowed?.jog);
 }
 

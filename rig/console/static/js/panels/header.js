@@ -24,18 +24,19 @@ function local(url) {
   return near && /^https?:$/.test(target.protocol) ? target.href : "about:blank";
 }
 
-/** How old the picture is. Stale is a page that hears nothing, and one whose control process has died. */
+/** How old the picture is. Stale is a page that hears nothing, and one whose control process has died; before the first
+ * state there is no picture, and none is claimed. */
 export function freshness(link, state) {
   const root = document.documentElement;
   const dead = state?.station === false;
-  const kind = root.dataset.link === "refused" ? "refused" : link.stale || dead ? "stale" : "live";
+  const kind = root.dataset.link === "refused" ? "refused" : link.stale || dead ? "stale" : link.waiting ? "waiting" : "live";
   root.dataset.link = kind;
-  show($("stale"), kind !== "live");
+  show($("stale"), kind === "stale" || kind === "refused");
   say($("stale").firstElementChild, kind === "refused" ? "NO TOKEN" : "STALE");
   if (kind === "refused") say($("stale-age"), "this page hears nothing, and its halt is refused");
   else say($("stale-age"), dead && !link.stale ? "the control process has ended: nobody looks after the rig" : `no word from the station for ${aged(link.age)}`);
   const samples = state?.live?.age_ms ?? null; // when the state was made; null without any
   root.dataset.samples = samples !== null && samples + link.age > OLD ? "old" : "fresh";
-  say($("link").querySelector(".text"), { live: `live, state ${aged(link.age)} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
+  say($("link").querySelector(".text"), { waiting: "waiting for the state", live: `live, state ${aged(link.age)} old`, stale: `stale for ${aged(link.age)}`, refused: "look only: no valid token" }[kind]);
   return kind;
 }
