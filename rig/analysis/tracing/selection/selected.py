@@ -35,6 +35,7 @@ from rig.analysis.tracing.thresholds import (
     AS_WELL,
     AT_THE_FLOOR,
     EXPLAINED,
+    FREED,
     KNOWN,
     MISSING,
     NAMED,
@@ -275,7 +276,8 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     as_it_was = backward_elimination(s, p.held_out)
     if came.isdisjoint(term.name for term in again[0].design.terms):
         return as_it_was
-    return min(as_it_was, again, key=lambda one: _left(p, one))
+    freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
+    return again if _left(p, again) * (FREED if freed else 1.0) < _left(p, as_it_was) else as_it_was
 
 
 def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
