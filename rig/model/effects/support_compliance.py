@@ -34,7 +34,7 @@ class SupportCompliance(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("held", "frequency", "zeta")
     loose: ClassVar[tuple[bool, ...]] = (False, True, True)
     modes_apart: ClassVar[float] = 1.3  # a housing rocks and twists, each at a frequency of its own
-    LOWEST: Final = 15.0  # Hz
+    LOWEST: Final = 8.0  # Hz
     STEP: Final = 1.1  # neighbouring frequencies within a half width of a 5 % damped peak
     ZETA: Final = 0.05
 
