@@ -61,7 +61,7 @@ class TorsionalMode(Effect):
     FURTHEST: Final = 1.6  # of the band: a flange shows below its resonance as well
     OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
-    LIGHTEST: Final = 0.1  # of all that turns, what is left on a motor: its rotor at least
+    LIGHTEST: Final = 0.14  # of all that turns, what is left on a motor: its rotor at least
     APART: Final = 3.0  # times: how far the two a flange tells its frequency by may differ, as 1/ω² and as a peak
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
