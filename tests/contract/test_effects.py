@@ -221,6 +221,7 @@ def test_counts_lost_again_and_again_go_with_the_way_and_not_with_the_ratio():
     assert (missed_counts.TURNED, 0.0) not in effect.shapes(REACH), "another ratio does the same"
     alike = dataclasses.replace(REACH, fastest=1.2 * REACH.slowest)
     assert effect.shapes(alike) == (), "at one speed the way is the time"
+    assert effect.shapes(dataclasses.replace(REACH, runs=2)) == (), "in one log it is the time, and an angle"
 
 
 def test_counts_lost_above_a_speed_are_lost_nowhere_below_it():

@@ -12,6 +12,7 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the encoder that lost them once, at an instant
 GONE, FURTHEST, TURNED = 2.0, 3.0, 4.0  # again and again: with the way gone, the furthest from the start, the turning
 WIDE = 1.5  # fastest over slowest: at one speed the way is the time
+SEVERAL = 4  # runs: in one log the way is the time, and an angle
 
 
 class MissedCounts(Effect):
@@ -43,7 +44,7 @@ class MissedCounts(Effect):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """What is lost again and again. The instant of a step is found by the row, not in shapes."""
-        if reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
+        if reach.runs < SEVERAL or reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
             return ()
         speeds = [w for w in self.SPEEDS if reach.slowest < w < reach.fastest]
         at_any = ((GONE, 0.0), (FURTHEST, 0.0))
