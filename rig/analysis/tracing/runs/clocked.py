@@ -65,13 +65,12 @@ def is_clocked(run: Source) -> bool:
 
 
 def _rate(run: Source) -> float | None:
+    """By its own speed, of a run that goes one way; None of another."""
     theta = run.column("theta_m")
     if theta is None or theta.size < 2 or not np.isfinite(theta[[0, -1]]).all():
         return None
-    gone, way = (
-        abs(float(theta[-1] - theta[0])),
-        float(np.nansum(np.abs(np.diff(theta[:: max(1, theta.size // SOME)])))),
-    )
+    gone = abs(float(theta[-1] - theta[0]))
+    way = float(np.nansum(np.abs(np.diff(theta[:: max(1, theta.size // SOME)]))))
     if gone < ONE_WAY * way or gone == 0:
         return None
     return (theta.size - 1) * abs(stated(run.conditions, "speed_rpm", 0.0)) * RPM / gone
