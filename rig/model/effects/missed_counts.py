@@ -47,8 +47,7 @@ class MissedCounts(Effect):
         if reach.runs < SEVERAL or reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
             return ()
         speeds = [w for w in self.SPEEDS if reach.slowest < w < reach.fastest]
-        at_any = ((GONE, 0.0), (FURTHEST, 0.0))
-        return (*at_any, *((law, w) for law in (GONE, TURNED) for w in speeds))
+        return ((GONE, 0.0), (FURTHEST, 0.0), *((TURNED, w) for w in speeds))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Chosen, not fitted: a speed, or an instant within the campaign."""

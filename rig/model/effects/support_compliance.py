@@ -35,6 +35,7 @@ class SupportCompliance(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, True, True)
     modes_apart: ClassVar[float] = 1.3  # a housing rocks and twists, each at a frequency of its own
     LOWEST: Final = 8.0  # Hz
+    FEW_BELOW: Final = 15.0  # Hz: every second one, for few housings are so soft
     STEP: Final = 1.1  # neighbouring frequencies within a half width of a 5 % damped peak
     ZETA: Final = 0.05
 
@@ -42,6 +43,7 @@ class SupportCompliance(Effect):
         """Frequencies up to what the equations are compared at."""
         count = int(np.log(max(reach.band, self.LOWEST) / self.LOWEST) / np.log(self.STEP)) + 1
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
+        frequencies = frequencies[(frequencies > self.FEW_BELOW) | (np.arange(count) % 2 == 0)]
         return tuple((held, float(f), self.ZETA) for held in (ON_HOUSING, ON_GROUND) for f in frequencies)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
