@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -270,20 +270,27 @@ class Loop:
 
     def _wound_up(self) -> str:
         """That the shaft carries torque though the motor gives none, as of a gear halted while it was wound up, in
-        words; "" where nothing is seen of it."""
+        words; "" where nothing is seen of it. Never raises: the torque is off, and no bus that fails now undoes a halt.
+        """
         limit = self.guard.limits.shaft_torque
         if limit is None:
             return ""
+        left = 0.0
+        with suppress(Exception):  # nothing is known of the shaft then
+            left = self._still_carried()
+        if not abs(left) > WOUND * limit:
+            return ""
+        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, keep clear of it"
+
+    def _still_carried(self) -> float:
+        """Mean of a few looks at the shaft torque, N·m, once the load has swung out."""
         clock, looks = self.instruments.clock, []
         clock.wait_until(clock.now() + SETTLED)
         for _ in range(LOOKS):
             clock.wait_until(clock.now() + APART)
             looks.append(self.instruments.look())
         told = [look.tau_l for look in looks if look.age <= self.guard.limits.stale]
-        left = sum(told) / len(told) if told else 0.0  # a sensor that is silent says nothing of now
-        if not abs(left) > WOUND * limit:
-            return ""
-        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, keep clear of it"
+        return sum(told) / len(told) if told else 0.0  # a sensor that is silent says nothing of now
 
     def _unconfirmed(self, why: str) -> str:
         """A reason, and that there may be torque still."""

@@ -11,8 +11,9 @@ import pytest
 from rig.core.channels import Flag
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.core.sample import Mode, Torque
+from rig.core.sample import Mode, Sample, Torque
 from rig.guard import Guard, Trip
+from rig.instruments import Instruments
 from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
@@ -216,6 +217,19 @@ def test_a_halt_of_a_wound_up_gear_says_how_much_torque_is_left(left: float, sai
     ending = bench.run(halt)
     assert ending.reason == f"halted by the operator: torque off at once{said}"
     assert told[-1] == (State.READY, ending.reason)
+
+
+def test_a_bus_that_fails_after_the_torque_is_off_undoes_no_halt(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+
+    def gone(self: Instruments) -> Sample:
+        raise OSError("no such device")
+
+    monkeypatch.setattr(Instruments, "look", gone)
+    ending = bench.run(bench.interrupts.halt)
+    assert (ending.status, ending.exit) == ("stopped", Exit.HALTED)
+    assert bench.torque_free()
+    assert bench.supervisor.state is State.READY
 
 
 @pytest.mark.parametrize("error", [NotReady("the load is locked"), RecorderError("disk full"), ValueError("a bug")])

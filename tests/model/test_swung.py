@@ -9,8 +9,8 @@ import pytest
 
 from rig.model.effect import Signals
 from rig.model.memory import resonance
-from rig.model.shaken import NEAR, shaken
-from rig.model.swung import swung
+from rig.model.second_mode.shaken import NEAR, shaken
+from rig.model.second_mode.swung import swung
 from tests.contract.test_effects import motion
 
 OMEGA, ZETA = 2 * np.pi * 11.8, 0.02  # forgets within 0.7 s

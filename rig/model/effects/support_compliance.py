@@ -8,8 +8,8 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.shaken import shaken
-from rig.model.swung import swung
+from rig.model.second_mode.shaken import shaken
+from rig.model.second_mode.swung import swung
 
 ON_HOUSING, ON_GROUND = 0.0, 1.0  # of the first shape parameter: where the encoders are held
 

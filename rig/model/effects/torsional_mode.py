@@ -9,8 +9,8 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.second_mode import coupling, output
-from rig.model.shaken import EXCITED, shaken
-from rig.model.swung import swung
+from rig.model.second_mode.shaken import EXCITED, shaken
+from rig.model.second_mode.swung import swung
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
 BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's

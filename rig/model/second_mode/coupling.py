@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.swung import swung
+from rig.model.second_mode.swung import swung
 from rig.model.waves import sums
 
 Array = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ def stiff(s: Signals, through: Array, about: float) -> Mapping[Port, Array]:
 
 
 def soft(s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, Array]:
-    """Three: for 1/k, 1/ω² and J_2/ω², ψ = H·(τ/k + ω̇_m/ω²) being the twist; the motor feels −J_2·ψ̈."""
+    """Three: for 1/k, 1/ω² and J_2/ω², ψ = H_0·(τ/k + ω̇_m/ω²) being the twist; the motor feels −J_2·ψ̈."""
 
     def swinging(whole: Signals) -> tuple[Array, ...]:
         torque = through_it(whole, about)

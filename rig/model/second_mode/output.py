@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.shaken import shaken
-from rig.model.swung import swung
+from rig.model.second_mode.shaken import shaken
+from rig.model.second_mode.swung import swung
 
 Array = npt.NDArray[np.float64]
 

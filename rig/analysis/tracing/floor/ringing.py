@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
-from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals
-from rig.model.shaken import EXCITED
+from rig.analysis.tracing.nameless.law import Nameless
+from rig.model.effect import Array, Port, Shape, Signals
+from rig.model.second_mode.shaken import EXCITED
 
 LONG: Final = 0.2  # s: a mode that forgets sooner rings in a few rows
-PORTS: Final = (Port.MOTOR_TORQUE, Port.LOAD_TORQUE, Port.WIND_UP, Port.READS_THETA_L, Port.READS_THETA_M)
+PORTS: Final = {Port.MOTOR_TORQUE, Port.LOAD_TORQUE, Port.WIND_UP, Port.READS_THETA_L, Port.READS_THETA_M}
 
 
-class RingDown(Effect):
-    """A free oscillation since the run began, e^(−ζωt)·cos(ω_d·t) and the same sine, as large as they are in each run:
-    by what it was shaken before nobody knows      [thomson1993]"""
+@dataclass(frozen=True)
+class RingDown(Nameless):
+    """At one port a free oscillation since the run began, e^(−ζωt)·cos(ω_d·t) and the same sine, as large as they are
+    in each run: by what it was shaken before nobody knows      [thomson1993]"""
 
     name: ClassVar[str] = "ring_down"
     in_short: ClassVar[str] = "what a second mode still swings by when a run begins"
     source: ClassVar[str] = "thomson1993"
     each_run: ClassVar[bool] = True
-    shape_names: ClassVar[tuple[str, ...]] = ("omega", "zeta", "port")
+    shape_names: ClassVar[tuple[str, ...]] = ("omega", "zeta")
 
-    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """None: it goes with a mode that was found."""
-        return ()
+    port: Port
 
     def has_state(self) -> bool:
         """The time since the run began."""
@@ -35,17 +36,10 @@ class RingDown(Effect):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Two, (n, 2)."""
-        omega, zeta, port = shape
+        omega, zeta = shape
         since = signals.t - signals.t[0]
         swing = np.exp((-zeta + 1j * np.sqrt(1.0 - zeta**2)) * omega * since)
-        return {PORTS[int(port)]: np.stack([swing.real, swing.imag], 1)}
-
-    def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """None: it is no effect."""
-        return ()
-
-
-RING_DOWN: Final = RingDown()
+        return {self.port: np.stack([swing.real, swing.imag], 1)}
 
 
 def ringing(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> dict[Key, Array]:
@@ -66,8 +60,8 @@ def ringing(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> dict[K
 def _of(eq: Equations, run: int, term: Term, swing: tuple[float, float]) -> dict[str, Array]:
     """In the channels of one run that the mode itself acts on."""
     ports = term.effect.columns(eq.runs[run].pieces[0], term.shape)
-    shapes = [(*swing, float(PORTS.index(port))) for port in ports if port in PORTS]
-    made = [(c, x) for shape in shapes for c, x in eq.term(run, Term(RING_DOWN, shape)).items() if np.any(x)]
+    rings = [Term(RingDown(port), swing) for port in ports if port in PORTS]
+    made = [(c, x) for ring in rings for c, x in eq.term(run, ring).items() if np.any(x)]
     return {c: np.hstack([x for channel, x in made if channel == c]) for c in dict(made)}
 
 

@@ -60,8 +60,8 @@ def slowed(piece: Signals) -> Signals:
 
 def is_clocked(run: Source) -> bool:
     """Whether a run has no time of its own, and says how fast it turned."""
-    untimed = run.column("t") is None and not stated(run.manifest, "sample_rate_hz", 0.0)
-    return untimed and abs(stated(run.conditions, "speed_rpm", 0.0)) > 0
+    says = abs(stated(run.conditions, "speed_rpm", 0.0)) > 0 and not stated(run.manifest, "sample_rate_hz", 0.0)
+    return says and not run.has("t")  # asked last: it may have to read the column
 
 
 def _rate(run: Source) -> float | None:

@@ -36,9 +36,9 @@ def faster_by_degrees(runs: Sequence[Recording]) -> dict[str, str]:
     turn = [run for run in runs if not run.locked and run.procedure != "standstill" and {"t", "theta_m"} <= run.has]
     for run in turn:
         others = [r for r in turn if r.procedure == run.procedure and r is not run]
-        usual = float(np.median([r.turning for r in others])) if others else 0.0
-        like = [r for r in others if abs(r.turning / max(usual, 1e-300) - 1) < SAME_SPEED]
-        times = run.turning / max(usual, 1e-300)
+        usual = max(float(np.median([r.turning for r in others])), 1e-300) if others else np.inf
+        like = [r for r in others if abs(r.turning / usual - 1) < SAME_SPEED]
+        times = run.turning / usual
         if len(like) >= max(FEWEST, (len(others) + 1) // 2) and abs(times / DEGREES - 1) < ALIKE and not run.speed_rpm:
             said[run.name] = (
                 f"the motor turns at {run.turning / RPM:.4g} rpm, {times:.1f} times the {usual / RPM:.4g} rpm of "

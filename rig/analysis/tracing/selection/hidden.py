@@ -15,13 +15,12 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, plainest
+from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
-from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.ticking import largest, ticking
-from rig.analysis.tracing.rest.unknown import home, homes
+from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.conclusion import Conclusion
@@ -105,8 +104,7 @@ def _nearly_loud(
         mine = [key for key in after if key[1] == c]
         if not mine or (before := p.held_out.ratio(after, mine)) < NOTEWORTHY:
             continue
-        most = rest(p.eq, left, floors, c)
-        where = plainest(homes(most, c)) if most is not None else []
+        where = home(p.eq, {key: e for key, e in left.items() if key[1] == c}, floors)
         if where and p.held_out.ratio(smooth_term(p.eq, left, after, floors, where[0]), mine) < 1.0:
             best = where[0]
             verdict = Verdict(

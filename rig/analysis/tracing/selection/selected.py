@@ -80,7 +80,7 @@ class Selected:
     @property
     def left(self) -> float:
         """RMS over floor of the worst channel on unseen runs."""
-        return self.p.held_out.worst(self.p.held_out.residuals(self.solution, self.held))[0]
+        return _left(self.p, (self.solution, self.held, self.scores))
 
     @cached_property
     def loud(self) -> bool:
@@ -201,8 +201,8 @@ def _without_idle(selected: Selected, runs: Sequence[int], covered: Reach) -> Se
     s = polished(fit(reduced(selected.solution.design, [least])), runs, covered)
     kept = backward_elimination(s, selected.p.held_out)
     fewer = Selected(selected.p, *kept, _in_words(kept[0], runs, covariance))
-    same = fewer.names == selected.names and fewer.left <= AS_WELL * selected.left and fewer.loud <= selected.loud
-    return _without_idle(fewer, runs, covered) if same else selected
+    as_well = fewer.left <= AS_WELL * selected.left and (selected.loud or not fewer.loud)
+    return _without_idle(fewer, runs, covered) if as_well and fewer.names == selected.names else selected
 
 
 def _told(s: Solution, known: Array, term: int) -> float:

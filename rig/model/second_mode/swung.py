@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from rig.model.effect import Signals
 from rig.model.memory import resonance
-from rig.model.shaken import EXCITED
+from rig.model.second_mode.shaken import EXCITED
 
 Array = npt.NDArray[np.float64]
 
@@ -36,16 +36,19 @@ def swung(s: Signals, x: Array, omega: float, zeta: float) -> tuple[Array, Array
     rest. A lightly damped one takes a second to forget where it began.
     """
     x = _between_rows(x)
+    after, second = resonance(x, s.dt, omega, zeta, *_in_swing(s, x, omega, zeta))
+    return after, second
+
+
+def _in_swing(s: Signals, x: Array, omega: float, zeta: float) -> tuple[float, float]:
+    """How far the mode is behind `x` when the run begins, and how fast it moves, 1/s; (0, 0) at rest."""
     first = s.once("as it began", lambda: _as_it_began(s))
     if first is None:
-        after, second = resonance(x, s.dt, omega, zeta)
-        return after, second
+        return 0.0, 0.0
     waves = first.fit @ x[: first.rows]
     rate = 1j * first.omega * np.arange(1, ORDERS + 1)
     passed = waves * omega**2 / (rate**2 + 2.0 * zeta * omega * rate + omega**2)
-    behind, changes = float((passed - waves).real.sum()), float((passed * rate).real.sum())
-    after, second = resonance(x, s.dt, omega, zeta, behind, changes)
-    return after, second
+    return float((passed - waves).real.sum()), float((passed * rate).real.sum())
 
 
 def _between_rows(x: Array) -> Array:
