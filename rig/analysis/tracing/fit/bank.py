@@ -16,6 +16,7 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.sliding import settled
 from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array, Effect, Reach
+from rig.model.second_mode.shaken import EXCITED
 
 ROOM: Final = 2  # columns of a term, more than most have in a channel
 
@@ -56,7 +57,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
         torque=float(np.nanmax(torque)) if np.isfinite(torque).any() else 0.0,
         duration=max(float(p.t[-1]) for p in pieces) - min(float(p.t[0]) for p in pieces),
         rate=min(run.rate for run in runs),
-        band=2.0 * min(run.smoother.sigma_hz for run in runs),  # the low-pass leaves a seventh of it there
+        band=2.0 * _compared_at(runs),  # the low-pass leaves a seventh of it there
         load_turns=float(np.nanmax(turns)) / (2 * np.pi),
         counts_m=runs[0].counts_m,
         counts_l=runs[0].counts_l,
@@ -67,6 +68,12 @@ def reach(runs: Sequence[Recording]) -> Reach:
         pulled=_lesser(np.concatenate([p.torque * np.abs(p.torque) for p in pieces])),
         weights=len({round(float(np.nanmean(p.tau_ext)), 2) for p in pieces}),
     )
+
+
+def _compared_at(runs: Sequence[Recording]) -> float:
+    """Hz of the narrowest low-pass: where fast rows are looked at, of the runs that turn fast enough to have some."""
+    widths = [run.smoother.sigma_hz for run in runs if not run.look.fast or run.turning > EXCITED]
+    return min(widths or [run.smoother.sigma_hz for run in runs])
 
 
 def torque_noise(eq: Equations) -> float:

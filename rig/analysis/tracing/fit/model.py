@@ -154,8 +154,8 @@ def share_taken(gram: Array, noise: Array) -> float:
     return min(1.0, CLEAR / max(most, 1e-9))
 
 
-def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
-    """The design with one more term."""
+def extended(d: Design, term: Term, runs: Sequence[int], held: bool = True) -> Design:
+    """The design with one more term; what of its columns is mostly sensor noise is `held` at nothing."""
 
     def of(run: int) -> dict[Key, tuple[Array, Array | None]]:
         made = d.eq.term(run, term)
@@ -171,7 +171,9 @@ def extended(d: Design, term: Term, runs: Sequence[int]) -> Design:
     out = replace(d, terms=(*d.terms, term), widths=(*d.widths, width), parts=parts)
     part, right, noise = normal(out, new)
     part, right, noise = part[:, at], right[at], noise[np.ix_(at, at)]
-    own = part[d.size :] + held_still(d.gram + np.diag(prior(d.size)), part[: d.size], part[d.size :], noise)
+    own = part[d.size :]
+    if held:
+        own = own + held_still(d.gram + np.diag(prior(d.size)), part[: d.size], own, noise)
     gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, own]])
     return replace(out, gram=gram, right=np.concatenate([d.right, right]))
 

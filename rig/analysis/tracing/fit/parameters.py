@@ -132,7 +132,8 @@ def _widened(
     d = s.design
     for i, j in slopes:
         term = s.design.terms[i]
-        d = extended(d, nudged(term, j, s.x[s.design.place(i)]), runs)
+        # what is left without its noise of a slope that is mostly noise is held still: it would seem to be known
+        d = extended(d, nudged(term, j, s.x[s.design.place(i)], noise_kept=True), runs)
     # about the solution itself: the added columns only widen the intervals
     return spread(replace(fit(d), x=np.concatenate([s.x, np.zeros(len(slopes))])))
 

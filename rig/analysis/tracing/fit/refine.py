@@ -72,16 +72,17 @@ def shape_step(best: Design, found: Solution, runs: Sequence[int], free: Sequenc
     term, c = best.terms[-1], found.x[best.place(len(best.terms) - 1)]
     wide = best
     for i in free:
-        wide = extended(wide, nudged(term, i, c), runs)
+        wide = extended(wide, nudged(term, i, c), runs, held=False)  # a shape held still would not be found
     x = fit(wide).x
     return np.asarray(x[best.size :])
 
 
-def nudged(term: Term, i: int, c: Array) -> Term:
-    """One column: how the term with coefficients `c` changes with the logarithm of shape parameter `i`."""
+def nudged(term: Term, i: int, c: Array, noise_kept: bool = False) -> Term:
+    """One column: how the term with coefficients `c` changes with the logarithm of shape parameter `i`; with the noise
+    in it taken off, as of all columns, or `noise_kept`."""
     from rig.analysis.tracing.fit.slope import Slope
 
-    return Term(Slope(term.effect, i, NUDGE, tuple(map(float, c))), term.shape)
+    return Term(Slope(term.effect, i, NUDGE, tuple(map(float, c)), noise_kept), term.shape)
 
 
 def _moved(shape: Shape, step: Array, free: Sequence[int], bounds: Sequence[tuple[float, float]]) -> Shape:

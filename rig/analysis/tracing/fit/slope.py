@@ -19,6 +19,7 @@ class Slope(Effect):
     i: int
     nudge: float
     coefficients: tuple[float, ...]
+    noise_kept: bool = False  # for intervals
 
     name: ClassVar[str] = "slope"
     in_short: ClassVar[str] = "change of an effect with its shape"
@@ -29,8 +30,8 @@ class Slope(Effect):
         return ()
 
     def moved_by_noise(self) -> bool:
-        """As the effect."""
-        return self.of.moved_by_noise()
+        """As the effect, or no noise of it is to be taken off."""
+        return self.noise_kept or self.of.moved_by_noise()
 
     def has_state(self) -> bool:
         """As the effect."""

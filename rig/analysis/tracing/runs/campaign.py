@@ -14,7 +14,7 @@ from rig.analysis.motion.held import not_held
 from rig.analysis.motion.one_rig import refuse_other_gears
 from rig.analysis.tracing.runs.balance import odd_balances
 from rig.analysis.tracing.runs.clocked import rate_by_speed, said_of
-from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.mixed import mixed
 from rig.analysis.tracing.runs.odd_torques import odd_torques
@@ -43,6 +43,7 @@ class Campaign:
     """Runs of one rig in one assembly, in the order they were taken."""
 
     name: str
+    folder: Path
     runs: tuple[Recording, ...]
     simulated: bool
     notes: tuple[str, ...]
@@ -74,8 +75,8 @@ def folders_of_runs(folder: Path) -> list[Path]:
     return places
 
 
-def read_campaign(folder: Path) -> Campaign:
-    """All run folders directly in `folder`. Raises UsageError when it holds no run with an angle."""
+def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
+    """All run folders directly in `folder`, each looked at as said. Raises UsageError when it holds no run with an angle."""
     places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
     opened, out = _open(links_last(places))
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
@@ -86,7 +87,7 @@ def read_campaign(folder: Path) -> Campaign:
     begun = starts(opened)
     with ThreadPoolExecutor(WORKERS) as pool:
         hz = rate_by_speed(opened)
-        found = list(pool.map(lambda run, start: _record(run, start, hz), opened, begun))
+        found = list(pool.map(lambda run, start: _record(run, start, hz, look), opened, begun))
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, name)
@@ -107,7 +108,9 @@ def read_campaign(folder: Path) -> Campaign:
         runs = [replace(run, look=replace(run.look, inertia=True)) for run in runs]
     left = {place.name for place in places} | {said.run for said in nameless}
     left -= {run.name for run in runs}
-    return Campaign(name, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left)))
+    return Campaign(
+        name, folder, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left))
+    )
 
 
 def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
@@ -151,16 +154,16 @@ def _closed(folder: Path) -> list[Said]:
     return [left_out(name, "it cannot be read: permission denied") for name in closed]
 
 
-def _record(run: Run, start: float, hz: float | None = None) -> Recording | Said:
+def _record(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
     """What the tracer reads of `run`, or why it cannot use it."""
-    made = _read(run, start, hz)
+    made = _read(run, start, hz, look)
     return made if isinstance(made, Said) or not (why := _unfit(made)) else left_out(run.name, why)
 
 
-def _read(run: Run, start: float, hz: float | None = None) -> Recording | Said:
+def _read(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
     """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
-        return record(run, start, hz)
+        return record(run, start, hz, look)
     except (HdrigError, ValueError) as error:
         return left_out(run.name, error)
 

@@ -15,4 +15,8 @@ class Look:
     steady: bool = False  # the mean of its motor torque is no run's own
     rigid: bool = False  # its wind-up is what is believed of the gear: nothing in these runs tells it
     inertia: bool = False  # its torque beside the inertia of the load, which nobody stated and no sensor weighs
+    fast: bool = False  # rows twice as often, compared up to frequencies twice as high: chosen when it is read
     zeros: bool = False  # its zeros are those of all others, but for what its speed makes of them
+
+
+FIRST = Look()

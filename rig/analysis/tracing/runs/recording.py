@@ -16,13 +16,13 @@ from rig.analysis.motion.tame import RATIOS, Tame
 from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
-from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing, substituted
-from rig.analysis.tracing.thresholds import BANDWIDTH, RATE
+from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER, RATE
 from rig.core.errors import UsageError
 from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
@@ -129,9 +129,9 @@ def mean_way(run: Recording) -> float:
     return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
 
 
-def record(whole_run: Run, start: float, hz: float | None = None) -> Recording:
+def record(whole_run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording:
     """Read the columns the tracer uses; what is absurd counts as missing. Rows of a run without a time that declares
-    its speed come `hz` times a second, where that is known. Raises UsageError when the run has no angle it can use,
+    its speed come `hz` times a second, where that is known. A fast `look` takes more of them. Raises UsageError when the run has no angle it can use,
     rows too far apart or too close, or a ratio no gear has.
     """
     run = Tame(whole_run)
@@ -148,10 +148,11 @@ def record(whole_run: Run, start: float, hz: float | None = None) -> Recording:
     _refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     uneven = None if _is_even(t, dt) else t
-    factor = max(1, round(1 / dt / RATE))
+    often = FASTER if look.fast else 1.0
+    factor = max(1, round(1 / dt / (often * RATE)))
     work = dt * factor
     encoders = run.manifest.get("encoders") or {}
-    sigma = min(BANDWIDTH, TAMEST / work, quiet(channels["theta_m"], encoders))
+    sigma = min(TAMEST / work, quiet(channels["theta_m"], encoders, often * BANDWIDTH))
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
@@ -182,6 +183,7 @@ def record(whole_run: Run, start: float, hz: float | None = None) -> Recording:
         load_stated=states(run.conditions, "tau_ext"),
         clocked=hz is not None and clocked,
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
+        look=look,
     )
 
 
