@@ -76,7 +76,8 @@ def folders_of_runs(folder: Path) -> list[Path]:
 
 
 def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
-    """All run folders directly in `folder`, each looked at as said. Raises UsageError when it holds no run with an angle."""
+    """All run folders directly in `folder`, each looked at as said. Raises UsageError when it holds no run with an
+    angle."""
     places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
     opened, out = _open(links_last(places))
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))

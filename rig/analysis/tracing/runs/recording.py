@@ -131,8 +131,8 @@ def mean_way(run: Recording) -> float:
 
 def record(whole_run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording:
     """Read the columns the tracer uses; what is absurd counts as missing. Rows of a run without a time that declares
-    its speed come `hz` times a second, where that is known. A fast `look` takes more of them. Raises UsageError when the run has no angle it can use,
-    rows too far apart or too close, or a ratio no gear has.
+    its speed come `hz` times a second, where that is known. A fast `look` takes more of them. Raises UsageError when
+    the run has no angle it can use, rows too far apart or too close, or a ratio no gear has.
     """
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)

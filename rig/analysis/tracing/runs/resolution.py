@@ -24,8 +24,8 @@ SLOWEST = 3.0  # Hz, the lowest low-pass: with it a piece of 3 s is still ten ti
 
 
 def quiet(theta_m: Array | None, encoders: Mapping[str, float], most: float = BANDWIDTH) -> float:
-    """Hz of low-pass that suits the motor encoder, `most` for a fine one: a position loop answers the rounding of a coarse one with torque,
-    and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
+    """Hz of low-pass that suits the motor encoder, `most` for a fine one: a position loop answers the rounding of a
+    coarse one with torque, and what the low-pass leaves of both looks like a smaller J_m, a negative one even."""
     step = 0.0 if theta_m is None else _count(theta_m, encoders)
     return max(SLOWEST, BANDWIDTH * FINE / step) if step > COARSE else most
 

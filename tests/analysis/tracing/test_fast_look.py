@@ -1,0 +1,111 @@
+"""A mode above what is compared at first: whether something rings there, and what a look at fast rows may say of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.fit.bank import reach
+from rig.analysis.tracing.looks import fast
+from rig.analysis.tracing.rest.above_the_band import Line, _from_speed_to_speed, rings_above
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER
+from rig.analysis.tracing.trace import trace
+from rig.model.second_mode.output import _rate
+from tests.blind.cases import Request
+from tests.blind.generate import write_case
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_a_hub_before_the_torque_sensor_that_rings_at_79_hz_is_named(tmp_path: Path) -> None:
+    write_case(Request("single", 885, "complete", "torsional_mode", "sensor_shaft", 1.7), tmp_path, "case")
+    verdict = trace(tmp_path / "case").verdict
+    assert (verdict.status, verdict.effects, verdict.rivals) == (Status.EXPLAINED, ("torsional_mode",), ())
+
+
+@pytest.mark.slow
+def test_runs_with_fast_rows_are_compared_at_twice_the_frequency_and_slow_ones_as_ever(shared: Path) -> None:
+    found = read_campaign(shared / "cases" / "open-1", Look(fast=True))
+    widths = {run.name: run.smoother.sigma_hz for run in found.runs}
+    assert widths["speed_400rpm_1"] == pytest.approx(FASTER * BANDWIDTH, rel=0.01)
+    assert widths["slow_ke_1"] <= BANDWIDTH  # rows every 4 ms, which a wider low-pass would fold over
+    turning = [run for run in found.runs if run.procedure in ("constant_torque", "kinematic_error")]
+    assert reach(turning).band == pytest.approx(2 * FASTER * BANDWIDTH, rel=0.01)
+    assert reach([replace(run, look=Look()) for run in turning]).band <= 2 * BANDWIDTH
+
+
+def heights(amplitude: dict[tuple[int, int], complex]) -> np.ndarray[Any, Any]:
+    return _from_speed_to_speed([Line(run, order, height, 40.0, 1e-14) for (run, order), height in amplitude.items()])
+
+
+def test_an_order_that_is_the_same_at_every_speed_is_the_transmissions_own() -> None:
+    own = {(run, order): 3e-6 * order + 1e-6j for run in range(3) for order in (5, 6)}
+    assert np.abs(heights(own)).max() < 1e-15
+    own[2, 6] += 3e-6
+    assert np.abs(heights(own)) == pytest.approx([0, 1e-6, 0, 1e-6, 0, 2e-6], abs=1e-15)
+
+
+@pytest.mark.parametrize(("rms", "loud"), [([0.5, 0.5], True), ([0.5, 0.4], False), ([0.9], False), ([], False)])
+def test_it_rings_where_two_runs_show_half_a_floor(
+    monkeypatch: pytest.MonkeyPatch, rms: list[float], loud: bool
+) -> None:
+    floor, module = 2e-6, "rig.analysis.tracing.rest.above_the_band"
+    runs = [SimpleNamespace(smoother=SimpleNamespace(sigma_hz=36.0)) for _ in rms]
+    monkeypatch.setattr(f"{module}._shows", lambda run: True)
+    monkeypatch.setattr(f"{module}._from_speed_to_speed", lambda lines: [line.height for line in lines])
+    monkeypatch.setattr(
+        f"{module}._lines",
+        lambda s, i: [
+            Line(i, 9, rms[i] * floor / 2**0.5 + 0j, 60.0, 0.0),
+            Line(i, 1, 1.0 + 0j, 10.0, 0.0),  # far below, where the equations are compared anyway
+        ],
+    )
+    keys = [(i, "A") for i in range(len(rms))]
+    s: Any = SimpleNamespace(design=SimpleNamespace(eq=SimpleNamespace(runs=runs)), keys=keys)
+    assert rings_above(s, dict.fromkeys(keys, floor)) is loud
+
+
+def standing(*names: str, loud: bool = False) -> Any:
+    first = SimpleNamespace(folder=Path("nowhere"), runs=())
+    return SimpleNamespace(names=set(names), loud=loud, p=SimpleNamespace(campaign=first))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "counts"),
+    [
+        (standing(), standing("torsional_mode"), True),
+        (standing("support_compliance"), standing("torsional_mode"), True),
+        (standing("cogging_torque"), standing("cogging_torque", "torsional_mode"), True),
+        (standing("cogging_torque"), standing("torsional_mode"), False),  # a name is lost
+        (standing(), standing("torsional_mode", "lost_motion"), False),  # and one too many
+        (standing("torsional_mode"), standing("torsional_mode", "support_compliance"), False),
+        (standing(), standing(), False),
+        (standing(), standing("torsional_mode", loud=True), False),
+        (standing(loud=True), standing("torsional_mode", loud=True), True),
+    ],
+)
+def test_it_counts_where_one_mode_comes_to_what_had_a_name(
+    monkeypatch: pytest.MonkeyPatch, before: Any, after: Any, counts: bool
+) -> None:
+    monkeypatch.setattr(fast, "read_campaign", lambda folder, look: None)
+    monkeypatch.setattr(fast, "looking", lambda campaign, looks: None)
+    monkeypatch.setattr(fast, "prepare", lambda campaign, hold_out: None)
+    monkeypatch.setattr(fast, "searched", lambda p: (after, "ranked"))
+    nothing: Any = None
+    kept, _ = fast.taken(before, nothing, nothing, ())
+    assert kept is (after if counts else before)
+
+
+def test_a_rate_by_six_neighbours_holds_a_wave_of_a_sixth_of_the_rate() -> None:
+    t = np.arange(200) * 2e-3
+    omega = 2 * np.pi * 80.0
+    off = _rate(np.sin(omega * t), 2e-3)[3:-3] / omega - np.cos(omega * t)[3:-3]
+    assert np.abs(off).max() < 0.01  # a difference of neighbours: 0.16
