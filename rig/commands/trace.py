@@ -90,7 +90,6 @@ def asked(run: NextRun) -> str:
 def tell(found: Trace) -> None:
     """Verdict, parameters, errors before and after, on stdout."""
     from rig.analysis.tracing.outcome.without import counted_out
-    from rig.report.numbers import counted
     from rig.report.trace.channels import held_out_with
     from rig.report.trace.sizes import said
     from rig.report.trace.words import gloss, not_read, remainder, runs_read
@@ -111,7 +110,7 @@ def tell(found: Trace) -> None:
     for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):
         if name in found.ratios_before:
             print(
-                f"  {label} on {counted(held_out_with(found, name), 'held-out run')}: "
+                f"  {label} on {held_out_with(found, name)}: "
                 f"{found.ratios_before[name]:.2f} → {found.ratios_after[name]:.2f} times the floor"
             )
     if found.next_run:

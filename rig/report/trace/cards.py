@@ -11,7 +11,7 @@ from rig.analysis.tracing.fit.channels import AT_REVERSALS
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.thresholds import EXPLAINED, TURNED_BACK
 from rig.report.figures.arrays import line
-from rig.report.numbers import counted, join
+from rig.report.numbers import join
 from rig.report.trace.channels import CHANNELS, Channel, held_out_with
 from rig.report.trace.sizes import three
 
@@ -50,7 +50,7 @@ def _card(trace: Trace, channel: Channel, main: bool) -> Card:
     if not alone and ratios[1] is not None:
         ratio = f"{three(ratios[0])} → {three(ratios[1])} × the floor"
     back = _where_it_turns_back(trace, alone) if channel.sensor == "tau_m" else ""
-    how = f"RMS of measured less model over {counted(held_out_with(trace, channel.sensor), 'held-out run')}"
+    how = f"RMS of measured less model over {held_out_with(trace, channel.sensor)}"
     how += (
         f"; each run over the floor of its conditions, RMS {join(three(floor), channel.unit)}"
         if floor is not None

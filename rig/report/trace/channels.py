@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.outcome.result import Errors, Trace
+from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.core.units import ARCSEC
+from rig.report.numbers import counted
 
 
 class Channel(NamedTuple):
@@ -44,7 +46,12 @@ CHANNELS = (
 )
 
 
-def held_out_with(trace: Trace, sensor: str) -> int:
-    """How many held-out runs have an error in the channel of `sensor`: a locked output has none in the shaft torque."""
+def held_out_with(trace: Trace, sensor: str) -> str:
+    """How many held-out runs have an error in the channel of `sensor`, or parts of runs where those were held out: a
+    locked output has none in the shaft torque."""
     channel = next(c for c in CHANNELS if c.sensor == sensor)
-    return sum(channel.error(e) is not None for e in trace.before.per_run.values())
+    names = [name for name, e in trace.before.per_run.items() if channel.error(e) is not None]
+    parts = sum(HELD_PART in name for name in names)
+    whole = [counted(len(names) - parts, "held-out run")] if parts < max(len(names), 1) else []
+    of_runs = [f"the held-out {'part' if parts == 1 else 'parts'} of {counted(parts, 'run')}"] if parts else []
+    return " and ".join([*whole, *of_runs])

@@ -69,3 +69,8 @@ def test_a_clock_that_is_early_and_late_is_no_noise_of_the_reading() -> None:
 def test_on_an_even_clock_both_ways_of_taking_differences_find_the_same_noise() -> None:
     read = np.random.default_rng(5).standard_normal(5000)
     assert rough(read, np.arange(5000.0)) == pytest.approx(rough(read), rel=1e-9)
+
+
+def test_an_angle_that_was_commanded_and_turns_back_now_and_then_has_no_count() -> None:
+    t = np.arange(0.0, 100.0, 0.004)
+    assert smallest_step(25.13 * np.abs(4 * ((t / 50) % 1 - 0.5))) == 0.0

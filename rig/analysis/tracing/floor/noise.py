@@ -21,6 +21,7 @@ from rig.model.effect import Array
 
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
 OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
+BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
 
@@ -80,7 +81,9 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         usual = [s for s in found if s not in far]
         n = np.array([s.rows for s in usual])
         least = finest(eq, channel)
-        sigma[channel] = max(float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n))), least)
+        among_them = float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n)))
+        sigma[channel] = max(among_them, least)
+        how[channel] += BY_COUNTS if among_them < least else ""
         kappa[channel] = effective(np.average([s.rho / max(s.rho[0], least**2) for s in usual], axis=0, weights=n))
         apart |= {(i, channel) for s in far for i in s.pair}
         compared = [*_alone(eq, e, channel, among, found), *found]
