@@ -42,15 +42,23 @@ def test_runs_with_fast_rows_are_compared_at_twice_the_frequency_and_slow_ones_a
     assert reach([replace(run, look=Look()) for run in turning]).band <= 2 * BANDWIDTH
 
 
-def heights(amplitude: dict[tuple[int, int], complex]) -> np.ndarray[Any, Any]:
-    return _from_speed_to_speed([Line(run, order, height, 40.0, 1e-14) for (run, order), height in amplitude.items()])
+def heights(amplitude: dict[tuple[int, int], complex], power: int) -> np.ndarray[Any, Any]:
+    """Of orders in runs at 1, 2 and 3 turns a second."""
+    lines = [Line(run, n, height, n * (run + 1.0), 1e-14) for (run, n), height in amplitude.items()]
+    return _from_speed_to_speed(lines, power)
 
 
 def test_an_order_that_is_the_same_at_every_speed_is_the_transmissions_own() -> None:
-    own = {(run, order): 3e-6 * order + 1e-6j for run in range(3) for order in (5, 6)}
-    assert np.abs(heights(own)).max() < 1e-15
+    own = {(run, n): 3e-6 * n + 1e-6j for run in range(3) for n in (5, 6)}
+    assert np.abs(heights(own, 0)).max() < 1e-15
     own[2, 6] += 3e-6
-    assert np.abs(heights(own)) == pytest.approx([0, 1e-6, 0, 1e-6, 0, 2e-6], abs=1e-15)
+    assert np.abs(heights(own, 0)) == pytest.approx([0, 1e-6, 0, 1e-6, 0, 2e-6], abs=1e-15)
+
+
+def test_an_order_of_the_load_encoder_is_an_acceleration() -> None:
+    own = {(run, 5): (0.2 + 0.1j) * (run + 1.0) ** 2 for run in range(3)}
+    assert np.abs(heights(own, 2)).max() < 1e-15
+    assert np.abs(heights(own, 0)).max() > 0.1
 
 
 @pytest.mark.parametrize(("rms", "loud"), [([0.5, 0.5], True), ([0.5, 0.4], False), ([0.9], False), ([], False)])
@@ -60,10 +68,10 @@ def test_it_rings_where_two_runs_show_half_a_floor(
     floor, module = 2e-6, "rig.analysis.tracing.rest.above_the_band"
     runs = [SimpleNamespace(smoother=SimpleNamespace(sigma_hz=36.0)) for _ in rms]
     monkeypatch.setattr(f"{module}._shows", lambda run: True)
-    monkeypatch.setattr(f"{module}._from_speed_to_speed", lambda lines: [line.height for line in lines])
+    monkeypatch.setattr(f"{module}._from_speed_to_speed", lambda lines, power: [line.height for line in lines])
     monkeypatch.setattr(
         f"{module}._lines",
-        lambda s, i: [
+        lambda s, i, channel: [
             Line(i, 9, rms[i] * floor / 2**0.5 + 0j, 60.0, 0.0),
             Line(i, 1, 1.0 + 0j, 10.0, 0.0),  # far below, where the equations are compared anyway
         ],

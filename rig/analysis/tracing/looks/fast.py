@@ -20,12 +20,10 @@ MODES: Final = frozenset({TorsionalMode.name, SupportCompliance.name})
 
 
 def wanted(selected: Selected) -> bool:
-    """Whether a mode is named, or more is left than may be, or something rings above what was compared; and there are
-    rows to tell it by."""
+    """Whether a mode is named, or something rings above what was compared; and there are rows to tell it by."""
     if not any(has_fast_rows(run) for run in selected.fitted_runs):
         return False
-    named = not MODES.isdisjoint(selected.names)
-    return named or selected.loud or rings_above(selected.solution, selected.p.floors)
+    return not MODES.isdisjoint(selected.names) or rings_above(selected.solution, selected.p.floors)
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:

@@ -1,8 +1,9 @@
-"""Whether orders of the motor that the low-pass takes away stand out in what the model leaves of the kinematic error.
+"""Whether orders of the motor that the low-pass takes away stand out in what the model leaves.
 
 A second mode is shaken by the orders of the gear, most where one of them meets it. Of one above what the equations are
 compared at nothing is left in them, or as little as a larger inertia leaves; but an order of the transmission itself is
-the same at every speed, and what a mode makes of it is not.
+the same at every speed, one of the load encoder is an acceleration with the square of the speed, and what a mode makes
+of either is another one.
 """
 
 from __future__ import annotations
@@ -32,11 +33,12 @@ STEADY: Final = 0.5  # of the mean speed, how far nine tenths of a run may vary
 BESIDE: Final = (0.4, 0.5, 0.6)  # orders away from a whole one, where there is only noise
 STANDS_OUT: Final = 0.45  # of the floor, RMS of those orders; clean campaigns have 0.34 at most
 RUNS: Final = 2  # that show it
+ITSELF: Final = {"A": 0, "L": 2}  # with which power of the speed an order of a gear or an encoder goes, by channel
 
 
 @dataclass(frozen=True)
 class Line:
-    """One order of one run: complex amplitude, rad, its frequency, Hz, and the square of what noise makes of it."""
+    """One order of one run: complex amplitude, rad or N·m, frequency, Hz, and the square of what noise makes of it."""
 
     run: int
     order: int
@@ -46,16 +48,20 @@ class Line:
 
 
 def rings_above(s: Solution, floors: Mapping[Key, float]) -> bool:
-    """Whether orders above the low-pass differ from speed to speed by about a floor or more, in some runs."""
+    """Whether orders above the low-pass differ from speed to speed by half a floor, in some runs."""
+    return any(_runs_that_ring(s, floors, channel) >= RUNS for channel in ITSELF)
+
+
+def _runs_that_ring(s: Solution, floors: Mapping[Key, float], channel: str) -> int:
     runs = s.design.eq.runs
-    lines = [line for key in s.keys if key[1] == "A" and _shows(runs[key[0]]) for line in _lines(s, key[0])]
-    apart = _from_speed_to_speed(lines)
+    lines = [line for i, c in s.keys if c == channel and _shows(runs[i]) for line in _lines(s, i, channel)]
+    apart = _from_speed_to_speed(lines, ITSELF[channel])
     above = [(line, h) for line, h in zip(lines, apart, strict=True) if line.hz > FROM * _sigma(runs[line.run])]
     loud = 0
     for i in {line.run for line, _ in above}:
         mine = [2.0 * (abs(h) ** 2 - line.noise) for line, h in above if line.run == i]
-        loud += sum(mine) > (STANDS_OUT * floors[i, "A"]) ** 2
-    return loud >= RUNS
+        loud += sum(mine) > (STANDS_OUT * floors[i, channel]) ** 2
+    return loud
 
 
 def has_fast_rows(run: Recording) -> bool:
@@ -77,11 +83,14 @@ def _shows(run: Recording) -> bool:
     return float(high - low) < STEADY * run.turning
 
 
-def _lines(s: Solution, i: int) -> list[Line]:
-    """The orders of one run, up to what its rows can tell."""
+def _lines(s: Solution, i: int, channel: str) -> list[Line]:
+    """The orders in a channel of one run, up to what its rows can tell."""
     run = s.design.eq.runs[i]
     wide = replace(run, smoother=Smoother(WIDER * _sigma(run), run.smoother.dt, 1))
-    e, theta = _left(s, wide), np.concatenate([p.theta_m[wide.smoother.centres(p.t.size)] for p in wide.pieces])
+    e, theta = (
+        _left(s, wide, channel),
+        np.concatenate([p.theta_m[wide.smoother.centres(p.t.size)] for p in wide.pieces]),
+    )
     rate = run.turning / TURN  # turns a second
     window = np.hanning(e.size)
     window /= window.sum()
@@ -96,23 +105,24 @@ def _lines(s: Solution, i: int) -> list[Line]:
     ]
 
 
-def _left(s: Solution, wide: Recording) -> Array:
-    """What the model leaves of the kinematic error in all rows of a run, about its mean, rad (n,)."""
-    y, z, at = unmasked(wide, "A")
+def _left(s: Solution, wide: Recording, channel: str) -> Array:
+    """What the model leaves of a channel in all rows of a run, about its mean, rad or N·m (n,)."""
+    y, z, at = unmasked(wide, channel)
     e = y - z @ s.x[list(at)]
     for i, term in enumerate(s.design.terms):
-        made = unmasked_columns(wide, term, {"A"})
-        if "A" in made:
-            e = e - np.nan_to_num(made["A"]) @ s.x[s.design.place(i)]
+        made = unmasked_columns(wide, term, {channel})
+        if channel in made:
+            e = e - np.nan_to_num(made[channel]) @ s.x[s.design.place(i)]
     return np.asarray(e - e.mean())
 
 
-def _from_speed_to_speed(lines: list[Line]) -> npt.NDArray[np.complex128]:
-    """Heights (n,) without what an order has at every speed, which is the transmission's own."""
+def _from_speed_to_speed(lines: list[Line], power: int) -> npt.NDArray[np.complex128]:
+    """Heights (n,) without what an order has at every speed, with a power of it."""
     order = np.array([line.order for line in lines], dtype=int)
     height = np.array([line.height for line in lines])
-    weight = 1.0 / np.maximum(np.array([line.noise for line in lines]), 1e-300)
+    shape = np.array([line.hz for line in lines]) ** power
+    weight = shape / np.maximum(np.array([line.noise for line in lines]), 1e-300)
     for n in np.unique(order):
         mine = order == n
-        height[mine] -= np.average(height[mine], weights=weight[mine])
+        height[mine] -= shape[mine] * (weight[mine] @ height[mine]) / (weight[mine] @ shape[mine])
     return height
