@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.core.channels import Flag
 from rig.core.errors import HdrigError
@@ -103,7 +104,8 @@ def _time(run: Run) -> Iterator[Finding]:
 
 
 def _gaps(run: Run) -> Iterator[Finding]:
-    """Steps of `t` longer than 1.5 periods, by why: told by the loop, a late tick made up for, or a lost row."""
+    """Steps of `t` longer than 1.5 periods, by why: told by the loop, a late tick made up for, a stale reading, or a
+    lost row."""
     t = run.column("t")
     if t is None or t.size < 3:
         return
@@ -116,11 +118,13 @@ def _gaps(run: Run) -> Iterator[Finding]:
     if _every_tick_has_its_row(run):
         late = ~told  # nothing is gone: the machine woke late, less than the one period that the loop flags
     late |= ~told & (dt[gaps] < LOST * period)
+    stale = ~told & ~late & _read_late(run, gaps, dt, period)
     unexplained = "warning" if _is_foreign(run.manifest) else "error"  # no loop of ours, no promise
     for level, found, why in (
-        ("warning", gaps[told], "flagged by the loop"),
+        ("warning", gaps[told], "flagged by the loop: it skipped ticks there, or had no new motor angle"),
         ("warning", gaps[late], "a tick came late, no row is gone"),
-        (unexplained, gaps[~told & ~late], "unexplained"),
+        ("warning", gaps[stale], "a stale reading and then a fresh one (their `age`), no row is gone"),
+        (unexplained, gaps[~told & ~late & ~stale], "unexplained"),
     ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
@@ -132,6 +136,15 @@ def _gaps(run: Run) -> Iterator[Finding]:
 def _every_tick_has_its_row(run: Run) -> bool:
     """The loop counted its ticks, and as many rows are here."""
     return bool(run.rows) and run.timing.get("ticks") == run.rows
+
+
+def _read_late(run: Run, gaps: npt.NDArray[np.intp], dt: Array, period: float) -> npt.NDArray[np.bool_]:
+    """Of the steps of `t` [s] behind the rows `gaps` those between neighbouring ticks: `t` is when an angle was latched,
+    `t` and `age` together when its row was made, and after a stall an old reading may be followed by a fresh one."""
+    age = run.column("age")
+    if age is None:
+        return np.zeros(gaps.size, dtype=bool)
+    return np.asarray(dt[gaps] + age[gaps + 1] - age[gaps] <= GAP * period)
 
 
 def _made_up_for(t: Array, i: int, period: float) -> bool:
