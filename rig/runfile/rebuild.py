@@ -1,4 +1,4 @@
-"""A damaged manifest.json → a minimal one of what bench.toml and the samples say; the damaged file is kept beside it."""
+"""A damaged manifest.json → a minimal one of what bench.toml and the samples say; the damaged file stays beside it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rig.runfile.process import sole_writer
 from rig.runfile.samples import open_samples
 
 BENCH = "bench.toml"
-LEAST = '{"schema": "%s", "procedure": "%s", "gear": {"ratio": 50}}' % (manifest.SCHEMA, OTHER)
+LEAST = f'{{"schema": "{manifest.SCHEMA}", "procedure": "{OTHER}", "gear": {{"ratio": 50}}}}'
 
 
 def rebuild(folder: Path, damage: manifest.Damaged) -> manifest.Manifest:
@@ -31,8 +31,8 @@ def rebuild(folder: Path, damage: manifest.Damaged) -> manifest.Manifest:
     gear = _gear(folder)
     if not stated(gear.get("ratio")) > 0.0:
         raise UsageError(
-            f"{folder / manifest.NAME} {damage.what}, and no {BENCH} beside it says gear.N to make it anew by; write one "
-            f"with at least {LEAST}"
+            f"{folder / manifest.NAME} {damage.what}, and no {BENCH} beside it says gear.N to make it anew by; write "
+            f"one with at least {LEAST}"
         )
     layout = open_samples(folder).layout
     with manifest.told(DataError, f"{folder / manifest.NAME} cannot be made anew"), sole_writer(folder):

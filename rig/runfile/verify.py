@@ -139,8 +139,8 @@ def _every_tick_has_its_row(run: Run) -> bool:
 
 
 def _read_late(run: Run, gaps: npt.NDArray[np.intp], dt: Array, period: float) -> npt.NDArray[np.bool_]:
-    """Of the steps of `t` [s] behind the rows `gaps` those between neighbouring ticks: `t` is when an angle was latched,
-    `t` and `age` together when its row was made, and after a stall an old reading may be followed by a fresh one."""
+    """Of the steps of `t` [s] behind the rows `gaps` those between neighbouring ticks: `t` is when an angle was
+    latched, `t` and `age` together when its row was made; after a stall a fresh reading may follow an old one."""
     age = run.column("age")
     if age is None:
         return np.zeros(gaps.size, dtype=bool)
