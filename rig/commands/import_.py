@@ -41,6 +41,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--map", required=True, metavar="MAPPING", help="mapping file (TOML), or the name of one that ships"
     )
     parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where the run folder goes")
+    parser.add_argument("--again", action="store_true", help="also where the same file was imported there before")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -50,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.manifest import read
 
     refuse_unwritable(args.out)
-    folder = import_file(args.file, args.map, args.out, software())
+    folder = import_file(args.file, args.map, args.out, software(), args.again)
     about = read(folder)
     simulated = "SIMULATED " if about["backend"] == "sim" else ""
     over = f", {about['duration']:.4g} s" if about.get("duration") else ""

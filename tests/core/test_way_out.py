@@ -36,8 +36,7 @@ def test_a_current_folder_that_is_gone_is_a_sentence(
     monkeypatch.chdir(here)
     here.rmdir()
     assert ending_in_a_sentence(lambda: len(os.path.abspath("runs"))) == Exit.USAGE
-    assert capsys.readouterr().err == "hdrig: the current folder no longer exists; change to one that does
-"
+    assert capsys.readouterr().err == "hdrig: the current folder no longer exists; change to one that does\n"
 
 
 def test_a_file_that_is_gone_stays_an_internal_error(capsys: pytest.CaptureFixture[str]) -> None:

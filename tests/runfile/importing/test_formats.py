@@ -174,11 +174,6 @@ def test_zero_is_taken_off_before_sign_and_scale(foreign: Foreign) -> None:
     assert json.loads((run.path / "manifest.json").read_text())["conditions"] == {}
 
 
-def test_a_second_import_makes_a_second_folder(foreign: Foreign) -> None:
-    path = foreign.file()
-    assert foreign.imported(path).path != foreign.imported(path).path
-
-
 def test_mdf_keeps_the_date_it_states(foreign: Foreign) -> None:
     from asammdf import MDF, Signal
 
