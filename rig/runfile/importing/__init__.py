@@ -2,7 +2,7 @@
 
 | module | one idea |
 |---|---|
-| mapping, channel, strict, units | the mapping file, read so that no key is overlooked |
+| mapping, keys, channel, strict, units | the mapping file, read so that no key is overlooked |
 | readers/ | one format a file: the wanted columns, 1-D |
 | table, signatures, reading | what readers share: finding a column, telling a file by its first bytes, damage |
 | convert, unwrap, timing | columns → SI channels |

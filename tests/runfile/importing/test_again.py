@@ -84,4 +84,5 @@ def test_another_file_or_another_mapping_is_another_run(foreign: Foreign) -> Non
     import_file(foreign.file(), foreign.mapping(formats.MAPPING), foreign.out)
     import_file(foreign.file(), foreign.mapping(formats.MAPPING + "# corrected\n"), foreign.out)
     data = formats.columns()
-    import_file(foreign.file(data | {"temperature": data["temperature"] + 1}), foreign.mapping(formats.MAPPING), foreign.out)
+    warmer = foreign.file(data | {"temperature": data["temperature"] + 1})
+    import_file(warmer, foreign.mapping(formats.MAPPING), foreign.out)
