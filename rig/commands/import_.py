@@ -47,7 +47,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--map", required=True, metavar="MAPPING", help="mapping file (TOML), or the name of one that ships"
     )
-    parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where the run folder goes")
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where the run folder goes"
+    )
     parser.add_argument("--again", action="store_true", help="also where the same file was imported there before")
 
 

@@ -22,7 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     where.add_argument("--web", action="store_const", const="web", dest="where", help="a page, until Ctrl-C")
     where.add_argument("--native", action="store_const", const="native", dest="where", help="a window, until it closes")
     where.add_argument(
-        "--out", type=Path, metavar="FILE", help="a recording in this file; default: view.rrd in the run folder"
+        "-o", "--out", type=Path, metavar="FILE", help="a recording in this file; default: view.rrd in the run folder"
     )
 
 
