@@ -35,6 +35,15 @@ def test_help_names_every_verb_and_no_arguments_means_help() -> None:
             assert f"\n  {verb} " in done.stdout
 
 
+def test_help_says_of_exit_codes_what_the_readme_says(capsys: pytest.CaptureFixture[str]) -> None:
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    said = " ".join(readme.partition("\nExit codes: ")[2].partition(".\n")[0].split()).replace(" ·", ",")
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    assert said.startswith("0 pass, 1 ")
+    assert said in " ".join(capsys.readouterr().out.split())
+
+
 @pytest.mark.parametrize("verb", CATALOGUE)
 def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:
