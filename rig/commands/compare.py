@@ -23,7 +23,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig compare`."""
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders; the others against the first")
     parser.add_argument(
-        "--among", type=Path, metavar="FOLDER", help="where repeats are looked for; default: the folder the runs lie in"
+        "--among",
+        type=Path,
+        metavar="FOLDER",
+        help="where repeats are looked for; default: where the runs lie",
     )
     parser.add_argument("--json", action="store_true", help="the comparison as JSON, schema hdrig.comparison/1")
     parser.add_argument(
