@@ -44,6 +44,14 @@ def test_help_says_of_exit_codes_what_the_readme_says(capsys: pytest.CaptureFixt
     assert said in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.parametrize("verb", [["run", "standstill"], ["campaign", "quick"]])
+def test_a_dry_run_says_of_a_twin_over_a_wire_that_it_is_simulated(
+    verb: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, "--dry-run", "--bench", "twin-can"]) == 0
+    assert " on twin-can (SIMULATED)" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("verb", CATALOGUE)
 def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:

@@ -20,6 +20,7 @@ from rig.core.errors import UsageError
 from rig.runfile.copies import once
 
 DOUBTED = "its figures are not to be believed: {}"
+ROUNDING = 1e-9  # of a figure: what two computations of the same may differ by
 DATE = "2026-11-20"  # how folders by date are named
 
 
@@ -134,6 +135,8 @@ def _between(name: str, a: Row, x: Figure | None, b: Row, y: Figure | None, repe
     if x is None or y is None or x.unit != y.unit or x.rejected or y.rejected or not math.isfinite(x.value + y.value):
         return None
     value = y.value - x.value
+    if abs(value) <= ROUNDING * max(abs(x.value), abs(y.value)):
+        value = 0.0
     # each end from the two ends of the runs that face it: intervals need not be even
     low = value - math.hypot(y.value - y.low, x.high - x.value)
     high = value + math.hypot(y.high - y.value, x.value - x.low)

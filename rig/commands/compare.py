@@ -84,9 +84,10 @@ def changed(d: Difference | None, unit: str) -> str:
         return ""
     if d.value == 0:
         return "no difference"
-    sign = "+" if d.value > 0 else ""
+    said = estimate(d.value, (d.low, d.high), unit)
+    sign = "+" if d.value > 0 and not said.startswith("<") else ""
     limit = f"{plain(d.limit, 2)} {unit}" if unit != "1" else plain(d.limit, 2)
-    return f"{sign}{estimate(d.value, (d.low, d.high), unit)}  {SHOWN[d.mark].format(limit=limit)}".rstrip()
+    return f"{sign}{said}  {SHOWN[d.mark].format(limit=limit)}".rstrip()
 
 
 def _how(found: Comparison) -> list[str]:

@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.channels import Flag
+from rig.core.drivetrain import RATIOS
 from rig.core.errors import HdrigError
+from rig.core.numbers import number
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
@@ -38,6 +40,7 @@ def verify(folder: Path) -> list[Finding]:
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
     findings += [Finding("warning", "manifest", f"{manifest.NAME}: {said}") for said in misfits_of_ours(about)]
+    findings += _ratio(about)
     try:
         run = Run.open(folder)
     except HdrigError as error:
@@ -59,6 +62,14 @@ def _status(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
         yield Finding("warning", "status", f"process {about['process']['pid']} is still making this run")
     else:
         yield Finding("error", "status", f"the run was never closed; {advice(folder, about)}")
+
+
+def _ratio(about: Mapping[str, Any]) -> Iterator[Finding]:
+    """A number that no gear has; one that is none is refused where the run is opened."""
+    ratio = number((about.get("gear") or {}).get("ratio"))
+    if ratio > 0.0 and not RATIOS[0] <= ratio <= RATIOS[1]:
+        expected = f"expected {RATIOS[0]:g} to {RATIOS[1]:g}"
+        yield Finding("error", "manifest", f"{manifest.NAME}: gear.ratio is {ratio:g}, {expected}")
 
 
 def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:

@@ -82,6 +82,12 @@ def test_one_changed_byte_of_any_file_is_found(tmp_path: Path, name: str) -> Non
     assert ("hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's") in found(folder)
 
 
+def test_a_ratio_no_gear_has_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    manifest.update(folder, gear={"ratio": 1e300})
+    assert found(folder) == [("manifest", "manifest.json: gear.ratio is 1e+300, expected 0.001 to 100000")]
+
+
 def test_a_missing_file_is_found(tmp_path: Path) -> None:
     folder = closed(tmp_path)
     (folder / "timing.json").unlink()
