@@ -83,6 +83,7 @@ def _show(folder: Path, where: str) -> int:
         canvas = RerunCanvas.to_viewer(said, server.url, *WHOLE)
         draw(recorded, said, canvas)
         canvas.flush(60.0)  # s: 10 MB to a process on this machine
+        canvas.close()  # the server has it all; the SDK would complain in lines of its own once that is gone
         _say(Pages(server.port, lambda: server.starts).url if where == "web" else "")
         with _until_asked():
             while server.runs:
