@@ -21,8 +21,8 @@ from rig.process.streams import Tolerant, show_what_fits, standard
 
 DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
-    "exit codes: 0 pass, 1 out of limits, 2 usage, 3 not ready, 4 stopped, 5 tripped, 6 incomplete, "
-    "inconclusive, ambiguous or unknown, 70 internal error, 130 halted"
+    "exit codes: 0 pass, 1 out of limits, 2 usage, or a place that cannot be read or written, 3 not ready, 4 stopped,\n"
+    "5 tripped, 6 incomplete, inconclusive, ambiguous, unknown, or a parameter left open, 70 internal error, 130 halted"
 )
 
 
@@ -35,16 +35,42 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **words: Any) -> None:
         super().__init__(**words)
         self.register("type", Path, _place)  # of every option and argument that takes a folder or a file
+        self.register("type", int, _whole)
+        self.register("type", float, _number)
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), "")
-        sentence = f"{message}{hint}; see {self.prog} --help"
+        hint = next((f"; {hint}" for option, hint in self.hints.items() if option in message), self._meant(message))
+        sentence = f"{message}{hint}{' See' if hint.endswith('?') else '; see'} {self.prog} --help"
         if self.events:
             from rig.commands.show.beforehand import refuse
 
             refuse(sentence)
         print(f"hdrig: {sentence}", file=sys.stderr)
         raise SystemExit(Exit.USAGE)
+
+    def _meant(self, message: str) -> str:
+        """The option that one there is not is nearest to, for a message that begins with such."""
+        unknown = message.removeprefix("unrecognized arguments: ").split(" ", 1)[0].partition("=")[0]
+        if unknown == message or not unknown.startswith("--"):
+            return ""
+        import difflib
+
+        close = difflib.get_close_matches(unknown, list(self._option_string_actions), n=1)
+        return f"; did you mean {close[0]}?" if close else ""
+
+
+def _whole(said: str) -> int:
+    try:
+        return int(said)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{said!r}: expected a whole number") from None
+
+
+def _number(said: str) -> float:
+    try:
+        return float(said)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{said!r}: expected a number") from None
 
 
 def _place(said: str) -> Path:

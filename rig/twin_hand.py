@@ -6,7 +6,7 @@ import json
 import socket
 from typing import Any, ClassVar, final
 
-from rig.core.errors import NotReady
+from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
 
 PATIENCE = 5.0  # s for an answer: the twin may wait for the processor
@@ -38,8 +38,8 @@ class TwinHand(Operator):
             case _:
                 raise NotReady(f"the twin at {self.control} cannot do this: {change.words()}")
 
-    def ask(self, what: dict[str, Any]) -> dict[str, Any]:
-        """One line there, one line back. Raises NotReady."""
+    def ask(self, what: dict[str, Any], not_understood: type[HdrigError] = NotReady) -> dict[str, Any]:
+        """One line there, one line back. Raises NotReady, and `not_understood` where the twin knows no such thing."""
         line = json.dumps(what).encode() + b"\n"
         try:
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as channel:
@@ -53,7 +53,8 @@ class TwinHand(Operator):
                 "is `hdrig twin` running, is hand.control in the bench file its --control?"
             ) from None
         if not answer.get("ok"):
-            raise NotReady(f"the twin refused {what['do']}: {answer.get('error', 'without a reason')}")
+            kind = not_understood if answer.get("usage") is True else NotReady
+            raise kind(f"the twin refused {what['do']}: {answer.get('error', 'without a reason')}")
         return answer
 
     def _answer(self, channel: socket.socket) -> dict[str, Any]:

@@ -28,6 +28,17 @@ def test_an_override_changes_one_number_says_so_and_keeps_the_rest() -> None:
     assert bench.file.gear == read("twin").file.gear.model_copy(update={"serial": "SN7"})
 
 
+def test_a_twin_over_a_wire_that_is_not_there_is_said_to_be_startable(tmp_path: Path) -> None:
+    control, port = tmp_path / "control", tmp_path / "serial" / "torque"
+    bench = read("twin-can", [f"hand.control={control}", f"devices.torque_sensor.port={port}"])
+    port.parent.mkdir()
+    for door in (control, port):
+        assert f"`hdrig twin --serial {port.parent}`" in bench.twin_not_there
+        door.touch()
+    assert bench.twin_not_there == ""
+    assert read("twin").twin_not_there == ""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("assignments", "words"),

@@ -35,6 +35,23 @@ def test_help_names_every_verb_and_no_arguments_means_help() -> None:
             assert f"\n  {verb} " in done.stdout
 
 
+def test_help_says_of_exit_codes_what_the_readme_says(capsys: pytest.CaptureFixture[str]) -> None:
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    said = " ".join(readme.partition("\nExit codes: ")[2].partition(".\n")[0].split()).replace(" ·", ",")
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    assert said.startswith("0 pass, 1 ")
+    assert said in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("verb", [["run", "standstill"], ["campaign", "quick"]])
+def test_a_dry_run_says_of_a_twin_over_a_wire_that_it_is_simulated(
+    verb: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*verb, "--dry-run", "--bench", "twin-can"]) == 0
+    assert " on twin-can (SIMULATED)" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("verb", CATALOGUE)
 def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:
@@ -90,6 +107,16 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
         ),
         (["run", "kinematic-error", "--with", "frequency=0,01"], ["frequency = 0,01: expected a decimal point, 0.01"]),
         (["run", "jog", "--clock", "virtual", "--bench", "twin-can", "--dry-run"], ["virtual clock exists only on"]),
+        (
+            ["run", "jog", "--set", "gear.N=-50"],
+            ["hdrig: --set gear.N=-50 in ", "gear.N = -50.0: expected greater than 1"],
+        ),
+        (["run", "jog", "--seed", "abc"], ["argument --seed: 'abc': expected a whole number; see hdrig run --help"]),
+        (["simulate", "x", "--load", "abc"], ["argument --load: 'abc': expected a number"]),
+        (["campaign", "quick", "--skip", "a"], ["argument --skip: 'a': expected whole numbers, for example 3,7"]),
+        (["run", "jog", "--dryrun"], ["arguments: --dryrun; did you mean --dry-run? See hdrig run --help"]),
+        (["run", "jog", "--dryrun=1"], ["did you mean --dry-run? See"]),
+        (["run", "jog", "--qqqqq"], ["unrecognized arguments: --qqqqq; see hdrig run --help"]),
         (["tune", "--write", "nowhere/x.toml"], ["nowhere is no folder"]),
         (["analyse", "nowhere"], ["nowhere", "does not exist"]),
         (["recover", "nowhere"], ["nowhere", "does not exist"]),

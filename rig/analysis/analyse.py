@@ -15,11 +15,12 @@ from rig.analysis.motion.held import not_held, not_still
 from rig.analysis.motion.overview import add_overview
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.speed import Speed, motor_speed
-from rig.analysis.motion.tame import RATIOS, Tame
+from rig.analysis.motion.tame import Tame
 from rig.analysis.sensors.latch_skew_words import LABEL as SKEW
 from rig.analysis.sensors.latch_skew_words import add_latch_skew
 from rig.analysis.sensors.seldom import said_seldom
 from rig.analysis.turning.run import add_turning
+from rig.core.drivetrain import RATIOS
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 from rig.runfile.promised import rows_gone, time_untold
@@ -184,6 +185,8 @@ def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Re
     motion = motion_of(run)
     if motion is None or motion.theta_m.size < 16:
         why = "The run has no motor angle: nothing can be said about the gear."
+        if run.manifest.get("rows") == 0:
+            why = "The run has no rows, it ended before its first sample: nothing can be said about the gear."
         if motion is not None:
             why = f"The run has {motion.theta_m.size} usable rows: nothing can be said about the gear."
         return _nothing(run, why)

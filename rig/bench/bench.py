@@ -6,6 +6,7 @@ import importlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from rig.bench.devices import ROLES, device_class, place_of
@@ -48,6 +49,18 @@ class Bench:
     def by_person(self) -> bool:
         """Weights and pin are a person's to change; a twin has a hand of its own, also over a wire."""
         return not self.simulated and self.file.hand is None
+
+    @property
+    def twin_not_there(self) -> str:
+        """How the twin this bench reaches over a wire is started, where its doors are not there; "" else."""
+        if self.file.hand is None:
+            return ""
+        devices = (getattr(self.file.devices, role) for role in ROLES)
+        ports = [Path(port) for one in devices if isinstance(port := getattr(one, "port", None), str)]
+        if all(door.exists() for door in (Path(self.file.hand.control), *ports)):
+            return ""
+        serial = f" --serial {ports[0].parent}" if ports else ""
+        return f"this bench reaches the twin over a wire: start `hdrig twin{serial}` in another terminal first"
 
     @property
     def gains(self) -> Gains:

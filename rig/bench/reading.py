@@ -27,12 +27,13 @@ def read(source: str, overrides: Iterable[str] = ()) -> Bench:
         known = [p.stem for p in BENCHES.glob("*.toml")]
         raise UsageError(f"no bench called '{source}'; {nearest(source, known)}; or give the path of a .toml file")
     text = load_text(path)
-    assignments = list(overrides)
+    assignments, blamed = list(overrides), str(path)
     if assignments:
         read_bench(text, str(path))  # what is wrong in the file itself is said first
         text = override(text, assignments, str(path))
-    bench = Bench(read_bench(text, str(path)), text, str(path))
-    check_together(bench.source, bench.file)
+        blamed = f"{' '.join(f'--set {one}' for one in assignments)} in {path}"
+    bench = Bench(read_bench(text, blamed), text, str(path))
+    check_together(blamed, bench.file)
     for role in ROLES:
         if (made := bench.device(role)) is not None:
             check_keys(bench.source, role, getattr(bench.file.devices, role), getattr(made, "keys", ()))

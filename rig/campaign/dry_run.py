@@ -76,7 +76,7 @@ def lines(campaign: Campaign, runs: Sequence[int] | None = None) -> Iterator[str
     if not numbers:
         yield "every run is made: nothing is left to do"
         return
-    simulated = " (SIMULATED)" if bench.simulated else ""
+    simulated = "" if bench.by_person else " (SIMULATED)"
     yield f"campaign {plan.name} on {bench.file.name}{simulated}: {plan.title}".rstrip(": ")
     order = f"random within a rigging, seed {campaign.seed}" if plan.order == "random" else "as written"
     yield f"order {order}; a failed run: {plan.on_failure}; nothing is moved or written"

@@ -27,6 +27,7 @@ def swept(journal: Journal) -> Iterator[None]:
             journal.fail("failed", str(error))
         else:
             _remove(journal)
+            error.add_note(f"no run was made, so the campaign folder {journal.folder.name} is gone again")
         raise
 
 

@@ -19,7 +19,7 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
     rows = int(envelope.duration * bench.file.loop.rate)
     size = rows_bytes(rows) / 1e6
     lines = [
-        f"procedure   {procedure.title()} on {bench.file.name}{' (SIMULATED)' if bench.simulated else ''}",
+        f"procedure   {procedure.title()} on {bench.file.name}{'' if bench.by_person else ' (SIMULATED)'}",
         f"duration    at most {envelope.duration:.1f} s of rig time, {rows} rows, about {size:.0f} MB",
         f"stored      at most {stored_energy(bench, procedure, shaft_torque(bench, procedure)):.4f} J in motion and "
         "wound up in the gear",

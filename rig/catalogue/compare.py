@@ -20,6 +20,7 @@ from rig.core.errors import UsageError
 from rig.runfile.copies import once
 
 DOUBTED = "its figures are not to be believed: {}"
+ROUNDING = 1e-9  # of a figure: what two computations of the same may differ by
 DATE = "2026-11-20"  # how folders by date are named
 
 
@@ -84,7 +85,8 @@ class Comparison:
 
 
 def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
-    """Compare the runs in `paths` with the first of them. Repeats are looked for under `root`, or where the runs lie.
+    """Compare the runs in `paths` with the first of them. Repeats are looked for under `root`, or in the folders the
+    runs lie in, and nowhere beyond.
 
     A figure that one run alone has is no line; the remarks say who lacks it. A run given twice counts once. Raises
     UsageError for fewer than two runs, a path that is none, a result that is damaged, or when no other run has any
@@ -100,7 +102,8 @@ def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
         raise UsageError(f"compare was given one run {len(paths)} times: {'; '.join(copies)[:300]}")
     known = [figures(one.path) for one in found]
     refuse_nothing(found, known)
-    repeats = Repeats(rows(str(root or _home(paths))))
+    homes = dict.fromkeys(map(_home, paths)) if root is None else [root]
+    repeats = Repeats(once([one for home in homes for one in rows(str(home))]))
     lines = tuple(_line(name, found, known, repeats) for name in shared(known))
     return Comparison(found, lines, (*copies, *_remarks(found, known)))
 
@@ -114,11 +117,10 @@ def _run(path: Path) -> Row:
     return doubted(found)
 
 
-def _home(paths: Sequence[Path]) -> Path:
-    """The folder that holds the runs, their repeats beside them: of folders by date the one above."""
-    parents = [path.resolve().parent for path in paths]
-    common = next(p for p in (parents[0], *parents[0].parents) if all(q.is_relative_to(p) for q in parents))
-    return common.parent if len(common.name) == len(DATE) and common.name.replace("-", "").isdigit() else common
+def _home(path: Path) -> Path:
+    """The folder that holds a run, its repeats beside it: of folders by date the one above."""
+    parent = path.resolve().parent
+    return parent.parent if len(parent.name) == len(DATE) and parent.name.replace("-", "").isdigit() else parent
 
 
 def _line(name: str, found: Sequence[Row], known: Sequence[Mapping[str, Figure]], repeats: Repeats) -> Line:
@@ -133,6 +135,8 @@ def _between(name: str, a: Row, x: Figure | None, b: Row, y: Figure | None, repe
     if x is None or y is None or x.unit != y.unit or x.rejected or y.rejected or not math.isfinite(x.value + y.value):
         return None
     value = y.value - x.value
+    if abs(value) <= ROUNDING * max(abs(x.value), abs(y.value)):
+        value = 0.0
     # each end from the two ends of the runs that face it: intervals need not be even
     low = value - math.hypot(y.value - y.low, x.high - x.value)
     high = value + math.hypot(y.high - y.value, x.value - x.low)

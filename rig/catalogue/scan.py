@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rig.catalogue.filter import ALL, Filter
 from rig.catalogue.remembered import Remembered
 from rig.catalogue.row import UNREADABLE, Row, row_of, text
 from rig.core.errors import UsageError
 from rig.runfile import manifest
-from rig.runfile.copies import Seen, Twice, passed_over
+from rig.runfile.copies import Seen, Twice, originals_first, passed_over
 from rig.runfile.doubt import doubt, quick_doubt
 from rig.runfile.listing import Unread, is_run, passed_by, run_folders
 from rig.runfile.process import is_being_made
@@ -20,6 +20,23 @@ from rig.runfile.remains import advice
 
 RUNNING = "running"
 ASKED = ("process", "ring", "files")  # of a manifest, each time anew: what they stand for may have changed
+
+
+class Read(NamedTuple):
+    """A run with what its manifest says that is asked anew each time."""
+
+    row: Row
+    about: dict[str, Any]
+
+    @property
+    def uid(self) -> str:
+        """As the row has it."""
+        return self.row.uid
+
+    @property
+    def path(self) -> Path:
+        """As the row has it."""
+        return self.row.path
 
 
 def runs(root: Path | str, filter: Filter = ALL, twice: Twice = passed_over) -> list[Row]:
@@ -37,15 +54,16 @@ def passing(
     that may not be looked into. Raises UsageError at once."""
     _refuse_no_folder(root)
     found = (_fresh(f"{folder}/{manifest.NAME}") for folder in _folders(str(root), unread))
-    rows = ((_now(row, about), about) for row, about in found)
+    rows = (Read(_now(row, about), about) for row, about in found)
     seen = Seen(twice)
-    return (_doubted(r, about) for r, about in rows if filter.passes(r) and seen.is_new(r))
+    wanted = originals_first(one for one in rows if filter.passes(one.row))
+    return (_doubted(one.row, one.about) for one in wanted if seen.is_new(one.row))
 
 
 def rows(root: str, twice: Twice = passed_over) -> Iterator[Row]:
     """Every run under `root`, or the run that it is, as the disk has it, once; `twice` is told of copies."""
     seen = Seen(twice)
-    return filter(seen.is_new, map(row, _folders(root)))
+    return filter(seen.is_new, originals_first(map(row, _folders(root))))
 
 
 def _folders(root: str, unread: Unread = passed_by) -> Iterator[str]:

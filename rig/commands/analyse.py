@@ -26,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig analyse`."""
     runs_argument(parser)
     parser.add_argument(
-        "--out", type=Path, metavar="FOLDER", help="write results there instead of into the run folders"
+        "-o", "--out", type=Path, metavar="FOLDER", help="write results there instead of into the run folders"
     )
     parser.add_argument(
         "--reference",

@@ -43,11 +43,27 @@ UNITS = {
 
 def ask(control: Path, words: Sequence[str]) -> list[str]:
     """The answer, a line each. Raises UsageError: not understood; NotReady: nobody there, or the twin refuses."""
-    asked = understood(words)
-    answer = TwinHand(str(control)).ask(asked)
-    answer.pop("ok")
+    asked, hand = understood(words), TwinHand(str(control))
+    try:
+        answer = hand.ask(asked, UsageError)
+    except UsageError:
+        there = _as_here(hand.ask({"do": "help"}))
+        if asked["do"] in there or words[0] in there:
+            raise
+        raise UsageError(
+            f"a twin cannot be asked for '{words[0]}'; expected one of {', '.join(sorted(there))}"
+        ) from None
+    if asked["do"] == "help":
+        answer = _as_here(answer)
+    answer.pop("ok", None)
     done = f"SIMULATED: the twin at {control}: {' '.join(words)}"
     return [done, *(f"  {key:14s} {told(key, value)}" for key, value in answer.items())]
+
+
+def _as_here(answer: dict[str, Any]) -> dict[str, Any]:
+    """What a twin can be asked for, by the words that are used here."""
+    here = {name: verb for verb, (name, _) in HAND.items()}
+    return {here.get(key, key): value for key, value in answer.items() if key != "ok"}
 
 
 def told(key: str, value: Any) -> str:

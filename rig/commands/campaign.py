@@ -215,5 +215,8 @@ def overrides_of(args: argparse.Namespace) -> list[str]:
 
 
 def _numbers(text: str) -> list[int]:
-    """For argparse, which makes a sentence of a ValueError."""
-    return [int(part) for part in text.split(",")]
+    """Whole numbers, as a person lists them."""
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected whole numbers, for example 3,7") from None

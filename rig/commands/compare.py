@@ -23,7 +23,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig compare`."""
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders; the others against the first")
     parser.add_argument(
-        "--among", type=Path, metavar="FOLDER", help="where repeats are looked for; default: the folder the runs lie in"
+        "--among",
+        type=Path,
+        metavar="FOLDER",
+        help="where repeats are looked for; default: where the runs lie",
     )
     parser.add_argument("--json", action="store_true", help="the comparison as JSON, schema hdrig.comparison/1")
     parser.add_argument(
@@ -81,9 +84,10 @@ def changed(d: Difference | None, unit: str) -> str:
         return ""
     if d.value == 0:
         return "no difference"
-    sign = "+" if d.value > 0 else ""
+    said = estimate(d.value, (d.low, d.high), unit)
+    sign = "+" if d.value > 0 and not said.startswith("<") else ""
     limit = f"{plain(d.limit, 2)} {unit}" if unit != "1" else plain(d.limit, 2)
-    return f"{sign}{estimate(d.value, (d.low, d.high), unit)}  {SHOWN[d.mark].format(limit=limit)}".rstrip()
+    return f"{sign}{said}  {SHOWN[d.mark].format(limit=limit)}".rstrip()
 
 
 def _how(found: Comparison) -> list[str]:

@@ -15,7 +15,7 @@ from rig.session.observer import Observer
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig demo`."""
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the twin")
-    parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
+    parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -28,15 +28,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="one more that the adapter needs, for example --option host=10.0.0.5 --option port=29536 of socketcand",
     )
-    parser.add_argument("--write", type=Path, metavar="FILE", help="a bench file with what was found, to edit")
+    parser.add_argument(
+        "-o", "--out", "--write", type=Path, metavar="FILE", help="a bench file with what was found, to edit"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Nodes, ports, and the file; exit 3 when a bus was asked for and nobody is on it."""
     from rig.first_bench import adapter_options, scan_bus, scan_ports
 
-    if args.write:
-        _refuse_taken(args.write, args.channel)
+    if args.out:
+        _refuse_taken(args.out, args.channel)
     ports = scan_ports()
     for port in ports:
         print(f"serial  {port.path}: {port.what}" + (f", serial number {port.serial}" if port.serial else ""))
@@ -52,22 +54,22 @@ def run(args: argparse.Namespace) -> int:
     if not nodes:
         where = f"{args.interface} {args.channel} at {args.bitrate} bit/s"
         raise NotReady(f"nobody answers on {where}: wrong bitrate, no termination, no power?")
-    if args.write:
+    if args.out:
         from rig.first_bench import first_bench
 
         text = first_bench(args.interface, args.channel, args.bitrate, nodes, options)
-        with writing(args.write, "--write"):
-            args.write.write_text(text, encoding="utf-8")
-        print(f"wrote {args.write}: replace every number that is assumed, then hdrig doctor --bench {args.write}")
+        with writing(args.out):
+            args.out.write_text(text, encoding="utf-8")
+        print(f"wrote {args.out}: replace every number that is assumed, then hdrig doctor --bench {args.out}")
     return Exit.PASS
 
 
 def _refuse_taken(path: Path, channel: str) -> None:
     if not channel:
-        raise UsageError("--write needs --channel: the drive is found on a CAN bus")
+        raise UsageError("--out needs --channel: the drive is found on a CAN bus")
     if path.exists():
         raise UsageError(f"{path} exists; nothing is overwritten")
-    refuse_unwritable(path.parent, "--write")
+    refuse_unwritable(path.parent)
 
 
 def _plate(node: Found) -> str:

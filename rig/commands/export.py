@@ -16,7 +16,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig export`."""
     runs_argument(parser)
     parser.add_argument("--as", dest="kind", choices=FORMATS, default="csv", help="default: csv, with a row of units")
-    parser.add_argument("--to", type=Path, metavar="PATH", help="file or folder; default: in the run folder")
+    parser.add_argument(
+        "-o", "--out", "--to", type=Path, metavar="PATH", help="file or folder; default: in the run folder"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -25,18 +27,18 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.export import export
     from rig.runfile.run import Run
 
-    if args.to is not None:
-        refuse_unwritable(args.to if args.to.is_dir() or not args.to.suffix else args.to.parent, "--to")
+    if args.out is not None:
+        refuse_unwritable(args.out if args.out.is_dir() or not args.out.suffix else args.out.parent)
 
     folders = expand(args.runs)
-    if len(folders) > 1 and args.to is not None and args.to.suffix and not args.to.is_dir():
-        raise UsageError(f"--to {args.to} is one file, and these are {len(folders)} runs: expected a folder")
+    if len(folders) > 1 and args.out is not None and args.out.suffix and not args.out.is_dir():
+        raise UsageError(f"--out {args.out} is one file, and these are {len(folders)} runs: expected a folder")
 
     def export_one(folder: Path) -> Exit:
         recorded = Run.open(folder)
         refuse_changed(folder, recorded.manifest)
         say_simulated(folder, recorded.manifest)
-        print(export(recorded, args.kind, args.to))
+        print(export(recorded, args.kind, args.out))
         return Exit.PASS
 
     return for_each(folders, export_one)

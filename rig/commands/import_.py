@@ -29,18 +29,28 @@ a mapping file says which column is what, for example:
   unit = "deg"
   sign = -1
 
-mappings that ship, to use by name or to copy from:
+all keys:
 """
+SHIPPED = "\n\nmappings that ship, to use by name or to copy from:\n"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig import`."""
-    parser.epilog = EXAMPLE + "\n".join(f"  {path.stem:16s} {path}" for path in sorted(MAPPINGS.glob("*.toml")))
+    from rig.runfile.importing.channel import QUANTITY
+    from rig.runfile.importing.keys import KEYS
+
+    keys = [f"  {names}\n        {meaning}" for names, meaning in KEYS]
+    keys.append(f"  NAME of a channel: {', '.join(QUANTITY)}, or one of your own")
+    ships = [f"  {path.stem:16s} {path}" for path in sorted(MAPPINGS.glob("*.toml"))]
+    parser.epilog = EXAMPLE + "\n".join(keys) + SHIPPED + "\n".join(ships)
     parser.add_argument("file", type=Path, metavar="FILE", help="CSV, Parquet, MAT, HDF5, MDF4 or TDMS")
     parser.add_argument(
         "--map", required=True, metavar="MAPPING", help="mapping file (TOML), or the name of one that ships"
     )
-    parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where the run folder goes")
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where the run folder goes"
+    )
+    parser.add_argument("--again", action="store_true", help="also where the same file was imported there before")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -50,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.runfile.manifest import read
 
     refuse_unwritable(args.out)
-    folder = import_file(args.file, args.map, args.out, software())
+    folder = import_file(args.file, args.map, args.out, software(), args.again)
     about = read(folder)
     simulated = "SIMULATED " if about["backend"] == "sim" else ""
     over = f", {about['duration']:.4g} s" if about.get("duration") else ""

@@ -7,11 +7,15 @@ import json
 import sys
 from pathlib import Path
 
-from rig.catalogue.filter import ORDERS, STATUSES, VERDICTS, asked
+from rig.catalogue.filter import ALL, ORDERS, STATUSES, VERDICTS, asked
 from rig.catalogue.row import UNREADABLE, Row
 from rig.catalogue.scan import passing
 from rig.commands.folders import say_twice, say_unread
+from rig.core.errors import UsageError
 from rig.core.in_order import in_order
+from rig.core.kinds import KINDS
+from rig.core.nearest import nearest
+from rig.procedures import CATALOGUE
 
 HEAD = (
     f"{'started (UTC)':19s} {'procedure':18s} {'gear':16s} {'status':12s} {'duration':>9s} {'verdict':12s} "
@@ -46,9 +50,20 @@ def run(args: argparse.Namespace) -> int:
             say(HEAD)
         tell(line)
         count += 1
+    if not count and args.procedure:
+        _refuse_unknown(args.procedure, args.root)
     if not count and not args.json:
         print(f"no such runs in {args.root}")
     return 0
+
+
+def _refuse_unknown(procedure: str, root: Path) -> None:
+    """Raises UsageError when no procedure, and no run below `root`, is called so: a run of somebody else may have any
+    name, so that it is looked for among them first."""
+    there = {row.procedure for row in passing(root, ALL) if row.procedure}
+    known = {name.replace("_", "-") for name in (*CATALOGUE, *KINDS, *there)}
+    if (said := procedure.replace("_", "-")) not in known:
+        raise UsageError(f"there is no procedure '{procedure}'; {nearest(said, known)}")
 
 
 def _json(row: Row) -> str:

@@ -23,7 +23,7 @@ def bench_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--clock", choices=["virtual", "wall"], help="virtual: as fast as it goes (twin only); wall: real time"
     )
-    parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
+    parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
     parser.add_argument("--note", default="", metavar="TEXT", help="kept in the run's manifest")
 
 

@@ -66,7 +66,9 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
         result, simulated = analyse_folder(done.folder, done.folder)
     except KeyboardInterrupt:
         show.say(f"the run is complete in {done.folder}; hdrig analyse makes its report")
-        raise
+        if not done.ending.exit:
+            raise
+        return show.leave(done.ending.exit)  # the run had ended so before anybody interrupted its report
     except UsageError as error:  # a disk that filled up, as it is: nothing of the run is lost
         raise DataError(f"the run is complete in {done.folder}, its report is not: {error}") from None
     show.result(done.folder, as_json(result), simulated)

@@ -21,7 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bench", default="twin", metavar="FILE", help="offered first; connected by a click")
     parser.add_argument("--host", default="127.0.0.1", metavar="ADDRESS", help="default 127.0.0.1: this machine alone")
     parser.add_argument("--port", type=int, default=8765, metavar="N", help="default 8765; 0: a free one")
-    parser.add_argument("--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
+    parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
     parser.add_argument("--view", choices=("none", "web"), default="none", help="the live view as a part of the page")
     parser.add_argument(
         "--name", action="append", default=[], metavar="NAME", help="what a proxy that ends TLS calls this server"

@@ -45,7 +45,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--start", type=float, nargs="+", metavar="N·m", help="motor torques switched on at rest: whether it runs up"
     )
     parser.add_argument("--load", type=float, default=0.0, metavar="N·m", help="on the output, + drives it forward")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="the first one's figure, as .svg or .html")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="the first one's figure, as .svg or .html")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -27,7 +27,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", type=Path, metavar="FILE", help="write trace.json there too; keys in rig/analysis/tracing/REPORT.md"
     )
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write there instead of into the campaign")
+    parser.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="write there instead of into the campaign")
     parser.add_argument(
         "--hold-out",
         action="append",

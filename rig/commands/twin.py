@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import signal
 import sys
+import threading
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rig.bench import read, twin_parameters
+from rig.bench import Bench, read, twin_parameters
 from rig.commands.ask_twin import HELP, ask
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
 from rig.process.realtime import RealTime
 
+if TYPE_CHECKING:
+    from sim.wire.assembly import Assembly
+    from sim.wire.process import Process
+
+USUAL = 3.0  # s that a start takes at most where nothing has to be compiled
+SLOW = "starting: the plant is being compiled, as on the first start on a machine; ten seconds or more"
 FOLDER = Path("/tmp/hdrig-twin")
 MOST_LINES = 900.0  # lines/s, 12 bytes each, that a line of 115 200 baud carries
 MOTOR_CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin's plant has no current
@@ -56,15 +66,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"{bench.source} has no [twin] section: there is nothing to simulate")
     refuse_no_place(args)
     print(f"SIMULATED: bench '{bench.file.name}' is the twin, seed {bench.file.twin.seed}, in real time", flush=True)
-    print("starting: the first start on a machine compiles the plant, ten seconds or more", file=sys.stderr)
-    from sim.wire.assembly import Assembly
-    from sim.wire.motor import Rating
-    from sim.wire.process import Doors, Process
-
-    rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
-    assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
-    doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate, args.odrive)
-    process = Process(assembly, doors)
+    with told_if_slow():
+        assembly, process = started(bench, args)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.reactor.stop())
     assembly.agenda.at(args.seconds, process.reactor.stop)
@@ -74,6 +77,31 @@ def run(args: argparse.Namespace) -> int:
     with RealTime():  # devices answer in time whatever else runs on the machine
         process.run()
     return Exit.PASS
+
+
+@contextlib.contextmanager
+def told_if_slow() -> Iterator[None]:
+    """A start that takes longer than usual says on stderr why."""
+    timer = threading.Timer(USUAL, print, (SLOW,), {"file": sys.stderr, "flush": True})
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def started(bench: Bench, args: argparse.Namespace) -> tuple[Assembly, Process]:
+    """The rig behind its buses and lines, ready to run."""
+    from sim.wire.assembly import Assembly
+    from sim.wire.motor import Rating
+    from sim.wire.process import Doors, Process
+
+    assert bench.file.twin is not None
+    rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
+    assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
+    doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate, args.odrive)
+    return assembly, Process(assembly, doors)
 
 
 def refuse_no_place(args: argparse.Namespace) -> None:

@@ -22,7 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     where.add_argument("--web", action="store_const", const="web", dest="where", help="a page, until Ctrl-C")
     where.add_argument("--native", action="store_const", const="native", dest="where", help="a window, until it closes")
     where.add_argument(
-        "--out", type=Path, metavar="FILE", help="a recording in this file; default: view.rrd in the run folder"
+        "-o", "--out", type=Path, metavar="FILE", help="a recording in this file; default: view.rrd in the run folder"
     )
 
 
@@ -83,6 +83,7 @@ def _show(folder: Path, where: str) -> int:
         canvas = RerunCanvas.to_viewer(said, server.url, *WHOLE)
         draw(recorded, said, canvas)
         canvas.flush(60.0)  # s: 10 MB to a process on this machine
+        canvas.close()  # the server has it all; the SDK would complain in lines of its own once that is gone
         _say(Pages(server.port, lambda: server.starts).url if where == "web" else "")
         with _until_asked():
             while server.runs:

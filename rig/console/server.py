@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import signal
 import socket
 import sys
@@ -111,9 +112,14 @@ def _listen(host: str, port: int) -> socket.socket:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         made = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)  # named, or asyncio leaves Nagle on
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        made.bind((host, port))
-        made.listen(128)
+        try:
+            made.bind((host, port))
+            made.listen(128)
+        except OSError:
+            made.close()
+            raise
     except OSError as error:
-        why = f"nothing can listen at {host}, port {port}: {error.strerror}; --port 0 finds a free one"
-        raise NotReady(why) from None
+        why = f"nothing can listen at {host}, port {port}: {error.strerror}"
+        other = "; --port 0 finds a free one" if error.errno in (errno.EADDRINUSE, errno.EACCES) else ""
+        raise NotReady(f"{why}{other}") from None
     return made

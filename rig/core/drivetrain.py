@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+RATIOS = (1e-3, 1e5)  # no gear's is outside
+
 
 @dataclass(frozen=True)
 class Drivetrain:

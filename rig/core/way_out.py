@@ -23,8 +23,20 @@ def ending_in_a_sentence(act: Callable[[], int]) -> int:
         if isinstance(error, PermissionError) and error.filename is not None:  # a place nobody may look into
             print(f"hdrig: {os.fsdecode(error.filename)} cannot be used: {error.strerror}", file=sys.stderr)
             return int(Exit.USAGE)
+        if isinstance(error, FileNotFoundError) and _is_nowhere():
+            print("hdrig: the current folder no longer exists; change to one that does", file=sys.stderr)
+            return int(Exit.USAGE)
         print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
         return int(Exit.INTERNAL)
+
+
+def _is_nowhere() -> bool:
+    """True when somebody removed the folder this process is in."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return True
+    return False
 
 
 def _where(error: Exception) -> str:

@@ -16,7 +16,7 @@ def check_devices(bench: Bench) -> list[Finding]:
     try:
         identities = instruments.connect()
     except HdrigError as why:
-        return [Finding("devices", Health.BAD, str(why))]
+        return [Finding("devices", Health.BAD, "; ".join(filter(None, (str(why), bench.twin_not_there))))]
     found = identified(identities)
     found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]
     guarded = getattr(instruments.drive, "guarded", None)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from rig.core.errors import DataError, HdrigError, said_of
-from rig.runfile.copies import links_last, once
+from rig.runfile.copies import once
 from rig.runfile.misfits import notes
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     from rig.analysis.motion.held import not_held
 
     copies: list[str] = []
-    runs = _experiments(once(opened(links_last(folders), say), lambda f, why: copies.append(left_out(f.name, why))))
+    runs = _experiments(once(opened(folders, say), lambda f, why: copies.append(left_out(f.name, why))))
     _refuse_mixed(_where(folders), runs)
     found = [r for one in runs if (r := recording(one)) is not None]
     out = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}

@@ -12,6 +12,7 @@ SPACE = "\u00a0"  # no-break space between a number and its unit
 MINUS = "\u2212"
 ABSENT = "–"
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+LEAST_SHARE = 0.01  # %: a smaller share without an interval is rounding of what it was computed from
 COMPANION = {  # the second unit a test engineer expects beside the first
     "arcsec": ("arcmin", 1 / 60),
     "N·m/rad": ("N·m/arcmin", math.pi / 10800),
@@ -57,7 +58,8 @@ def quantity(value: float, half: float, unit: str = "") -> str:
     if not math.isfinite(value):
         return ABSENT
     if not (math.isfinite(half) and half > max(1e-12 * abs(value), 1e-290)):
-        return join(plain(value), unit)
+        small = unit == "%" and 0.0 < abs(value) < LEAST_SHARE
+        return join(f"< {LEAST_SHARE:g}" if small else plain(value), unit)
     size = max(abs(value), half)
     if 1e-3 <= size < 1e6:
         decimals = places(half)

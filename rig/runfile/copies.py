@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -53,10 +53,28 @@ class Seen:
         return False
 
 
+def originals_first(found: Iterable[T]) -> Iterator[T]:
+    """The runs as they come, but those last that look like copies: a folder that is not called by the run's uid, as
+    ours are, then links; which of the folders of a run counts is the same for every verb by this."""
+    later = []
+    for run in found:
+        if _is_called_by_uid(run) and not run.path.is_symlink():
+            yield run
+        else:
+            later.append(run)
+    yield from sorted(later, key=lambda run: (run.path.is_symlink(), str(run.path)))
+
+
+def _is_called_by_uid(run: Known) -> bool:
+    """A run without a uid is known by its place alone, and no copy."""
+    return not run.uid or run.path.name.endswith(f"-{run.uid[:4]}")
+
+
 def once(found: Sequence[T], twice: Twice = passed_over) -> list[T]:
-    """The first of `found` for each run."""
+    """Each run once, its original where that is among them, in the order in which they were first found."""
     seen = Seen(twice)
-    return [run for run in found if seen.is_new(run)]
+    taken = {known_by(run): run for run in originals_first(found) if seen.is_new(run)}
+    return [taken[known] for known in dict.fromkeys(map(known_by, found))]
 
 
 def links_last(folders: Sequence[Path]) -> list[Path]:

@@ -37,7 +37,7 @@ def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
 
 
 def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:
-    """Folders with a manifest, down to ./runs/date/run, links after folders; hidden ones are passed by."""
+    """Folders with a manifest, down to ./runs/date/run, by name, links after folders; hidden ones are passed by."""
     try:
         entries = os.scandir(root)
     except OSError as error:
@@ -58,14 +58,8 @@ def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterat
                 yield from run_folders(entry.path, depth - 1, unread)
 
 
-def _links_last(entries: Iterable[os.DirEntry[str]]) -> Iterator[os.DirEntry[str]]:
-    links = []
-    for entry in entries:
-        if entry.is_symlink():
-            links.append(entry)
-        else:
-            yield entry
-    yield from links
+def _links_last(entries: Iterable[os.DirEntry[str]]) -> list[os.DirEntry[str]]:
+    return sorted(entries, key=lambda entry: (entry.is_symlink(), entry.name))
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

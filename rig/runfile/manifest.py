@@ -28,10 +28,19 @@ STRINGS = ("backend", "status", "exit_reason", "started_utc", "ring", "uid")
 Manifest = dict[str, Any]
 
 
+class Damaged(UsageError):
+    """A manifest that holds no JSON: empty, cut short or overwritten."""
+
+    def __init__(self, path: Path, what: str) -> None:
+        super().__init__(f"{path} {what}; hdrig recover makes it anew where bench.toml and samples lie beside it")
+        self.what = what  # "is empty (0 bytes)"
+
+
 def read(folder: Path) -> Manifest:
     """The manifest of `folder`; a null is as good as an absent key.
 
-    Raises UsageError when there is none, it is not JSON of this schema, or a key holds what it cannot.
+    Raises UsageError when there is none, it is JSON of another schema, or a key holds what it cannot; Damaged when it
+    is not JSON.
     """
     path = folder / NAME
     try:
@@ -41,7 +50,8 @@ def read(folder: Path) -> Manifest:
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}") from error
     except ValueError as error:
-        raise UsageError(f"{path} is not JSON: {error}") from error
+        what = f"is not JSON: {error}" if path.stat().st_size else "is empty (0 bytes)"
+        raise Damaged(path, what) from error
     if not isinstance(found, dict):
         raise UsageError(f'{path} is {_kind(found)}, expected an object with schema "{SCHEMA}"')
     if found.get("schema") != SCHEMA:

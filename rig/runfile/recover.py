@@ -13,6 +13,7 @@ from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events, read_events
 from rig.runfile.finalise import Closed, StepHook, finalise, is_closed, refuse_stranger
 from rig.runfile.process import Process, lives
+from rig.runfile.rebuild import rebuild
 from rig.runfile.remains import ring_of, to_recover_from
 from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.run import ratio_of
@@ -35,9 +36,9 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
 
     Can be interrupted and called again. Raises NotReady while the program that makes the run, or its recorder, lives;
     UsageError when it is no run folder; DataError when it cannot be written, or when the samples of a closed run are
-    gone or changed and the journal cannot stand in for them.
+    gone or changed and the journal cannot stand in for them. A manifest that is not JSON is rebuilt first.
     """
-    about = manifest.read(folder)
+    about, rebuilt = _manifest(folder)
     rows, seconds = about.get("rows", 0), about.get("duration", 0.0)
     if is_closed(about):
         if not samples_as_closed(folder, about):
@@ -49,7 +50,7 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
     if _is_whole(folder, about):
         _refuse_unreadable(folder)
         done = f"{folder.name} has its {archive.NAME}, and neither a journal nor a ring: nothing to recover"
-        return Recovery(rows, seconds, False, done)
+        return Recovery(rows, seconds, bool(rebuilt), f"{done}{rebuilt}")
     ratio_of(folder, about)
     _refuse_empty(folder, about)
     _refuse_living(folder, about)
@@ -60,7 +61,16 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
             with EventLog(folder) as events:
                 events.write("recover", reason)
     closed = finalise(folder, "interrupted", reason, step=step)
-    return Recovery(closed.rows, closed.seconds, True, _told(folder, closed))
+    return Recovery(closed.rows, closed.seconds, True, f"{_told(folder, closed)}{rebuilt}")
+
+
+def _manifest(folder: Path) -> tuple[manifest.Manifest, str]:
+    """The manifest, and what is to be said where it had to be rebuilt."""
+    try:
+        return manifest.read(folder), ""
+    except manifest.Damaged as damage:
+        about = rebuild(folder, damage)
+        return about, f"; {about['exit_reason']}"
 
 
 def _is_whole(folder: Path, about: Mapping[str, Any]) -> bool:

@@ -7,9 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.core.channels import Flag
+from rig.core.drivetrain import RATIOS
 from rig.core.errors import HdrigError
+from rig.core.numbers import number
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
@@ -37,6 +40,7 @@ def verify(folder: Path) -> list[Finding]:
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
     findings += [Finding("warning", "manifest", f"{manifest.NAME}: {said}") for said in misfits_of_ours(about)]
+    findings += _ratio(about)
     try:
         run = Run.open(folder)
     except HdrigError as error:
@@ -58,6 +62,14 @@ def _status(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
         yield Finding("warning", "status", f"process {about['process']['pid']} is still making this run")
     else:
         yield Finding("error", "status", f"the run was never closed; {advice(folder, about)}")
+
+
+def _ratio(about: Mapping[str, Any]) -> Iterator[Finding]:
+    """A number that no gear has; one that is none is refused where the run is opened."""
+    ratio = number((about.get("gear") or {}).get("ratio"))
+    if ratio > 0.0 and not RATIOS[0] <= ratio <= RATIOS[1]:
+        expected = f"expected {RATIOS[0]:g} to {RATIOS[1]:g}"
+        yield Finding("error", "manifest", f"{manifest.NAME}: gear.ratio is {ratio:g}, {expected}")
 
 
 def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
@@ -103,7 +115,8 @@ def _time(run: Run) -> Iterator[Finding]:
 
 
 def _gaps(run: Run) -> Iterator[Finding]:
-    """Steps of `t` longer than 1.5 periods, by why: told by the loop, a late tick made up for, or a lost row."""
+    """Steps of `t` longer than 1.5 periods, by why: told by the loop, a late tick made up for, a stale reading, or a
+    lost row."""
     t = run.column("t")
     if t is None or t.size < 3:
         return
@@ -116,11 +129,13 @@ def _gaps(run: Run) -> Iterator[Finding]:
     if _every_tick_has_its_row(run):
         late = ~told  # nothing is gone: the machine woke late, less than the one period that the loop flags
     late |= ~told & (dt[gaps] < LOST * period)
+    stale = ~told & ~late & _read_late(run, gaps, dt, period)
     unexplained = "warning" if _is_foreign(run.manifest) else "error"  # no loop of ours, no promise
     for level, found, why in (
-        ("warning", gaps[told], "flagged by the loop"),
+        ("warning", gaps[told], "flagged by the loop: it skipped ticks there, or had no new motor angle"),
         ("warning", gaps[late], "a tick came late, no row is gone"),
-        (unexplained, gaps[~told & ~late], "unexplained"),
+        ("warning", gaps[stale], "a stale reading and then a fresh one (their `age`), no row is gone"),
+        (unexplained, gaps[~told & ~late & ~stale], "unexplained"),
     ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])
@@ -132,6 +147,15 @@ def _gaps(run: Run) -> Iterator[Finding]:
 def _every_tick_has_its_row(run: Run) -> bool:
     """The loop counted its ticks, and as many rows are here."""
     return bool(run.rows) and run.timing.get("ticks") == run.rows
+
+
+def _read_late(run: Run, gaps: npt.NDArray[np.intp], dt: Array, period: float) -> npt.NDArray[np.bool_]:
+    """Of the steps of `t` [s] behind the rows `gaps` those between neighbouring ticks: `t` is when an angle was
+    latched, `t` and `age` together when its row was made; after a stall a fresh reading may follow an old one."""
+    age = run.column("age")
+    if age is None:
+        return np.zeros(gaps.size, dtype=bool)
+    return np.asarray(dt[gaps] + age[gaps + 1] - age[gaps] <= GAP * period)
 
 
 def _made_up_for(t: Array, i: int, period: float) -> bool:

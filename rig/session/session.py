@@ -56,7 +56,12 @@ class Session:
         self.log = SessionLog(self._run_time, self.observer)
         self.instruments = self.bench.open(self.clock)
         self.supervisor = Supervisor(self.log.announce, self.instruments.causes)
-        self.identities = self.instruments.connect()
+        try:
+            self.identities = self.instruments.connect()
+        except NotReady as error:
+            if missing := self.bench.twin_not_there:
+                error.add_note(missing)
+            raise
         for device in self.instruments.devices:
             for remark in device.remarks:
                 self.log.event("note", remark)

@@ -11,7 +11,7 @@ import inspect
 import json
 import math
 import socket
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, final
 
@@ -22,19 +22,28 @@ from sim.wire.reactor import Reactor, Source
 Answer = Mapping[str, Any] | None
 Verb = Callable[..., Answer]
 LONGEST_LINE = 65536  # bytes
+KINDS = {"str": "NAME", "bool": "true|false"}  # what a verb is given, by its annotation; all else is a number
 
 
 def describe(verbs: Mapping[str, Verb]) -> dict[str, str]:
-    """Each verb with its arguments and what it does."""
+    """Each verb with what it is given, in words, and what it does."""
     lines = {}
     for name, verb in verbs.items():
         text = inspect.getdoc(verb) or ""
-        lines[name] = f"{inspect.signature(verb)}: {text.splitlines()[0] if text else ''}"
+        first = text.splitlines()[0] if text else ""
+        lines[name] = f"{given}: {first}" if (given := _given(verb)) else first
     return lines
 
 
+def _given(verb: Verb) -> str:
+    """ "device=NAME by=NUMBER [count=NUMBER]": what may be left out stands in brackets."""
+    keys = inspect.signature(verb).parameters.values()
+    said = [(key, f"{key.name}={KINDS.get(str(key.annotation), 'NUMBER')}") for key in keys]
+    return " ".join(word if key.default is key.empty else f"[{word}]" for key, word in said)
+
+
 def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
-    """Do what one line asks; the answer as an object."""
+    """Do what one line asks; the answer as an object, with `usage` where the line was not understood."""
     try:
         asked = json.loads(line)
         if not isinstance(asked, dict) or "do" not in asked:
@@ -42,13 +51,28 @@ def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
         name = asked.pop("do")
         if name not in verbs:
             raise UsageError(f"no command '{name}'; expected one of {', '.join(sorted(verbs))}")
-        known = inspect.signature(verbs[name])
-        known.bind(**asked)
+        refuse_other_keys(name, verbs[name], asked)
+        known = inspect.signature(verbs[name]).parameters
         for key, value in asked.items():
-            refuse_no_number(key, value, known.parameters[key].default)
+            refuse_no_number(key, value, known[key].default)
         return {"ok": True, **(verbs[name](**asked) or {})}
+    except UsageError as error:
+        return {"ok": False, "error": str(error), "usage": True}
     except (HdrigError, ValueError, TypeError, OverflowError) as error:
         return {"ok": False, "error": str(error)}
+
+
+def refuse_other_keys(name: str, verb: Verb, asked: Mapping[str, Any]) -> None:
+    """Raises UsageError where a key is missing, with what there is to choose from, or there is one too many."""
+    known = inspect.signature(verb).parameters
+    choices: Mapping[str, Iterable[str]] = getattr(getattr(verb, "__self__", None), "choices", dict)()
+    missing = [key for key, one in known.items() if one.default is one.empty and key not in asked]
+    if missing:
+        words = [f"{key} ({', '.join(choices[key]) or 'there is none'})" if key in choices else key for key in missing]
+        raise UsageError(f"{name} needs {' and '.join(words)}, as in {name} {_given(verb)}")
+    for key in asked:
+        if key not in known:
+            raise UsageError(f"{name} has no '{key}'; expected {_given(verb) or 'nothing more'}")
 
 
 def refuse_no_number(key: str, value: object, usual: object) -> None:

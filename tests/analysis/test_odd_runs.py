@@ -84,6 +84,14 @@ def test_a_run_of_which_nothing_could_be_measured_is_inconclusive(procedure: str
     assert told({"t": np.arange(100.0)}, {}, procedure).verdict is Verdict.INCONCLUSIVE
 
 
+def test_a_run_that_ended_before_its_first_sample_is_said_to_have_no_rows() -> None:
+    manifest = {"schema": "hdrig.run/1", "gear": {"ratio": 50}, "procedure": "kinematic_error", "rows": 0}
+    said = analyse(MadeRun({}, {**manifest, "status": "stopped", "exit_reason": "stopped by the operator"}))
+    assert said.verdict is Verdict.INCONCLUSIVE
+    assert "The run has no rows, it ended before its first sample" in said.sentence
+    assert "no motor angle" in analyse(MadeRun({}, {**manifest, "rows": 5})).sentence
+
+
 @pytest.mark.parametrize("procedure", ["kinematic_error", "constant_torque", "constant_speed"])
 def test_a_run_meant_to_turn_that_made_no_whole_turn_is_inconclusive(procedure: str) -> None:
     t = np.arange(0, 2, 1e-3)

@@ -45,6 +45,9 @@ def test_a_bus_that_is_missing_leaves_no_folder(
     assert main([*verb, "--bench", str(no_bus), "--out", str(out)]) == 3
     said = capsys.readouterr()
     assert "no CAN bus at" in said.err
+    assert f"start `hdrig twin --serial {tmp_path}/nowhere/serial` in another terminal first" in said.err
+    if verb != ["run", "kinematic-error"]:
+        assert "no run was made, so the campaign folder" in said.err
     assert "goes on with it" not in said.err
     assert list(out.rglob("*")) == []
 

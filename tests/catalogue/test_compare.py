@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,12 @@ import numpy as np
 import pytest
 
 from rig.catalogue import compare, trend
-from rig.catalogue.compare import Mark
+from rig.catalogue.compare import Difference, Mark
 from rig.catalogue.figures import Figure, common_label, figures
 from rig.catalogue.sameness import beside
 from rig.catalogue.scatter import Scatter, between, scatter
 from rig.cli import main
+from rig.commands.compare import changed, shown
 from rig.core.errors import UsageError
 from tests.catalogue.folders import run
 
@@ -68,6 +70,21 @@ def test_runs_at_other_conditions_or_of_another_origin_are_no_repeats_and_it_is_
     assert d.mark is Mark.UNKNOWN
     assert "is of gear SN2" in found.remarks[0]
     assert "speed 9.6 rpm and 300 rpm" in found.remarks[1]
+
+
+def test_rounding_is_no_difference(tmp_path: Path) -> None:
+    a, b = many(tmp_path, [0.9579, 0.9579 * (1 + 1e-11)], DAYS[0])
+    d = compare([a, b]).lines[0].differences[1]
+    assert d is not None
+    assert (d.value, changed(d, "%")) == (0.0, "no difference")
+
+
+def test_a_share_far_below_what_counts_has_no_powers_of_ten() -> None:
+    rounding = Difference(-6.654e-11, math.nan, math.nan, math.nan, Mark.UNKNOWN, "")
+    assert changed(rounding, "%").replace("\u00a0", " ") == "< 0.01 %  reproducibility not known"
+    assert changed(replace(rounding, value=1e-3), "%").startswith("< 0.01")
+    assert changed(replace(rounding, value=0.02), "%").startswith("+0.02")
+    assert shown(Figure("x", "x", 2e-12, "%", math.nan, math.nan)).replace("\u00a0", " ") == "< 0.01 %"
 
 
 def test_two_repeats_do_not_judge_themselves(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.catalogue import compare, trend
+from rig.catalogue import compare, runs, trend
 from rig.cli import main
 from rig.core.errors import UsageError
 from tests.catalogue.folders import run
@@ -57,3 +57,40 @@ def test_runs_without_a_uid_are_told_apart_by_where_they_are(tmp_path: Path, twi
     folders = [run(tmp_path, "2026-11-21", k, uid="") for k in range(2)]
     (tmp_path / "b-link").symlink_to(folders[0])
     assert len(trend(tmp_path, "peak-to-peak").copies) == 3
+
+
+@pytest.fixture
+def copied(tmp_path: Path) -> tuple[Path, Path]:
+    """A run of ours and a copy beside it whose name comes first."""
+    made = run(tmp_path, "2026-11-20", 0, 90.0, uid="3f9c0123")
+    original = made.rename(made.parent / "0147-kinematic-error-SN1-3f9c")
+    copy = made.parent / "0000-copy"
+    shutil.copytree(original, copy)
+    return original, copy
+
+
+def test_of_a_copied_run_every_verb_takes_the_original(
+    tmp_path: Path, copied: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    original, copy = copied
+    run(tmp_path, "2026-11-20", 1, 95.0)
+    assert main(["list", str(tmp_path), "--gear", "SN1", "--json"]) == 0
+    told = capsys.readouterr()
+    assert (str(original) in told.out, str(copy) in told.out) == (True, False)
+    assert f"left out: {copy}: it is the same run as {original.name}" in told.err
+    assert trend(tmp_path, "peak-to-peak").series[0].spots[0].row.path == original
+    assert runs(tmp_path)[0].path == original
+
+
+def test_the_original_takes_the_place_of_its_copy(copied: tuple[Path, Path]) -> None:
+    original, copy = copied
+    other = run(original.parents[1], "2026-11-20", 1, 95.0)
+    assert [row.path for row in compare([copy, other, original]).rows] == [original, other]
+
+
+def test_repeats_are_looked_for_where_the_runs_lie_and_nowhere_beyond(tmp_path: Path) -> None:
+    a, b = run(tmp_path / "a", "2026-11-20", 0, 90.0), run(tmp_path / "b", "2026-11-20", 1, 95.0)
+    run(tmp_path / "c", "2026-11-20", 2, 91.0), run(tmp_path / "c", "2026-11-20", 3, 92.0)
+    assert "no repeats" in compare([a, b]).lines[0].differences[1].how  # type: ignore[union-attr]
+    run(tmp_path / "a", "2026-11-21", 4, 91.0), run(tmp_path / "b", "2026-11-21", 5, 92.0)
+    assert "among 2 repeats" in compare([a, b]).lines[0].differences[1].how  # type: ignore[union-attr]

@@ -54,6 +54,19 @@ def test_a_run_folder_lists_itself_as_for_every_other_verb(tmp_path: Path, capsy
     assert str(folder) in capsys.readouterr().out
 
 
+def test_a_procedure_there_is_not_is_refused_with_what_there_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run(tmp_path, "2026-11-18", procedure="spin_up")
+    for known in ("spin-up", "spin_up", "friction", "load-sweep"):
+        assert main(["list", str(tmp_path), "--procedure", known]) == 0
+    assert capsys.readouterr().err == ""
+    assert main(["list", str(tmp_path), "--procedure", "foo"]) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith("hdrig: there is no procedure 'foo'; expected one of ")
+    assert ("spin-up" in said.err, "friction" in said.err, said.out) == (True, True, "")
+
+
 @pytest.mark.parametrize("words", [{"verdict": "pas"}, {"status": "done"}, {"sort": "age"}, {"since": "yesterday"}])
 def test_a_word_there_is_not_is_refused_with_what_there_is(tmp_path: Path, words: dict[str, str]) -> None:
     with pytest.raises(UsageError, match=r"expected|did you mean"):

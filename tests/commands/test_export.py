@@ -16,10 +16,10 @@ def test_several_runs_do_not_go_into_one_file_and_nothing_is_written(
 ) -> None:
     runs = [str(made_run(tmp_path / name)) for name in ("one", "two")]
     one = tmp_path / "x.csv"
-    assert main(["export", *runs, "--as", "csv", "--to", str(one)]) == 2
-    assert f"--to {one} is one file, and these are 2 runs: expected a folder" in capsys.readouterr().err
+    assert main(["export", *runs, "--as", "csv", "--out", str(one)]) == 2
+    assert f"--out {one} is one file, and these are 2 runs: expected a folder" in capsys.readouterr().err
     assert not one.exists()
-    assert main(["export", *runs, "--as", "csv", "--to", str(tmp_path / "both")]) == 0
+    assert main(["export", *runs, "--as", "csv", "--out", str(tmp_path / "both")]) == 0
 
 
 @pytest.mark.parametrize("command", ["export", "view"])

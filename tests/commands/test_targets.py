@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+import importlib
 import json
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import pytest
 
 from rig.bench import read
 from rig.cli import main
+from rig.commands import CATALOGUE
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
 from rig.doctor.disk import check_disk
@@ -30,7 +33,7 @@ VERBS = {
     "close-loop": ["close-loop", "--out"],
     "import": ["import", "x.csv", "--map", "lara8", "--out"],
     "analyse": ["analyse", "RUN", "--out"],
-    "export": ["export", "RUN", "--to"],
+    "export": ["export", "RUN", "--out"],
     "reproduce": ["reproduce", "RUN", "--out"],
     "trace": ["trace", "RUN", "--out"],
     "identify": ["identify", "RUN", "-o"],
@@ -82,15 +85,32 @@ def test_a_gear_file_for_a_folder_that_is_not_there_is_not_worked_for(
     assert "identify:" not in said.err  # nothing was thought about
 
 
-@pytest.mark.parametrize("verb", [["tune"], ["devices", "--channel", "can0"]])
+@pytest.mark.parametrize("verb", [["tune", "--write"], ["devices", "--channel", "can0", "--out"]])
 def test_a_bench_file_that_could_not_be_written_is_not_worked_for(
     verb: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main([*verb, "--write", "/proc/gains.toml"]) == Exit.USAGE
+    assert main([*verb, "/proc/gains.toml"]) == Exit.USAGE
     said = capsys.readouterr()
     assert "cannot write /proc" in said.err
-    assert said.err.endswith("name another place with --write\n")
+    assert said.err.endswith(f"name another place with {verb[-1]}\n")
     assert said.out == ""
+
+
+@pytest.mark.parametrize("verb", CATALOGUE)
+def test_where_to_write_is_called_alike_by_every_verb(verb: str) -> None:
+    parser = argparse.ArgumentParser()
+    importlib.import_module(CATALOGUE[verb][0]).arguments(parser)
+    options = next((a.option_strings for a in parser._actions if "--out" in a.option_strings), None)
+    assert options is None or "-o" in options
+    assert options is not None or not {"export", "devices"} & {verb}
+
+
+@pytest.mark.parametrize(("verb", "former"), [("export", "--to"), ("devices", "--write")])
+def test_former_names_still_mean_the_same(verb: str, former: str) -> None:
+    parser = argparse.ArgumentParser()
+    importlib.import_module(CATALOGUE[verb][0]).arguments(parser)
+    words = ["x"] if verb == "export" else []
+    assert parser.parse_args([*words, former, "there"]).out == Path("there")
 
 
 def test_what_is_tried_leaves_nothing(tmp_path: Path) -> None:

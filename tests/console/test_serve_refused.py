@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
 
 import pytest
@@ -24,3 +25,13 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path, capsys: pytest.
 def test_a_folder_that_takes_no_run_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", "--port=0", "--out", "/proc"]) == 2  # it is there, and takes no file, of nobody
     assert "cannot write /proc: " in capsys.readouterr().err
+
+
+def test_another_port_is_advised_where_the_port_is_taken_and_not_where_the_address_is_not_ours(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        assert main(["serve", f"--port={taken.getsockname()[1]}", "--out", str(tmp_path)]) == 3
+    assert "Address already in use; --port 0 finds a free one" in capsys.readouterr().err
+    assert main(["serve", "--host=192.0.2.1", "--out", str(tmp_path)]) == 3  # of RFC 5737: nobody has it
+    assert "nothing can listen at 192.0.2.1, port 8765: Cannot assign requested address\n" in capsys.readouterr().err

@@ -82,6 +82,12 @@ def test_one_changed_byte_of_any_file_is_found(tmp_path: Path, name: str) -> Non
     assert ("hashes", f"{name} is not what it was: its SHA-256 differs from the manifest's") in found(folder)
 
 
+def test_a_ratio_no_gear_has_is_found(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    manifest.update(folder, gear={"ratio": 1e300})
+    assert found(folder) == [("manifest", "manifest.json: gear.ratio is 1e+300, expected 0.001 to 100000")]
+
+
 def test_a_missing_file_is_found(tmp_path: Path) -> None:
     folder = closed(tmp_path)
     (folder / "timing.json").unlink()
@@ -155,6 +161,32 @@ def test_a_late_tick_that_was_made_up_for_is_no_lost_row(tmp_path: Path, row: in
     assert found(folder) == []
     ((_, sentence),) = found(folder, "warning")
     assert "1 gap longer than 1.5 periods of 1 ms, a tick came late, no row is gone; the longest is 1.7 ms" in sentence
+
+
+def stale_before_the_gap(age: np.ndarray[Any, Any]) -> None:
+    """Row 149 was made 3 ms after what it holds was latched, the next one at once."""
+    age[149] += 3e-3
+
+
+def test_a_gap_between_a_stale_reading_and_a_fresh_one_is_a_warning(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+    with_column(folder, "t", late, journal=True)
+    with_column(folder, "age", stale_before_the_gap)
+    assert found(folder) == []
+    ((_, sentence),) = found(folder, "warning")
+    assert "a stale reading and then a fresh one (their `age`), no row is gone; the longest is 4 ms" in sentence
+
+
+def test_a_stale_reading_explains_no_gap_longer_than_its_age(tmp_path: Path) -> None:
+    folder = closed(tmp_path)
+
+    def later(t: np.ndarray[Any, Any]) -> None:
+        t[150:] += 4e-3
+
+    with_column(folder, "t", later, journal=True)
+    with_column(folder, "age", stale_before_the_gap)
+    ((check, sentence),) = found(folder)
+    assert (check, "unexplained" in sentence) == ("gaps", True)
 
 
 @pytest.mark.parametrize("row", [1, 150, 298])

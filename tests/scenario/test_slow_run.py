@@ -93,7 +93,7 @@ def test_a_run_that_sticks_is_rejected_with_the_number_and_the_gain_to_change(
 ) -> None:
     weak = ["control.Kp=2.5", "control.Ki=5", "control.Kd=0.01", "twin.omega_s=1.5", "limits.following_deg=60"]
     settings = [word for change in weak for word in ("--set", change)]
-    assert main(["run", "kinematic-error", "--out", str(tmp_path), *settings, *SHORT]) == 1
+    assert main(["run", "kinematic-error", "--out", str(tmp_path), *settings, *SHORT]) == 6
     out = capsys.readouterr().out
     assert re.search(r"stuck \d+\.\d % of the time \(limit 2 %\)", out)
     assert "raise Kd" in out

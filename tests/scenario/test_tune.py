@@ -18,9 +18,9 @@ STICKY = ["--set", "twin.omega_s=1.5"]  # 9.6 rpm = 1 rad/s then lies on the ste
 def test_default_gains_hunt_at_a_stribeck_speed_of_1_5_and_the_run_is_rejected_with_advice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["run", "kinematic-error", "--out", str(tmp_path), *STICKY, *SHORT]) == 1
+    assert main(["run", "kinematic-error", "--out", str(tmp_path), *STICKY, *SHORT]) == 6
     out = capsys.readouterr().out
-    assert "\nFAIL: " in out
+    assert "\nINCONCLUSIVE: " in out
     assert re.search(r"speed scatter \d+\.\d % of 9\.60 rpm \(limit 10 %\)", out)
     assert "hdrig tune" in out
     assert json.loads((run_of(tmp_path) / "manifest.json").read_text())["status"] == "completed"

@@ -68,9 +68,9 @@ class Findings:
 def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Result:
     """The verdict and its sentence.
 
-    `manifest["limits"]`, optional: as `findings.limits.judge` takes them. A rejected run is FAIL whatever its figures.
-    A run that did not end as planned cannot PASS; one whose samples are not those recorded, or not in the unit they
-    say, neither PASS nor FAIL by a limit.
+    `manifest["limits"]`, optional: as `findings.limits.judge` takes them. A rejected run is INCONCLUSIVE whatever its
+    figures: the gear may be sound and a sensor turned round. A run that did not end as planned cannot PASS; one whose
+    samples are not those recorded, or not in the unit they say, neither PASS nor FAIL by a limit.
     """
     judged = judge(found.estimates, manifest.get("limits") or {})
     found.checks += judged.checks
@@ -91,7 +91,7 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
     if found.inconclusive and verdict in (Verdict.PASS, Verdict.MEASURED):
         verdict = Verdict.INCONCLUSIVE
     if found.rejected:
-        verdict, sentence = Verdict.FAIL, f"{found.rejected} Figures are shown but do not count: {sentence}"
+        verdict, sentence = Verdict.INCONCLUSIVE, f"{found.rejected} Figures are shown but do not count: {sentence}"
         doubtful = estimates[found.believed :]
         estimates = estimates[: found.believed] + [
             e if e.name in WHY_REJECTED else replace(e, how=f"Rejected run. {e.how}", counts=False) for e in doubtful

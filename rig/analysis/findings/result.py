@@ -14,7 +14,8 @@ Array = npt.NDArray[np.float64]
 
 
 class Verdict(StrEnum):
-    """PASS and FAIL are against a limit, outside its guard band; INCONCLUSIVE is inside it; MEASURED had no limit."""
+    """PASS and FAIL are against a limit, outside its guard band; INCONCLUSIVE is inside it, or a run that must not be
+    believed; MEASURED had no limit."""
 
     PASS = "PASS"
     FAIL = "FAIL"

@@ -12,6 +12,7 @@ from rig.analysis.motion.at_the_end import MOST, at_ends, ends
 from rig.analysis.motion.lone import lone
 from rig.analysis.motion.source import Source, increases
 from rig.core.channels import CHANNEL
+from rig.core.drivetrain import RATIOS as RATIOS
 from rig.core.numbers import number
 from rig.core.rows import room, stretches
 from rig.core.units import TURN
@@ -19,7 +20,6 @@ from rig.runfile.misfits import notes, usable
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
 FARTHEST = 1e9  # rad: above, float64 resolves less than 0.02 arcsec
-RATIOS = (1e-3, 1e5)  # no gear is outside
 READ = ("theta_m", "theta_l", "tau_m", "tau_l")  # what a sensor reads, and may read wrong once
 TORQUES = ("tau_m", "tau_l")
 TURNED = 0.05  # rad of the motor: it needed a torque for that, a lock test of 10 N·m turns as far

@@ -1,15 +1,17 @@
-"""A terminal: what is said scrolls by, the run stands in three lines at its foot, and nothing of them stays behind."""
+"""A terminal: what is said scrolls by, the run stands in a few lines at its foot, and nothing of them stays behind."""
 
 from __future__ import annotations
 
 import os
+import textwrap
 import time
 from typing import Any, TextIO, final
 
 from rig.commands.show.screens import Screen
 from rig.commands.show.words import late, peak
 
-KEYS = "any key: halt (torque off)  but s: stop  h: hold  Ctrl-C: stop (twice: halt)"  # fits 80 columns
+KEYS = ("any key: halt (torque off)", "but s: stop", "h: hold", "Ctrl-C: stop (twice: halt)")  # fit 80 columns
+APART = "  "
 BAR = 12  # characters
 HOLDING = "holding"  # of the states an event can carry
 SETTLED = 1.0  # s to watch before a pace is believed
@@ -55,7 +57,9 @@ class Terminal(Screen):
         self._put(f"{text}\n", self._foot)
 
     def _draw(self, event: dict[str, Any]) -> None:
-        self._put("", "\n".join(line[: _width(self.stream)] for line in self._lines(event)))
+        width = _width(self.stream)
+        lines = [line[:width] for line in self._lines(event)]
+        self._put("", "\n".join([*lines, *keys_in(width)]))
 
     def _lines(self, event: dict[str, Any]) -> list[str]:
         t, duration = event["t"], self._run["duration_s"]
@@ -67,7 +71,6 @@ class Terminal(Screen):
             f"{self._mark}{event['state'].upper()} {self._run['title']} {bar} {t:.1f}/{duration:.1f} s{left}, "
             f"{peak(event)}",
             late(event),
-            KEYS,
         ]
 
     def _left(self, t: float) -> str:
@@ -93,6 +96,18 @@ class Terminal(Screen):
         if up or text or foot:
             self.write(up + text + foot)
         self._foot = foot
+
+
+def keys_in(width: int) -> list[str]:
+    """What each key does, in lines of at most `width` characters: who has to stop a motor finds no key cut off."""
+    lines = [KEYS[0]]
+    for key in KEYS[1:]:
+        longer = f"{lines[-1]}{APART}{key}"
+        if len(longer) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(key)
+    return [part for line in lines for part in textwrap.wrap(line, width, drop_whitespace=False)]
 
 
 def _width(stream: TextIO) -> int:

@@ -2,12 +2,13 @@
 
 | module | one idea |
 |---|---|
-| mapping, channel, strict, units | the mapping file, read so that no key is overlooked |
+| mapping, keys, channel, strict, units | the mapping file, read so that no key is overlooked |
 | readers/ | one format a file: the wanted columns, 1-D |
 | table, signatures, reading | what readers share: finding a column, telling a file by its first bytes, damage |
 | convert, unwrap, timing | columns → SI channels |
 | refuse, plausible | what cannot be meant, one sentence each |
 | write | channels → run folder, through rig.runfile |
+| earlier | whether the same file was imported before |
 
 To add a format: one file in readers/, one line in READERS, one in signatures.
 """
@@ -38,21 +39,25 @@ READERS: dict[str, tuple[str, str]] = {
 }
 
 
-def import_file(source: Path, mapping: Path | str, out: Path, software: Mapping[str, Any] | None = None) -> Path:
+def import_file(
+    source: Path, mapping: Path | str, out: Path, software: Mapping[str, Any] | None = None, again: bool = False
+) -> Path:
     """Make a run folder of `source` under the root `out`, and return it.
 
     `mapping` is a file, or the name of a mapping that comes with the program. `software` is what the manifest says made
-    the run. Raises UsageError, one sentence, for anything that cannot be meant: then nothing was written. Raises
-    NotReady when `out` cannot be written to.
+    the run; `again` makes one also of a file that was imported there before. Raises UsageError, one sentence, for
+    anything that cannot be meant: then nothing was written. Raises NotReady when `out` cannot be written to.
     """
     import numpy as np
 
-    from rig.runfile.importing import convert, plausible, reading, write
+    from rig.runfile.importing import convert, earlier, plausible, reading, write
     from rig.runfile.importing import mapping as mappings
 
     kind, read = reader(source)
     wanted = mappings.load_mapping(mapping)
     table = reading.read_table(source, kind, read, wanted)
+    if not again:
+        earlier.refuse_again(source, wanted, out)
     wanted = convert.with_file_units(wanted, table.units, source.name)
     with np.errstate(over="ignore", invalid="ignore"):  # absurd numbers are refused by what they amount to
         run = convert.convert(table, wanted, source.name)

@@ -16,7 +16,7 @@ from rig.runfile.importing import refuse, timing
 from rig.runfile.importing.channel import NEEDED, QUANTITY, ChannelMap
 from rig.runfile.importing.mapping import Mapping
 from rig.runfile.importing.table import Table
-from rig.runfile.importing.units import SI, UNITS, known
+from rig.runfile.importing.units import SI, UNITS, in_name, known
 from rig.runfile.importing.unwrap import unwrap
 
 Array = npt.NDArray[Any]
@@ -95,13 +95,14 @@ def with_file_units(mapping: Mapping, stated: dict[str, str], file: str) -> Mapp
     channels = {}
     for name, channel in mapping.channels.items():
         says = channel.plain and channel.unit != "datetime"  # then what the file states is about these very numbers
-        found = known(stated.get(channel.terms[0].column, "")) if says else None
+        column = channel.terms[0].column
+        said = stated.get(column) or in_name(column)
+        found = known(said) if says else None
         where = f"{mapping.source}: channels.{name}"
         if not channel.unit:
             others = ", ".join(u.word for u in UNITS.values() if u.quantity == channel.quantity)
             if found is None or found.quantity != channel.quantity:
-                said = stated.get(channel.terms[0].column) if channel.plain else ""
-                what = f"{file} states '{said}'" if said else f"{file} states none"
+                what = f"{file} states '{said}'" if said and channel.plain else f"{file} states none"
                 raise UsageError(f"{where} has no unit and {what}; expected one of {others}")
             if found.word == "counts" and not channel.counts_per_turn:
                 raise UsageError(f"{where}: {file} states counts, so counts_per_turn is needed")
@@ -109,7 +110,7 @@ def with_file_units(mapping: Mapping, stated: dict[str, str], file: str) -> Mapp
         elif found and found.word != channel.unit and found.quantity == channel.quantity and not _waived(mapping):
             raise UsageError(
                 f"{where}.unit = '{channel.unit}', but {file} states '{found.word}' for column "
-                f"'{channel.terms[0].column}'; set unit = \"{found.word}\", or say why not in accept.file_unit"
+                f"'{column}'; set unit = \"{found.word}\", or say why not in accept.file_unit"
             )
         channels[name] = channel
     return replace(mapping, channels=channels)

@@ -1,21 +1,5 @@
-"""The mapping file (schema hdrig.import/1): which column of a foreign file is which channel, read strictly.
-
-| key | meaning |
-|---|---|
-| schema, procedure, description | "hdrig.import/1"; a procedure of the run format; a text |
-| [gear] ratio, serial, output | ratio is needed; output "flexspline" or "circular_spline" |
-| [declared] J_m, J_l, K, fourier_terms | what was believed of the gear, SI |
-| [conditions] tau_ext, output_locked, depth_mm, speed_rpm, note | as in the manifest |
-| [encoders] motor_counts_per_rev, load_counts_per_rev | taken from counts_per_turn where absent |
-| [csv] delimiter, decimal, encoding, skip_rows, units_row, names | how a text is to be read |
-| [accept] period, epoch, ratio, speed, torque, stiffness, file_unit | reason why a check is waived |
-| [channels.NAME] column, or sum = [{column, scale}, …] | where it comes from |
-| … unit, meaning | a unit of the channel's quantity; both needed for a channel that is not a standard one |
-| … sign, scale, zero, offset | value = sign·scale·(column − zero) + offset, in `unit` |
-| … counts_per_turn, modulus or bits | angles: counts of a turn; where a counter starts again |
-| [channels.t] column, unit, scale, duplicates | no sign and offset: t starts at 0; duplicates "refuse" or "drop" |
-| [channels.t, theta_m, theta_l] holes | rows without a value there: "refuse" or "drop" |
-"""
+"""The mapping file (schema hdrig.import/1): which column of a foreign file is which channel, read strictly, with the
+keys of `keys.KEYS`."""
 
 from __future__ import annotations
 
@@ -124,7 +108,7 @@ def _procedure(top: Section) -> str:
     said = top.text("procedure")
     name = said.replace("-", "_")
     if name not in KINDS:
-        raise UsageError(f"{top.file}: procedure = '{said}'; {nearest(name, KINDS)}")
+        raise UsageError(f"{top.file}: procedure = '{said}'; {nearest(name, KINDS, most=len(KINDS))}")
     return name
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from rig.core.errors import UsageError
@@ -66,6 +67,13 @@ def known(text: str) -> Unit | None:
         bare = bare.replace(mark, "")
     spelt = _SPELLINGS.get(word) or _SPELLINGS.get(bare) or _SPELLINGS.get(word.lower())
     return UNITS[spelt] if spelt else None
+
+
+def in_name(column: str) -> str:
+    """The unit that a column's name ends with in brackets, as in "Time [s]" or "load (deg)"; "" where it states none
+    that is known."""
+    found = re.fullmatch(r".*\S\s*[\[(]([^\[\]()]+)[\])]\s*", column)
+    return found[1] if found and known(found[1]) else ""
 
 
 def unit_of(text: str, quantity: str, where: str) -> Unit:

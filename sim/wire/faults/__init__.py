@@ -23,7 +23,7 @@ from sim.wire.pty import SerialLine
 from sim.wire.reactor import Reactor
 
 LONGEST_STALL = 10.0  # s
-NO_VERBS = ("heal", "standing")  # of a group
+NO_VERBS = ("heal", "standing", "choices")  # of a group
 
 
 def fault_verbs(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import final
 
 from sim.wire.faults.words import named
@@ -25,6 +25,10 @@ class LineFaults:
         for line in self._lines.values():
             line.spoiler, line.latency = Spoiler(), 0.0
             line.plug()
+
+    def choices(self) -> dict[str, Iterable[str]]:
+        """What a line may be."""
+        return {"line": self._lines}
 
     def standing(self) -> list[str]:
         """What is not sound, line by line."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from typing import final
 
 from rig.core.errors import UsageError
@@ -35,6 +36,10 @@ class NodeFaults:
         drive.mode_stuck = drive.incurable = False
         if drive.sto_active:
             drive.sto(False, False)
+
+    def choices(self) -> dict[str, Iterable[str]]:
+        """What a device may be."""
+        return {"device": self._nodes()}
 
     def standing(self) -> list[str]:
         """What `heal` would end."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import final
 
 from sim.drive import TwinDrive
@@ -27,6 +27,10 @@ class SensorFaults:
         for device in self._sensors():
             self._put(device, None)
         self._assembly.torque.broken = False
+
+    def choices(self) -> dict[str, Iterable[str]]:
+        """What a device may be."""
+        return {"device": self._sensors()}
 
     def standing(self) -> list[str]:
         """What is not sound."""

@@ -47,10 +47,27 @@ def test_a_run_stands_in_three_lines_with_state_progress_peak_to_peak_lateness_a
     *_, first, second, third = rows(stream.getvalue())
     assert first == "SIMULATED RUNNING kinematic-error ██████░░░░░░ 50.0/100.0 s, p-p 93.4 arcsec"[:79]
     assert second == "late p50 52 µs, p99 180 µs, 3 cycles missed"
-    assert third == KEYS
-    assert len(KEYS) < 80
+    assert third == "  ".join(KEYS)
+    assert len(third) < 80
     for way in ("any key: halt (torque off)", "Ctrl-C: stop (twice: halt)", "s: stop", "h: hold"):
         assert way in third
+
+
+@pytest.mark.parametrize("width", [39, 30, 20, 12])
+def test_a_narrow_terminal_cuts_off_no_key_and_keeps_nothing_of_the_foot(
+    monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    monkeypatch.setattr("rig.commands.show.terminal._width", lambda stream: width)
+    stream = io.StringIO()
+    terminal = Terminal(stream)
+    for event in (BENCH, RUN, progress(10.0), progress(50.0)):
+        terminal.take(event)
+    shown = rows(stream.getvalue())[3:]
+    assert width < 26 or all(any(key in line for line in shown) for key in KEYS)
+    assert "".join("".join(shown).split()) == "".join("".join(KEYS).split())
+    assert all(len(line) <= width for line in shown)
+    terminal.close()
+    assert rows(stream.getvalue()) == ["SIMULATED: bench 'twin' is the twin, wall clock", ""]
 
 
 def test_a_held_run_does_not_go_on_and_promises_no_end(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -50,3 +52,18 @@ def test_a_run_that_goes_on_is_followed_and_not_written_to_a_file(folder: Path) 
     refused = hdrig("view", str(folder))
     assert refused.returncode == 2
     assert "--web" in refused.stderr
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_the_page_of_a_run_that_is_over_without_a_word_of_the_viewer_s(folder: Path) -> None:
+    command = [sys.executable, "-m", "rig.cli", "view", str(folder), "--web"]
+    # a job in the background of a shell inherits that interrupts are ignored
+    heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heard) as shown:
+        assert shown.stderr is not None
+        for line in shown.stderr:
+            if line == "Ctrl-C ends it\n":
+                break
+        shown.send_signal(signal.SIGINT)
+        assert shown.stderr.read() == ""
+        assert shown.wait(30) == 0

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rig.core.errors import UsageError
 from rig.report.words import origin
 from rig.runfile.export import export
 from rig.runfile.finalise import finalise
@@ -14,6 +15,7 @@ from rig.runfile.run import Run
 from rig.runfile.verify import verify
 from tests.runfile.rows import new_folder, write_journal
 
+from . import formats
 from .conftest import Foreign
 
 MAPPING = """
@@ -65,3 +67,22 @@ def test_a_row_of_units_that_was_not_announced_is_told_with_the_key_to_set(forei
     file = exported(tmp_path / "first", "csv", "can")
     said = foreign.refused(file, MAPPING.replace("[csv]\nunits_row = true\n", ""))
     assert "row 1 holds 's', a unit; set [csv] units_row = true" in said
+
+
+@pytest.mark.parametrize("deep", ["", "lab"])
+def test_a_file_that_was_imported_before_is_refused_and_the_run_named(foreign: Foreign, deep: str) -> None:
+    file, mapping = foreign.file(), foreign.mapping(formats.MAPPING)
+    first = import_file(file, mapping, foreign.out / deep)
+    moved = file.rename(file.with_name("renamed.csv"))
+    with pytest.raises(UsageError, match=f"renamed.csv was imported by this mapping before, as {first}; .*--again"):
+        import_file(moved, mapping, foreign.out)
+    again = import_file(moved, mapping, foreign.out, again=True)
+    assert again != first
+
+
+def test_another_file_or_another_mapping_is_another_run(foreign: Foreign) -> None:
+    import_file(foreign.file(), foreign.mapping(formats.MAPPING), foreign.out)
+    import_file(foreign.file(), foreign.mapping(formats.MAPPING + "# corrected\n"), foreign.out)
+    data = formats.columns()
+    warmer = foreign.file(data | {"temperature": data["temperature"] + 1})
+    import_file(warmer, foreign.mapping(formats.MAPPING), foreign.out)

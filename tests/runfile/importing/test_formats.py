@@ -174,11 +174,6 @@ def test_zero_is_taken_off_before_sign_and_scale(foreign: Foreign) -> None:
     assert json.loads((run.path / "manifest.json").read_text())["conditions"] == {}
 
 
-def test_a_second_import_makes_a_second_folder(foreign: Foreign) -> None:
-    path = foreign.file()
-    assert foreign.imported(path).path != foreign.imported(path).path
-
-
 def test_mdf_keeps_the_date_it_states(foreign: Foreign) -> None:
     from asammdf import MDF, Signal
 
@@ -214,3 +209,20 @@ def test_verify_and_list_take_an_imported_run(foreign: Foreign) -> None:
         400,
         "",
     )
+
+
+@pytest.mark.parametrize("header", ["time [ms]", "time (ms)"])
+def test_a_unit_in_a_column_s_name_need_not_be_given_again(foreign: Foreign, header: str) -> None:
+    path = foreign.file()
+    path.write_text(path.read_text().replace("time", header, 1))
+    stated = MAPPING.replace('column = "time"\nunit = "ms"', f'column = "{header}"')
+    assert stated != MAPPING
+    run = foreign.imported(path, stated)
+    np.testing.assert_allclose(run.column("t"), truth()["t"], atol=1e-6)
+
+
+def test_a_unit_in_a_column_s_name_that_is_another_is_refused(foreign: Foreign) -> None:
+    path = foreign.file()
+    path.write_text(path.read_text().replace("time", "time [s]", 1))
+    said = foreign.refused(path, MAPPING.replace('column = "time"', 'column = "time [s]"'))
+    assert "channels.t.unit = 'ms', but run.csv states 's' for column 'time [s]'" in said

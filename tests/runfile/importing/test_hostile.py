@@ -105,7 +105,39 @@ def test_a_csv_in_another_encoding(foreign: Foreign) -> None:
     assert said == "run.csv is not utf-8 text: byte 37 cannot be read; set [csv] encoding, e.g. 'cp1252'"
     said = foreign.refused(foreign.bytes(text.encode()), MAPPING + '[csv]\nencoding = "klingon"\n')
     assert "csv.encoding = 'klingon' is no encoding" in said
-    assert "is not text: byte 1 is 0" in foreign.refused(foreign.bytes(text.encode("utf-16-le")))
+
+
+@pytest.mark.parametrize(("encoding", "byte"), [("utf-16", 3), ("utf-16-le", 1), ("utf-16-be", 0)])
+def test_utf16_is_named_where_nobody_said_so(foreign: Foreign, encoding: str, byte: int) -> None:
+    said = foreign.refused(foreign.bytes("time,motor\n1,2\n".encode(encoding)))
+    assert f"is not text: byte {byte} is 0" in said
+    assert said.endswith(f'; it looks like UTF-16: set [csv] encoding = "{encoding}"')
+
+
+def test_zeros_alone_are_no_utf16(foreign: Foreign) -> None:
+    assert foreign.refused(foreign.bytes(bytes(64))).endswith("is not text: byte 0 is 0 (csv.encoding = 'utf-8')")
+
+
+def test_lines_before_the_header_are_found_and_how_many(foreign: Foreign) -> None:
+    path = foreign.file()
+    path.write_text(f"Logger 3\nrig: north; 20 °C\n\n{path.read_text()}")
+    said = foreign.refused(path)
+    assert said == (
+        "run.csv: line 1 is read as the header, but line 4 holds the names of the columns; set [csv] skip_rows = 3"
+    )
+    assert foreign.imported(path, MAPPING + "[csv]\nskip_rows = 3\n").rows == 400
+
+
+@pytest.mark.parametrize("before", [0, 2])
+@pytest.mark.parametrize("bad", ["{t},2", "{t},2,3,x,5"])
+def test_a_bad_row_has_one_number_whoever_finds_it(foreign: Foreign, before: int, bad: str) -> None:
+    path = foreign.file()
+    lines = ["a logger's line"] * before + path.read_text().splitlines()
+    lines[before + 250] = bad.format(t=lines[before + 250].partition(",")[0])
+    path.write_text("\n".join(lines) + "\n")
+    said = foreign.refused(path, MAPPING + f"[csv]\nskip_rows = {before}\n")
+    assert "row 250 " in said, said
+    assert "Row #" not in said
 
 
 def test_utf16_and_a_byte_order_mark_are_read(foreign: Foreign) -> None:

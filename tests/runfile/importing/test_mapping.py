@@ -11,8 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rig.cli import main
 from rig.core.errors import UsageError
+from rig.core.kinds import KINDS
 from rig.runfile.importing.mapping import SHIPPED, load_mapping, read_mapping, shipped
+from rig.runfile.importing.strict import Section
 from rig.runfile.importing.units import UNITS, known
 
 from .formats import MAPPING
@@ -135,6 +138,30 @@ def test_no_key_is_ever_overlooked(section: str, key: str) -> None:
         read_mapping(text, "map.toml")
     whole = f"{section}.{key}" if section else key
     assert whole in str(caught.value) or key == "sum"  # beside `column`, both are named
+
+
+def test_every_key_that_is_read_is_named_in_the_help(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    read: set[str] = set()
+    done = Section.done
+
+    def noted(section: Section) -> None:
+        read.update(section._known)
+        done(section)
+
+    monkeypatch.setattr(Section, "done", noted)
+    read_mapping(MAPPING, "map.toml")
+    with pytest.raises(SystemExit):
+        main(["import", "--help"])
+    words = set(re.findall(r"\w+", capsys.readouterr().out))
+    assert read >= {"skip_rows", "holes", "modulus", "file_unit", "tau_ext"}
+    assert read - {"channels"} <= words
+
+
+def test_a_procedure_there_is_not_names_all_there_are() -> None:
+    said = refused(MAPPING.replace('"kinematic_error"', '"foo"'))
+    assert all(kind in said for kind in KINDS)
 
 
 @given(st.text(max_size=200))

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import codecs
+import contextlib
 import csv
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rig.core.errors import UsageError
@@ -14,6 +16,7 @@ from rig.runfile.importing.table import Table, locate
 from rig.runfile.manifest import SIMULATED
 
 CHUNK = 1 << 20  # bytes
+PREAMBLE = 100  # lines that a logger may write before its header
 LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
 
 
@@ -21,29 +24,31 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     """The wanted columns. Raises UsageError."""
     check_text(path, dialect.encoding)
     names, units = header(path, dialect)
+    check_preamble(path, names, wanted, dialect)
     check_delimiter(path, names, dialect)
     found = locate(names, wanted, path.name)
     lines = dialect.skip_rows + (0 if dialect.names else 1) + (1 if dialect.units_row else 0)
 
     import pyarrow.csv as pacsv
 
-    table = pacsv.read_csv(
-        path,
-        # one thread: only then does the library say which row a complaint is about
-        pacsv.ReadOptions(
-            use_threads=False,
-            block_size=4 * LONGEST_LINE,
-            skip_rows=lines,
-            column_names=names,
-            encoding=dialect.encoding,
-        ),
-        pacsv.ParseOptions(delimiter=dialect.delimiter),
-        pacsv.ConvertOptions(
-            include_columns=list(dict.fromkeys(found.values())),
-            decimal_point=dialect.decimal,
-            strings_can_be_null=True,
-        ),
-    )
+    with rows_counted_from(lines):
+        table = pacsv.read_csv(
+            path,
+            # one thread: only then does the library say which row a complaint is about
+            pacsv.ReadOptions(
+                use_threads=False,
+                block_size=4 * LONGEST_LINE,
+                skip_rows=lines,
+                column_names=names,
+                encoding=dialect.encoding,
+            ),
+            pacsv.ParseOptions(delimiter=dialect.delimiter),
+            pacsv.ConvertOptions(
+                include_columns=list(dict.fromkeys(found.values())),
+                decimal_point=dialect.decimal,
+                strings_can_be_null=True,
+            ),
+        )
     stated = dict(zip(names, units, strict=False))
     return Table(
         {name: to_numpy(table[full]) for name, full in found.items()},
@@ -51,6 +56,17 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         notes=() if ends_a_line(path) else ("the last line has no line end: the file may be cut short in it",),
         simulated=SIMULATED in names,
     )
+
+
+@contextlib.contextmanager
+def rows_counted_from(lines: int) -> Iterator[None]:
+    """Complaints count rows as ours do, from the first after the header: the library's are lines of the file, of which
+    `lines` come before that."""
+    try:
+        yield
+    except ValueError as error:
+        said = re.sub(r"Row #(\d+)", lambda m: f"row {int(m[1]) - lines} (line {m[1]} of the file)", str(error))
+        raise ValueError(said) from error
 
 
 def ends_a_line(path: Path) -> bool:
@@ -74,7 +90,9 @@ def check_text(path: Path, encoding: str) -> None:
         while True:
             block = file.read(CHUNK)
             if not wide and (at := block.find(b"\0")) >= 0:
-                raise UsageError(f"{path.name} is not text: byte {done + at} is 0 (csv.encoding = '{encoding}')")
+                raise UsageError(
+                    f"{path.name} is not text: byte {done + at} is 0 (csv.encoding = '{encoding}'){utf16(block)}"
+                )
             held = len(decoder.getstate()[0])
             try:
                 decoder.decode(block, final=not block)
@@ -86,6 +104,33 @@ def check_text(path: Path, encoding: str) -> None:
             if not block:
                 return
             done += len(block)
+
+
+def utf16(start: bytes) -> str:
+    """What to set for a file that starts as UTF-16 does, with a mark or with a letter of two bytes; "" for others."""
+    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        found = "utf-16"
+    elif start[1:2] == b"\0" and start[:1] != b"\0":
+        found = "utf-16-le"
+    elif start[:1] == b"\0" and start[1:2] != b"\0":
+        found = "utf-16-be"
+    else:
+        return ""
+    return f'; it looks like UTF-16: set [csv] encoding = "{found}"'
+
+
+def check_preamble(path: Path, names: list[str], wanted: Sequence[str], dialect: Dialect) -> None:
+    """Raises UsageError when a later line than the header is the one with all the wanted names."""
+    if dialect.names or set(wanted) <= set(names):
+        return
+    with path.open(encoding=dialect.encoding, newline="") as file:
+        lines = [file.readline(LONGEST_LINE) for _ in range(PREAMBLE)]
+    for before, line in enumerate(lines):
+        if set(wanted) <= {cell.strip().strip('"') for cell in line.split(dialect.delimiter)}:
+            raise UsageError(
+                f"{path.name}: line {dialect.skip_rows + 1} is read as the header, but line {before + 1} holds the "
+                f"names of the columns; set [csv] skip_rows = {before}"
+            )
 
 
 def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:

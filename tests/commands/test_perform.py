@@ -1,0 +1,38 @@
+"""What a run ends with whose report is interrupted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rig.cli import main
+from rig.commands import perform
+from rig.core.errors import Exit
+from rig.loop import Ending
+from rig.session.done import Done
+from tests.commands.made_run import made_run
+
+
+@pytest.mark.parametrize(
+    ("status", "code", "exit"),
+    [("stopped", Exit.STOPPED, 4), ("tripped", Exit.TRIPPED, 5), ("completed", Exit.PASS, Exit.HALTED)],
+)
+def test_ctrl_c_in_the_report_ends_a_run_as_it_had_ended(
+    status: str,
+    code: Exit,
+    exit: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    folder = made_run(tmp_path / "run")
+
+    def pressed(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(perform, "_recorded", lambda *_: Done(folder, Ending(status, "as it was", code)))
+    monkeypatch.setattr(perform, "analyse_folder", pressed)
+    assert main(["run", "standstill", "--out", str(tmp_path / "out")]) == exit
+    assert f"the run is complete in {folder}; hdrig analyse makes its report" in capsys.readouterr().err
