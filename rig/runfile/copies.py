@@ -75,8 +75,3 @@ def once(found: Sequence[T], twice: Twice = passed_over) -> list[T]:
     seen = Seen(twice)
     taken = {known_by(run): run for run in originals_first(found) if seen.is_new(run)}
     return [taken[known] for known in dict.fromkeys(map(known_by, found))]
-
-
-def links_last(folders: Sequence[Path]) -> list[Path]:
-    """In the same order, but for links: of a run and a link to it the run comes first."""
-    return sorted(folders, key=Path.is_symlink)

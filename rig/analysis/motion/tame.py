@@ -12,7 +12,6 @@ from rig.analysis.motion.at_the_end import MOST, at_ends, ends
 from rig.analysis.motion.lone import lone
 from rig.analysis.motion.source import Source, increases
 from rig.core.channels import CHANNEL
-from rig.core.drivetrain import RATIOS as RATIOS
 from rig.core.numbers import number
 from rig.core.rows import room, stretches
 from rig.core.units import TURN

@@ -28,7 +28,7 @@ from rig.analysis.tracing.runs.weights import refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
-from rig.runfile.copies import links_last, once
+from rig.runfile.copies import once
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
@@ -79,7 +79,7 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     """All run folders directly in `folder`, each looked at as said. Raises UsageError when it holds no run with an
     angle."""
     places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
-    opened, out = _open(links_last(places))
+    opened, out = _open(places)
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
     nameless = [*_nameless(folder), *_closed(folder)]
     out += nameless

@@ -12,7 +12,7 @@ import numpy as np
 from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.motion.source import Motion, Source, increases, motion_of, not_seconds
-from rig.analysis.motion.tame import RATIOS, Tame
+from rig.analysis.motion.tame import Tame
 from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.holes import without_holes
@@ -23,6 +23,7 @@ from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing, substituted
 from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER, RATE
+from rig.core.drivetrain import RATIOS
 from rig.core.errors import UsageError
 from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
