@@ -30,6 +30,7 @@ WIDER: Final = 1.8  # times the low-pass: as wide as rows at the working rate le
 FROM: Final = 0.7  # of the low-pass
 TO: Final = 0.32  # of the working rate, up to where its rows are as they were read
 STEADY: Final = 0.5  # of the mean speed, how far nine tenths of a run may vary
+LONG: Final = 10.0  # s of a run: some dozens of turns, whose orders stand well apart
 BESIDE: Final = (0.4, 0.5, 0.6)  # orders away from a whole one, where there is only noise
 STANDS_OUT: Final = 0.45  # of the floor, RMS of those orders; clean campaigns have 0.34 at most
 RUNS: Final = 2  # that show it
@@ -86,7 +87,9 @@ def _shows(run: Recording) -> bool:
 def _lines(s: Solution, i: int, channel: str) -> list[Line]:
     """The orders in a channel of one run, up to what its rows can tell."""
     run = s.design.eq.runs[i]
-    wide = replace(run, smoother=Smoother(WIDER * _sigma(run), run.smoother.dt, 1))
+    longest = max(run.pieces, key=lambda piece: piece.t.size)
+    rows = np.arange(min(longest.t.size, round(LONG / run.smoother.dt)))
+    wide = replace(run, pieces=(longest.part(rows),), smoother=Smoother(WIDER * _sigma(run), run.smoother.dt, 1))
     e, theta = (
         _left(s, wide, channel),
         np.concatenate([p.theta_m[wide.smoother.centres(p.t.size)] for p in wide.pieces]),
