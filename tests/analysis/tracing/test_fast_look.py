@@ -83,7 +83,8 @@ def test_it_rings_where_two_runs_show_half_a_floor(
 
 def standing(*names: str, loud: bool = False) -> Any:
     first = SimpleNamespace(folder=Path("nowhere"), runs=())
-    return SimpleNamespace(names=set(names), loud=loud, p=SimpleNamespace(campaign=first))
+    solution = SimpleNamespace(design=SimpleNamespace(terms=[SimpleNamespace(name=name) for name in names]))
+    return SimpleNamespace(names=set(names), loud=loud, p=SimpleNamespace(campaign=first), solution=solution)
 
 
 @pytest.mark.parametrize(
@@ -107,9 +108,21 @@ def test_it_counts_where_one_mode_comes_to_what_had_a_name(
     monkeypatch.setattr(fast, "looking", lambda campaign, looks: None)
     monkeypatch.setattr(fast, "prepare", lambda campaign, hold_out: None)
     monkeypatch.setattr(fast, "searched", lambda p: (after, "ranked"))
+    tried: list[set[str]] = []
+    monkeypatch.setattr(fast, "_shows_a_mode", lambda p, beside: not tried.append({term.name for term in beside}))
     nothing: Any = None
     kept, _ = fast.taken(before, nothing, nothing, ())
     assert kept is (after if counts else before)
+    assert tried == [before.names - {"torsional_mode", "support_compliance"}]
+
+
+def test_nothing_is_searched_where_no_mode_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = standing()
+    for name in ("read_campaign", "looking", "prepare"):
+        monkeypatch.setattr(fast, name, lambda *given: None)
+    monkeypatch.setattr(fast, "_shows_a_mode", lambda p, beside: False)
+    nothing: Any = None
+    assert fast.taken(before, nothing, nothing, ()) == (before, None)
 
 
 def test_a_rate_by_six_neighbours_holds_a_wave_of_a_sixth_of_the_rate() -> None:
