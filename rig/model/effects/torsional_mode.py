@@ -44,6 +44,7 @@ class TorsionalMode(Effect):
     glosses: ClassVar[Mapping[str, str]] = {
         "J_2": "inertia on a spring of its own",
         "frequency": "frequency at which that spring and inertia resonate",
+        "hub_frequency": "frequency at which a hub of that inertia resonates on the torque sensor's spring",
         "zeta": "ζ, damping ratio of that resonance",
         "shaft_compliance": "1/k, compliance of the shaft behind the flange",
         "coupling_compliance": "1/k, compliance of the coupling between motor and wave generator",
@@ -172,14 +173,17 @@ class TorsionalMode(Effect):
         )
 
     def _of_hub(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
-        """Without a frequency where 1/ω² may as well be nothing: the hub is stiff, as far as can be told."""
-        inertia, square = fit.coefficients[:2]
-        turned = (parameter("J_2", inertia, fit.half_width(by[0]), "kg·m²"),)
+        """Without a frequency where 1/ω² may as well be nothing: the hub is stiff, as far as can be told. It is no peak
+        that has to be seen: far below it the hub's inertia shows as well."""
+        share, square = fit.coefficients[:2]
+        # K is that of gear and sensor in series, and the gear alone gives by J_2/K_gear: J_2 = share + K/ω²
+        inertia, along = share + fit.known.K * max(square, 0.0), by[0] + fit.known.K * by[1]
+        turned = (parameter("J_2", inertia, fit.half_width(along), "kg·m²"),)
         if square <= fit.half_width(by[1]):
             return turned
         frequency = 1.0 / (2.0 * np.pi * np.sqrt(square))
         half = fit.half_width(by[1] * frequency / (2.0 * square))
-        return (*turned, parameter("frequency", frequency, half, "Hz"))
+        return (*turned, parameter("hub_frequency", frequency, half, "Hz"))
 
     def plausible(self, fit: Fit) -> bool:
         """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared; a flange

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
+from rig.model.memory import follower
 from rig.model.second_mode.shaken import shaken
 from rig.model.second_mode.swung import swung
 
@@ -20,11 +21,26 @@ SIXTH: Final = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60  # centra
 
 def hub(s: Signals) -> Mapping[Port, Array]:
     """Two columns, for J_2 and for J_2/k: the gear carries J_2·(ω̇_l + T̈/k) more than the sensor reads, which is a
-    spring of k."""
-    (bend,) = s.states(lambda whole: (_rate(whole.torque_rate, whole.dt),))
-    turned = np.stack([s.alpha_l, bend], 1)
+    spring of k. It winds up under that as 1/(K + B_sp·d/dt): at 80 Hz its damper takes half as much as its spring."""
+
+    def carried(whole: Signals) -> tuple[Array, ...]:
+        both = (shaken(whole, x) for x in (whole.alpha_l, _rate(whole.torque_rate, whole.dt)))
+        return tuple(made for x in both for made in (x, behind(x, s.gear.B_sp / s.gear.K, whole.dt)))
+
+    by_load, wound_load, by_spring, wound_spring = s.states(carried)
     lever = 1.0 / s.ratio - s.series_slope
-    return {Port.WIND_UP: turned / s.gear.K, Port.MOTOR_TORQUE: turned * lever[:, None]}
+    return {
+        Port.WIND_UP: np.stack([wound_load, wound_spring], 1) / s.gear.K,
+        Port.MOTOR_TORQUE: np.stack([by_load, by_spring], 1) * lever[:, None],
+    }
+
+
+def behind(x: Array, tau: float, dt: float) -> Array:
+    """x (n,) through 1/(1 + τs), τ in s, x linear between rows dt s apart, exact; starts in balance with x[0]."""
+    keep = float(np.exp(-dt / tau)) if tau > 0 else 0.0
+    slope = tau / dt * (1.0 - keep)
+    now, before = 1.0 - slope, slope - keep
+    return np.asarray(follower(np.ascontiguousarray(x), now, before, keep, float(x[0]) * slope if x.size else 0.0))
 
 
 def _rate(x: Array, dt: float) -> Array:

@@ -37,6 +37,7 @@ from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
 from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
 from rig.model.fourier import FourierSeries
 from rig.model.second_mode import coupling
+from rig.model.second_mode.output import behind
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
@@ -146,15 +147,40 @@ def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
 
 
 def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> None:
-    """With the load at rest and the torque at the hub's own frequency the gear is not wound up."""
+    """With the load at rest and the torque at the hub's own frequency the gear is not wound up, damper or not."""
     inertia, hz = 0.05, 4.0
     s = motion()
     omega = 2 * np.pi * hz
     torque = 5.0 * np.sin(omega * s.t)
     s = dataclasses.replace(s, torque=torque, torque_rate=5.0 * omega * np.cos(omega * s.t), alpha_l=0.0 * s.t)
+    s = dataclasses.replace(s, omega_m=np.full(s.t.size, 20.0))  # rad/s: orders of the gear shake it
     wind_up = TorsionalMode().columns(s, (HUB, 70.0, 0.04, 0.0))[Port.WIND_UP] @ np.array([inertia, 1.0 / omega**2])
-    inside = slice(5, -5)
-    np.testing.assert_allclose(wind_up[inside], -torque[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
+    inside, tau = slice(20, -20), KNOWN.B_sp / KNOWN.K
+    late = 5.0 * (np.sin(omega * s.t) - tau * omega * np.cos(omega * s.t)) / (1 + (tau * omega) ** 2)
+    np.testing.assert_allclose(wind_up[inside], -late[inside] / KNOWN.K, atol=2e-3 * 5.0 / KNOWN.K)
+
+
+@pytest.mark.parametrize("tau", [0.0, 1e-4, 1e-3, 0.1])
+def test_what_follows_is_a_first_order_behind_at_any_time_constant(tau: float) -> None:
+    dt, omega = 2e-3, 2 * np.pi * 20.0
+    t = np.arange(1000) * dt
+    gone = np.exp(-t / tau) if tau else 0.0 * t
+    late = (np.sin(omega * t) - tau * omega * (np.cos(omega * t) - gone)) / (1 + (tau * omega) ** 2)
+    np.testing.assert_allclose(behind(np.sin(omega * t), tau, dt), late, atol=6e-3)
+    np.testing.assert_allclose(behind(np.full(5, 3.0), tau, dt), 3.0, atol=1e-12)
+
+
+def test_an_inertia_on_a_soft_sensor_is_told_whole() -> None:
+    """Of 40 g·m² on 5600 N·m/rad beside a gear of 7400 the gear gives by 0.43 of J_2/K, K being that of both."""
+    J_2, k, K = 0.04, 5600.0, 1 / (1 / 7400.0 + 1 / 5600.0)
+    fit = Fit(
+        np.array([J_2 * K / 7400.0, J_2 / k]),
+        (HUB, 71.0, 0.04, 0.0),
+        np.zeros((6, 6)),
+        dataclasses.replace(KNOWN, K=K),
+        N,
+    )
+    assert TorsionalMode().parameters(fit)[0].value == pytest.approx(J_2, rel=1e-9)
 
 
 @pytest.mark.parametrize(("square", "told"), [(2.8e-6, True), (-1.1e-6, False), (4e-7, False)])
@@ -164,7 +190,7 @@ def test_a_hub_on_a_spring_too_stiff_to_be_seen_has_an_inertia_and_no_frequency(
     fit = Fit(np.array([0.06, square]), (HUB, 71.0, 0.04, 0.0), spread, KNOWN, N)
     law = TorsionalMode()
     assert law.plausible(fit)
-    assert [p.name for p in law.parameters(fit)] == ["J_2", *(["frequency"] if told else [])]
+    assert [p.name for p in law.parameters(fit)] == ["J_2", *(["hub_frequency"] if told else [])]
     assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([0.06, -9e-6])))
     assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([-0.06, square])))
 
