@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.runs.holdout import grouped
 from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.thresholds import BANDWIDTH
 from rig.core.units import RPM
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
@@ -48,6 +49,7 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
     found += _held_output(moving)
     found += _gain(moving)
+    found += _fast(moving)
     return tuple(found)
 
 
@@ -133,6 +135,15 @@ def _gain(runs: Sequence[Recording]) -> list[str]:
         return []
     return ["Motor torque and shaft torque differ by a gain, which was fitted beside the baseline: which of the two "
             "reads wrongly these runs do not tell; a weight on a known lever does."]  # fmt: skip
+
+
+def _fast(runs: Sequence[Recording]) -> list[str]:
+    if not any(run.look.fast for run in runs):
+        return []
+    most = max(run.smoother.sigma_hz for run in runs)
+    return [f"Something rings above what is compared at first ({BANDWIDTH:g} Hz), so that runs with rows often enough "
+            f"were compared up to {most:.0f} Hz. Torque balances are noisier there, and small friction is not looked "
+            "for as closely."]  # fmt: skip
 
 
 def _held_output(runs: Sequence[Recording]) -> list[str]:
