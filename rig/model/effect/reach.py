@@ -26,6 +26,7 @@ class Reach:
     has: frozenset[str] = MEASURED  # channels that any run measured
     runs: int = 30
     backwards: float = 0.5  # of the rows that turn, share of those that go the way of fewer
+    fast_backwards: float = 0.5  # of the squared motor speed, share of the way that has less
     turned_both_ways: float = 1.0  # most output turns in one run the way of which it is less
     pulled: float = 0.5  # of the squared torque, share of that with the sign that has less
     weights: int = 2  # different external torques

@@ -17,6 +17,7 @@ from rig.analysis.tracing.rest.above_the_band import Line, _from_speed_to_speed,
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.cannot import cannot
 from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER
 from rig.analysis.tracing.trace import trace
 from rig.model.second_mode.output import _rate
@@ -83,48 +84,78 @@ def test_it_rings_where_two_runs_show_half_a_floor(
     assert rings_above(s, dict.fromkeys(keys, floor)) is loud
 
 
-def standing(*names: str, loud: bool = False) -> Any:
+def scored(name: str, size: float, channel: str) -> HeldOutScore:
+    return HeldOutScore(name, 1.0, size, 1.0, 1.0, ((0, channel),))
+
+
+MODE = scored("torsional_mode", 4.0, "A")
+HOUSING = scored("support_compliance", 2.0, "A")
+LATE = scored("channel_time_skew", 1.5, "A")
+COGGING = scored("cogging_torque", 1.5, "M")
+LARGE = scored("stribeck_friction", 5.0, "M")
+
+
+def standing(*scores: HeldOutScore, loud: bool = False) -> Any:
     first = SimpleNamespace(folder=Path("nowhere"), runs=())
-    solution = SimpleNamespace(design=SimpleNamespace(terms=[SimpleNamespace(name=name) for name in names]))
-    return SimpleNamespace(names=set(names), loud=loud, p=SimpleNamespace(campaign=first), solution=solution)
+    terms = [SimpleNamespace(name=score.name) for score in scores]
+    solution = SimpleNamespace(design=SimpleNamespace(terms=terms))
+    names = {score.name for score in scores}
+    return SimpleNamespace(names=names, scores=scores, loud=loud, p=SimpleNamespace(campaign=first), solution=solution)
 
 
 @pytest.mark.parametrize(
     ("before", "after", "counts"),
     [
-        (standing(), standing("torsional_mode"), True),
-        (standing("support_compliance"), standing("torsional_mode"), True),
-        (standing("cogging_torque"), standing("cogging_torque", "torsional_mode"), True),
-        (standing("cogging_torque"), standing("torsional_mode"), False),  # a name is lost
-        (standing(), standing("torsional_mode", "lost_motion"), False),  # and one too many
-        (standing("torsional_mode"), standing("torsional_mode", "support_compliance"), False),
+        (standing(), standing(MODE), True),
+        (standing(HOUSING), standing(MODE), True),
+        (standing(COGGING), standing(COGGING, MODE), True),
+        (standing(COGGING), standing(MODE), False),  # fast rows tell less of the motor's torque
+        (standing(COGGING, loud=True), standing(MODE), True),  # but what does less than the mode left a rest
+        (standing(LARGE, loud=True), standing(MODE), False),
+        (standing(COGGING, loud=True), standing(MODE, loud=True), False),
+        (standing(LATE), standing(MODE), True),  # of an angle they tell more
+        (standing(LATE), standing(MODE, loud=True), False),
+        (standing(), standing(MODE, LATE), False),  # a name that had not come before
+        (standing(MODE), standing(MODE, HOUSING), False),
         (standing(), standing(), False),
-        (standing(), standing("torsional_mode", loud=True), False),
-        (standing(loud=True), standing("torsional_mode", loud=True), True),
+        (standing(), standing(MODE, loud=True), False),
+        (standing(loud=True), standing(MODE, loud=True), True),
     ],
 )
-def test_it_counts_where_one_mode_comes_to_what_had_a_name(
-    monkeypatch: pytest.MonkeyPatch, before: Any, after: Any, counts: bool
+def test_one_mode_comes_to_what_had_a_name(before: Any, after: Any, counts: bool) -> None:
+    assert fast._counts(after, before) is counts
+
+
+@pytest.mark.parametrize(("shows", "first", "tried"), [
+    (False, "torsional_mode", []),
+    (True, "lost_motion", []),  # something else explains more
+    (True, "torsional_mode", ["soft", "hub"]),  # until one stands on unseen runs
+])  # fmt: skip
+def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
+    monkeypatch: pytest.MonkeyPatch, shows: bool, first: str, tried: list[str]
 ) -> None:
-    monkeypatch.setattr(fast, "read_campaign", lambda folder, look: None)
-    monkeypatch.setattr(fast, "looking", lambda campaign, looks: None)
-    monkeypatch.setattr(fast, "prepare", lambda campaign, hold_out: None)
-    monkeypatch.setattr(fast, "searched", lambda p: (after, "ranked"))
-    tried: list[set[str]] = []
-    monkeypatch.setattr(fast, "_shows_a_mode", lambda p, beside: not tried.append({term.name for term in beside}))
     nothing: Any = None
-    kept, _ = fast.taken(before, nothing, nothing, ())
-    assert kept is (after if counts else before)
-    assert tried == [before.names - {"torsional_mode", "support_compliance"}]
+    laws = [SimpleNamespace(name=first, law=law) for law in ("soft", "hub", "never")]
+    asked: list[str] = []
 
+    def with_law(law: Any, *given: Any) -> Any:
+        asked.append(law.law)
+        return standing(MODE, loud=law.law == "soft")
 
-def test_nothing_is_searched_where_no_mode_shows(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = standing()
-    for name in ("read_campaign", "looking", "prepare"):
-        monkeypatch.setattr(fast, name, lambda *given: None)
-    monkeypatch.setattr(fast, "_shows_a_mode", lambda p, beside: False)
-    nothing: Any = None
-    assert fast.taken(before, nothing, nothing, ()) == (before, None)
+    for name in ("read_campaign", "looking", "design", "fit", "_covered", "is_calm", "_together"):
+        monkeypatch.setattr(fast, name, lambda *given: nothing)
+    prepared = SimpleNamespace(split=SimpleNamespace(fitted=()), eq=None, floors={})
+    monkeypatch.setattr(fast, "prepare", lambda campaign, hold_out: prepared)
+    monkeypatch.setattr(fast, "still", lambda start, floors: False)
+    monkeypatch.setattr(fast, "replace", lambda found, **changed: found)
+    monkeypatch.setattr(fast, "_shows_a_mode", lambda p, start, covered: shows)
+    ranked = [SimpleNamespace(term=laws[0], laws=tuple(laws[1:]))]
+    monkeypatch.setattr(fast, "_ranked", lambda p, start, covered: ranked)
+    monkeypatch.setattr(fast, "_with", with_law)
+    before, found = standing(), SimpleNamespace(ranking=())
+    kept, _ = fast.taken(before, found, nothing, ())  # type: ignore[arg-type]
+    assert asked == tried
+    assert (kept is before) is not bool(tried)
 
 
 def test_a_rate_by_six_neighbours_holds_a_wave_of_a_sixth_of_the_rate() -> None:

@@ -64,6 +64,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
         has=frozenset().union(*(run.knows for run in runs)),
         runs=len(runs),
         backwards=_lesser(way),
+        fast_backwards=_lesser(np.concatenate([p.omega_m * np.abs(p.omega_m) for p in pieces])),
         turned_both_ways=min(_most_turns(runs, 1.0), _most_turns(runs, -1.0)),
         pulled=_lesser(np.concatenate([p.torque * np.abs(p.torque) for p in pieces])),
         weights=len({round(float(np.nanmean(p.tau_ext)), 2) for p in pieces}),

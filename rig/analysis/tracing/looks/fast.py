@@ -6,18 +6,22 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from rig.analysis.tracing.fit.bank import fill, reach
+from rig.analysis.tracing.fit.bank import fill, reach, torque_noise
+from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import design
-from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, Scored, settled, still
 from rig.analysis.tracing.fit.some import ranking_of_some, some
 from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.rest.above_the_band import has_fast_rows, rings_above
 from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
 from rig.analysis.tracing.runs.look import Look
-from rig.analysis.tracing.searched import searched
-from rig.analysis.tracing.selection.selected import Selected
-from rig.analysis.tracing.thresholds import NEARLY
+from rig.analysis.tracing.searched import Tried, beside
+from rig.analysis.tracing.selection.confounders import of_the_library
+from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certain, select
+from rig.analysis.tracing.thresholds import LAWS, NEARLY
+from rig.model.effect import Reach
 from rig.model.effects.support_compliance import SupportCompliance
 from rig.model.effects.torsional_mode import TorsionalMode
 
@@ -36,24 +40,72 @@ def wanted(selected: Selected) -> bool:
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
-    """All of it once more with a low-pass twice as wide, where that shows a mode. It counts where it names one mode, or
-    the one that had a name, beside all else that had one, and as much is explained."""
+    """A mode beside all else that has a name, with a low-pass twice as wide."""
     first = so_far.p.campaign
     again = read_campaign(first.folder, Look(fast=True))
     p = prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out)
-    if not _shows_a_mode(p, [term for term in so_far.solution.design.terms if term.name not in NAMES]):
+    beside_it = [term for term in so_far.solution.design.terms if term.name not in NAMES]
+    start = fit(design(p.eq, beside_it, p.split.fitted))
+    covered = _covered(p)
+    if not _shows_a_mode(p, start, covered):
         return so_far, found
-    other, ranked = searched(p)
-    beside = so_far.names - NAMES
-    mine = other.names & NAMES
-    counts = other.names == beside | mine and len(mine) == 1 and (so_far.loud or not other.loud)
-    return (other, ranked) if counts else (so_far, found)
+    calm = not beside_it and (still(start, p.floors) or is_calm(p))
+    ranked = _ranked(p, start, covered)
+    if ranked[0].term.name not in NAMES:  # something else explains more
+        return so_far, found
+    for law in (ranked[0].term, *ranked[0].laws):
+        other = _with(law, p, start, covered, calm)
+        if _counts(other, so_far) and not (calm and not is_certain(other)):
+            return other, replace(found, ranking=_together(found.ranking, ranked))
+    return so_far, found
 
 
-def _shows_a_mode(p: Prepared, beside: Sequence[Term]) -> bool:
-    """Whether a mode explains plainly more than those terms do: a fifth of the time that all effects take."""
+def _counts(other: Selected, so_far: Selected) -> bool:
+    """Whether one mode is named, nothing else that had none, and as much is explained. What had a name may lose it
+    where fast rows tell more: a coupling that swings above the first look's band is a motor angle read late there; or
+    where it does less than the mode, beside a rest that the mode explains: the motor's torque has more noise here."""
+    kept = so_far.names - NAMES
+    if len(other.names & NAMES) != 1 or not other.names - NAMES <= kept:
+        return False
+    lost = [score for score in so_far.scores if score.name in kept - other.names]
+    if not lost:
+        return so_far.loud or not other.loud
+    told_better = all(channel in ("A", "L") for score in lost for _, channel in score.ground)
+    mode = next(score.size for score in other.scores if score.name in NAMES)
+    small = so_far.loud and all(score.size < mode for score in lost)
+    return (told_better or small) and not other.loud
+
+
+def _covered(p: Prepared) -> Reach:
+    return replace(reach([p.eq.runs[i] for i in p.split.fitted]), torque_noise=torque_noise(p.eq))
+
+
+def _shows_a_mode(p: Prepared, start: Solution, covered: Reach) -> bool:
+    """Whether a mode explains plainly more than `start` does: a fifth of the time that all effects take."""
     runs = p.split.fitted
-    covered = reach([p.eq.runs[i] for i in runs])
     bank = fill(some(p.eq.afresh(), runs), MODES, runs, covered)
-    ranking = ranking_of_some(design(p.eq, beside, runs), bank, runs, covered, NEARLY)
+    ranking = ranking_of_some(start.design, bank, runs, covered, NEARLY)
     return any(mode.evidence > PLAIN for mode in ranking)
+
+
+def _ranked(p: Prepared, start: Solution, covered: Reach) -> Sequence[Scored]:
+    """Effects of the library by what they explain beside `start`, the best shape of each with its other laws."""
+    runs = p.split.fitted
+    bank = Tried(p, with_lines(covered, start, runs)).bank
+    ranking = ranking_of_some(start.design, bank, runs, covered, LAWS)
+    return sorted(ranking, key=lambda one: -one.evidence)
+
+
+def _with(law: Term, p: Prepared, start: Solution, covered: Reach, calm: bool) -> Selected:
+    """What stands of `start` and a law of a mode: which law it is shows in runs that no fit has seen."""
+    runs = p.split.fitted
+    refined = settled(refine(start.design, law, runs, covered)[1], runs, covered)
+    again, s = beside(p, refined, covered)
+    again = replace(again, held_out=replace(again.held_out, calm=calm))
+    return select(again, Found(s, ()), runs, covered)
+
+
+def _together(first: Sequence[Scored], ranked: Sequence[Scored]) -> tuple[Scored, ...]:
+    """Candidates of the first look, and modes as the second one has them, by evidence."""
+    both = [one for one in first if one.term.name not in NAMES] + [one for one in ranked if one.term.name in NAMES]
+    return of_the_library(tuple(sorted(both, key=lambda one: -one.evidence)))

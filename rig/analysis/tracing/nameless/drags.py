@@ -22,8 +22,9 @@ class UnevenDrag(Nameless):
     loose: ClassVar[tuple[bool, ...]] = (False,)
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Powers: of a film between lip and shaft, of a fluid, of what it stirs."""
-        return when(reach.backwards > SOME, (0.5,), (1.0,), (2.0,))
+        """Powers: of a film between lip and shaft, of a fluid, of what it stirs. Where the motor turns fast one way
+        alone it is any drag."""
+        return when(reach.fast_backwards > SOME, (0.5,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
