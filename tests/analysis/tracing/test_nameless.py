@@ -80,7 +80,8 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
         return {c.effect.name for c in CONFOUNDERS.values() if c.effect.shapes(covered)}
 
     everything = laws()
-    assert everything - laws(backwards=0.02) == {"uneven_drag", "sector_drag"}
+    assert everything - laws(backwards=0.02) == {"sector_drag"}
+    assert everything - laws(fast_backwards=0.02) == {"uneven_drag"}  # slow runs alone go both ways: any drag does so
     assert everything - laws(turned_both_ways=0.1) == {"sector_drag"}  # of a turn: a weight does as much one way
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
