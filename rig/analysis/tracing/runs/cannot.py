@@ -141,9 +141,8 @@ def _fast(runs: Sequence[Recording]) -> list[str]:
     if not any(run.look.fast for run in runs):
         return []
     most = max(run.smoother.sigma_hz for run in runs)
-    return [f"Something rings above what is compared at first ({BANDWIDTH:g} Hz), so that runs with rows often enough "
-            f"were compared up to {most:.0f} Hz. Torque balances are noisier there, and small friction is not looked "
-            "for as closely."]  # fmt: skip
+    return [f"A mode was looked for at fast rows: runs that have them were compared up to {most:.0f} Hz, {BANDWIDTH:g} Hz "
+            "at first. Torque balances are noisier there, and small friction is not looked for as closely."]  # fmt: skip
 
 
 def _held_output(runs: Sequence[Recording]) -> list[str]:
