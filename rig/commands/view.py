@@ -60,8 +60,8 @@ def _follow(folder: Path, where: str) -> int:
 
     with Viewer(where) as viewer:
         viewer.follow(folder)
-        _say(viewer.url)
         with _until_asked():
+            _say(viewer.url)  # what it says holds from then on
             while viewer.runs:
                 time.sleep(BEAT)
     return 0
@@ -84,8 +84,9 @@ def _show(folder: Path, where: str) -> int:
         draw(recorded, said, canvas)
         canvas.flush(60.0)  # s: 10 MB to a process on this machine
         canvas.close()  # the server has it all; the SDK would complain in lines of its own once that is gone
-        _say(Pages(server.port, lambda: server.starts).url if where == "web" else "")
+        page = Pages(server.port, lambda: server.starts).url if where == "web" else ""
         with _until_asked():
+            _say(page)
             while server.runs:
                 time.sleep(BEAT)
     except (Gone, Stalled) as error:
