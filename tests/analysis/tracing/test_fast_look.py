@@ -20,6 +20,7 @@ from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER
 from rig.analysis.tracing.trace import trace
+from rig.core.errors import UsageError
 from rig.model.second_mode.output import _rate
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
@@ -142,10 +143,10 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
         asked.append(law.law)
         return standing(MODE, loud=law.law == "soft")
 
-    for name in ("read_campaign", "looking", "design", "fit", "_covered", "is_calm", "_together"):
+    for name in ("design", "fit", "_covered", "is_calm", "_together"):
         monkeypatch.setattr(fast, name, lambda *given: nothing)
     prepared = SimpleNamespace(split=SimpleNamespace(fitted=()), eq=None, floors={})
-    monkeypatch.setattr(fast, "prepare", lambda campaign, hold_out: prepared)
+    monkeypatch.setattr(fast, "_prepared", lambda first, hold_out: prepared)
     monkeypatch.setattr(fast, "still", lambda start, floors: False)
     monkeypatch.setattr(fast, "replace", lambda found, **changed: found)
     monkeypatch.setattr(fast, "_shows_a_mode", lambda p, start, covered: shows)
@@ -156,6 +157,25 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
     kept, _ = fast.taken(before, found, nothing, ())  # type: ignore[arg-type]
     assert asked == tried
     assert (kept is before) is not bool(tried)
+
+
+def refusing(campaign: Any, hold_out: Any) -> Any:
+    raise UsageError("J_m comes out as -1 g·m², expected more than nothing")
+
+
+@pytest.mark.parametrize(("names", "prepare"), [(["a"], refusing), (["a", "b"], lambda campaign, hold_out: "prepared")])
+def test_what_was_told_stands_where_fast_rows_cannot_be_fitted_or_are_of_other_runs(
+    monkeypatch: pytest.MonkeyPatch, names: list[str], prepare: Any
+) -> None:
+    now = SimpleNamespace(runs=[SimpleNamespace(name=name) for name in names])
+    monkeypatch.setattr(fast, "read_campaign", lambda folder, look: now)
+    monkeypatch.setattr(fast, "looking", lambda campaign, looks: campaign)
+    monkeypatch.setattr(fast, "replace", lambda look, **changed: look)
+    monkeypatch.setattr(fast, "prepare", prepare)
+    before = standing()
+    before.p.campaign.runs = [SimpleNamespace(name="a", look=None)]
+    nothing: Any = None
+    assert fast.taken(before, nothing, nothing, ()) == (before, None)
 
 
 def test_a_rate_by_six_neighbours_holds_a_wave_of_a_sixth_of_the_rate() -> None:

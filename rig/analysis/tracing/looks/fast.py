@@ -21,6 +21,7 @@ from rig.analysis.tracing.searched import Tried, beside
 from rig.analysis.tracing.selection.confounders import of_the_library
 from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certain, select
 from rig.analysis.tracing.thresholds import LAWS, NEARLY
+from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects.support_compliance import SupportCompliance
 from rig.model.effects.torsional_mode import TorsionalMode
@@ -41,9 +42,9 @@ def wanted(selected: Selected) -> bool:
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """A mode beside all else that has a name, with a low-pass twice as wide."""
-    first = so_far.p.campaign
-    again = read_campaign(first.folder, Look(fast=True))
-    p = prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out)
+    p = _prepared(so_far.p.campaign, hold_out)
+    if p is None:
+        return so_far, found
     beside_it = [term for term in so_far.solution.design.terms if term.name not in NAMES]
     start = fit(design(p.eq, beside_it, p.split.fitted))
     covered = _covered(p)
@@ -58,6 +59,17 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
         if _counts(other, so_far) and not (calm and not is_certain(other)):
             return other, replace(found, ranking=_together(found.ranking, ranked))
     return so_far, found
+
+
+def _prepared(first: Campaign, hold_out: Sequence[str]) -> Prepared | None:
+    """The same runs at fast rows; None where these are others now, or too noisy to be fitted: what was told stands."""
+    try:
+        again = read_campaign(first.folder, Look(fast=True))
+        if [run.name for run in again.runs] != [run.name for run in first.runs]:
+            return None
+        return prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out)
+    except UsageError:
+        return None
 
 
 def _counts(other: Selected, so_far: Selected) -> bool:

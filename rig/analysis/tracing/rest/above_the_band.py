@@ -32,7 +32,7 @@ TO: Final = 0.32  # of the working rate, up to where its rows are as they were r
 STEADY: Final = 0.5  # of the mean speed, how far nine tenths of a run may vary
 LONG: Final = 10.0  # s of a run: some dozens of turns, whose orders stand well apart
 BESIDE: Final = (0.4, 0.5, 0.6)  # orders away from a whole one, where there is only noise
-STANDS_OUT: Final = 0.45  # of the floor, RMS of those orders; clean campaigns have 0.34 at most
+STANDS_OUT: Final = 0.45  # of the floor, RMS of those orders; 16 campaigns in which nothing rings have 0.34 at most
 RUNS: Final = 2  # that show it
 ITSELF: Final = {"A": 0, "L": 2}  # with which power of the speed an order of a gear or an encoder goes, by channel
 
@@ -89,11 +89,9 @@ def _lines(s: Solution, i: int, channel: str) -> list[Line]:
     run = s.design.eq.runs[i]
     longest = max(run.pieces, key=lambda piece: piece.t.size)
     rows = np.arange(min(longest.t.size, round(LONG / run.smoother.dt)))
-    wide = replace(run, pieces=(longest.part(rows),), smoother=Smoother(WIDER * _sigma(run), run.smoother.dt, 1))
-    e, theta = (
-        _left(s, wide, channel),
-        np.concatenate([p.theta_m[wide.smoother.centres(p.t.size)] for p in wide.pieces]),
-    )
+    piece, smoother = longest.part(rows), Smoother(WIDER * _sigma(run), run.smoother.dt, 1)
+    e = _left(s, replace(run, pieces=(piece,), smoother=smoother), channel)
+    theta = piece.theta_m[smoother.centres(piece.t.size)]
     rate = run.turning / TURN  # turns a second
     window = np.hanning(e.size)
     window /= window.sum()
