@@ -22,6 +22,8 @@ WINDOW = 0.2  # s
 QUIET = 3  # windows in a row
 STILL = 0.01  # rad/s of the motor: 3 counts of a 10 000 line encoder in a window
 PATIENCE = 30.0  # s from torque off to rest
+GLANCE = 0.05  # s between two looks that tell a turning motor: a count of a 2000 line encoder is 0.06 rad/s in it
+TURNING = 0.5  # rad/s, 5 rpm: what turns faster without torque is driven, or not at rest yet
 
 
 def wait_for_rest(instruments: Instruments) -> None:
@@ -46,6 +48,17 @@ def wait_for_rest(instruments: Instruments) -> None:
                 f"the motor still turns at {speed / RPM:.1f} rpm {PATIENCE:g} s after its torque went off: "
                 "does the weight drive it? Hold the output and take the weight off"
             )
+
+
+def refuse_turning(instruments: Instruments) -> None:
+    """Before a drive is energised: a motor that turns without its torque is given time to come to rest. Raises NotReady
+    for one that does not. One that tells no new angle is the guard's to judge, before the first torque.
+    """
+    before = instruments.look()
+    instruments.clock.wait_until(instruments.clock.now() + GLANCE)
+    sample = instruments.look()
+    if abs(sample.theta_m - before.theta_m) > TURNING * (sample.t - before.t) > 0.0:
+        wait_for_rest(instruments)
 
 
 def refuse_unfit(change: Change, rigging: Rigging, shaft_limit: float | None) -> None:

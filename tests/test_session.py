@@ -10,8 +10,10 @@ import pytest
 
 from rig.bench import read
 from rig.core.errors import NotReady, RecorderError
+from rig.core.operator import HangWeight
 from rig.procedures.standstill import Standstill
 from rig.process.interrupts import Interrupts
+from rig.runfile.run import Run
 from rig.session import Session
 from rig.supervisor import Act, State
 
@@ -49,3 +51,27 @@ def test_a_fault_is_not_left_while_the_drive_does_not_confirm_that_its_torque_is
         assert session.supervisor.state is State.FAULT
     session.reset()
     assert session.supervisor.state is State.CONNECTED
+
+
+def test_a_motor_that_a_weight_turns_is_not_energised(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    energised: list[object] = []
+    monkeypatch.setattr(session.instruments.drive, "enable", energised.append)
+    assert session.instruments.operator is not None
+    session.instruments.operator.make(HangWeight(30.0))
+    session.instruments.clock.wait_until(session.instruments.clock.now() + 0.5)
+    with pytest.raises(NotReady, match=r"the motor still turns at -?\d+\.\d rpm 30 s after its torque went off"):
+        session.run(Standstill(1.0))
+    assert not energised
+    assert session.folder is None
+
+
+def test_a_motor_that_comes_to_rest_meanwhile_is_waited_for(session: Session) -> None:
+    assert session.instruments.operator is not None
+    session.instruments.operator.make(HangWeight(30.0))
+    session.instruments.clock.wait_until(session.instruments.clock.now() + 0.5)
+    session.instruments.operator.make(HangWeight(0.0))
+    done = session.run(Standstill(1.0))
+    assert done.ending.status == "completed"
+    rows = Run.open(done.folder).column("theta_m")
+    assert rows is not None
+    assert abs(rows[-1] - rows[0]) < 0.01

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any
 
 from rig.bench import Bench, ClockName
-from rig.changes import judge_tare, wait_for_rest
+from rig.changes import judge_tare, refuse_turning, wait_for_rest
 from rig.control.filter import SpeedFilter
 from rig.core.errors import Ended, HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator, Rigging
@@ -201,6 +201,7 @@ class Session:
         self._refuse_now()
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
+        refuse_turning(self.instruments)
         mode = self._mode(procedure)
         folder = self.folder = self.create(root, procedure.name, manifest_of(self, procedure, mode), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")
