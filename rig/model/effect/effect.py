@@ -75,6 +75,10 @@ class Effect(ABC):
         """ω [rad/s] and ζ of a mode of its own that a run may begin with in full swing; None of one without."""
         return None
 
+    def holds(self, shape: Shape) -> bool:
+        """Whether a term of that shape leaves nothing to a second one of the effect but what its law has wrong."""
+        return False
+
     def moved_by_noise(self) -> bool:
         """True when noise of a reading moves a state of its own, and does not add to its columns."""
         return False

@@ -13,11 +13,12 @@ from rig.model.second_mode.shaken import EXCITED, shaken
 from rig.model.second_mode.swung import swung
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: what the extra inertia hangs on
-BEFORE, AFTER = 2.0, 3.0  # or a stiff coupling, with the friction on the motor's side of it or on the gear's
-SOFT = 5.0  # or a coupling with its own resonance among the frequencies that are compared
+STIFF = 2.0  # or a coupling that is told by its twist alone
+COUPLING = 3.0  # or one with its inertia, its damper and friction on either side of it
 HUB = 4.0  # or an inertia between the gear and the spring of the torque sensor
 DRIVEN = 6.0  # the inertia on the load once more, its swing told by the torque
 FLANGE = 7.0  # or an inertia behind the torque sensor, before the shaft that bears the load
+COUPLINGS = (STIFF, COUPLING)
 
 
 class TorsionalMode(Effect):
@@ -26,9 +27,8 @@ class TorsionalMode(Effect):
 
     The spring of a coupling between the motor's encoder and the wave generator twists as well, by ψ = τ/k under the
     τ that goes through it, T·(1/N − θ̃_p′) at least: the gear stands at θ_m − ψ, so θ̃ gains (1/N − θ̃_p′)·ψ and
-    the lever is that of the other angle. Of a mode above what the equations are compared at that is all there is to
-    see. A soft one swings: ψ = H_0·(τ/k + ω̇_m/ω²), H_0 = ω²/(s² + 2ζωs + ω²), J_2 = k/ω² being the wave
-    generator's inertia, and the motor feels −J_2·ψ̈.
+    the lever is that of the other angle. How the wave generator turns tells what its inertia J_2 and its friction add,
+    and the load tells how it turns: `coupling.sprung`.
 
     Where the load itself hardly moves because J_2 swings against it, ω̇ is encoder noise, and that is what H is largest
     at. The torque that drives both tells the same: J_l·ω̇ = T + (1/ω² − 1/ω_p²)·s²·H_p·T, H_p being the two inertias
@@ -56,13 +56,13 @@ class TorsionalMode(Effect):
     LOWEST: Final = 10.0  # Hz
     STEP: Final = 1.08  # neighbouring frequencies within a half width of a 4 % damped peak
     ZETA: Final = 0.04
-    DAMPED: Final = 0.1  # of a soft coupling in the bank: its neighbours are three steps away, the refit finds the rest
     SOFTEST: Final = 1.0  # rad/(N·m): a coupling that twists by a turn at 6 N·m is none
     PEAK: Final = 0.15  # of a frequency, half its 95 % interval: of true ones it is a fiftieth
     FURTHEST: Final = 1.6  # of the band: a flange shows below its resonance as well
     OTHERS: Final = 0.75  # of that: how far the other modes go
     AT_THE_END: Final = 0.96  # of the frequencies that are fitted: there it is none that was found
     LIGHTEST: Final = 0.14  # of all that turns, what is left on a motor: its rotor at least
+    SHARE: Final = 1.5  # of the friction, on one side of a coupling: of it and of its viscous part, both being fitted
     APART: Final = 3.0  # times: how far the two a flange tells its frequency by may differ, as 1/ω² and as a peak
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -74,9 +74,8 @@ class TorsionalMode(Effect):
         frequencies = self.LOWEST * self.STEP ** np.arange(count)
         modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)
         flange = tuple((FLANGE, float(f), self.ZETA, 0.0) for f in frequencies[::2])
-        soft = tuple((SOFT, float(f), self.DAMPED, 0.0) for f in frequencies[::3])
         top = float(max(reach.band, self.LOWEST))
-        return (*modes, *flange, *soft, *((side, top, self.ZETA, 0.0) for side in (BEFORE, AFTER, HUB)))
+        return (*modes, *flange, *((side, top, self.ZETA, 0.0) for side in (*COUPLINGS, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""
@@ -84,7 +83,7 @@ class TorsionalMode(Effect):
 
     def expands(self, shape: Shape) -> bool:
         """About the twist of a coupling."""
-        return shape[0] in (BEFORE, AFTER, SOFT)
+        return shape[0] in COUPLINGS
 
     def about(self, shape: Shape, coefficients: Array) -> Shape:
         """The compliance as found."""
@@ -92,42 +91,41 @@ class TorsionalMode(Effect):
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A mode that the fit pushed out of the band, or down to where none is looked for, or damped until it was no
-        peak; a stiff coupling needs none inside."""
+        peak; a coupling and a hub need none inside."""
         low, high = self.bounds(reach)[1]
-        if shape[0] not in (LOAD, MOTOR, DRIVEN, SOFT, FLANGE):
+        if shape[0] not in (LOAD, MOTOR, DRIVEN, FLANGE):
             return False
         flat = shape[2] > self.AT_THE_END * self.bounds(reach)[2][1]
         end = high if shape[0] == FLANGE else self.OTHERS * high
-        above = shape[0] != SOFT and shape[1] > self.AT_THE_END * end
-        return flat or above or shape[1] * self.AT_THE_END < low
+        return flat or shape[1] > self.AT_THE_END * end or shape[1] * self.AT_THE_END < low
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """A resonance is a peak: where its frequency is known no better than that, something else has been fitted."""
         return scale.ci95[1] - scale.ci95[0] < 2 * self.PEAK * abs(scale.value)
 
     def swings(self, shape: Shape) -> tuple[float, float] | None:
-        """Of all but a stiff coupling and a hub."""
+        """Of all but a coupling and a hub, whose columns do not."""
         side, frequency, zeta, _ = shape
-        return (2.0 * np.pi * frequency, zeta) if side in (LOAD, MOTOR, DRIVEN, SOFT, FLANGE) else None
+        return (2.0 * np.pi * frequency, zeta) if side in (LOAD, MOTOR, DRIVEN, FLANGE) else None
+
+    def holds(self, shape: Shape) -> bool:
+        """A coupling with all that it has: the encoder's noise takes some of the inertia on it from the motor's torque,
+        which a second mode would give back."""
+        return shape[0] == COUPLING
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column: the acceleration behind the spring, or the twist of a stiff coupling for 1 rad/(N·m); of a hub
-        two, for J_2 and for J_2/k; of a flange three, for 1/k, J_2/k and 1/ω²; of a soft coupling three, for 1/k, 1/ω²
-        and J_2/ω²."""
+        """One column: the acceleration behind the spring, or the twist of a coupling for 1 rad/(N·m); of one with all
+        that it has six; of a hub two, for J_2 and for J_2/k; of a flange three, for 1/k, J_2/k and 1/ω²."""
         side, frequency, zeta, about = shape
         omega = 2.0 * np.pi * frequency
         if side == HUB:
             return output.hub(signals)
         if side == FLANGE:
             return output.flange(signals, omega, zeta)
-        if side == SOFT:
-            return coupling.soft(signals, omega, zeta, about)
-        if side == BEFORE:
-            return coupling.stiff(signals, coupling.through_it(signals, about), about)
-        if side == AFTER:
-            # the wave generator's inertia, say half of J_m, its friction and the gear are beyond it
-            through = signals.tau_m - 0.5 * signals.gear.J_m * signals.alpha_m
-            return coupling.stiff(signals, through, about)
+        if side == COUPLING:
+            return coupling.sprung(signals, about)
+        if side == STIFF:
+            return coupling.stiff(signals, about)
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
             if side == DRIVEN:
@@ -155,7 +153,7 @@ class TorsionalMode(Effect):
         if fit.shape[0] in (LOAD, MOTOR):
             return (parameter("J_2", fit.coefficients[0], fit.half_width(by[0]), "kg·m²"), *mode)
         compliance = parameter("coupling_compliance", fit.coefficients[0], fit.half_width(by[0]), "rad/(N·m)")
-        return (compliance, *mode) if fit.shape[0] == SOFT else (compliance,)
+        return (compliance, *(self._on_it(fit, by) if fit.shape[0] == COUPLING else ()))
 
     def _driven(self, fit: Fit, by: Array, by_frequency: Array, by_zeta: Array) -> tuple[Parameter, ...]:
         """Of J_2 on its own spring, from how both inertias swing against each other."""
@@ -172,6 +170,25 @@ class TorsionalMode(Effect):
             parameter("zeta", zeta, fit.half_width(slowed * by_zeta - zeta / 2 * slowed**2 * by_x), "1"),
         )
 
+    def _on_it(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
+        """Of the wave generator on its coupling, where the kinematic error tells: what the motor's torque says of J_2
+        is less, as it answers the rounding of the encoder as well."""
+        by_k, square = fit.coefficients[:2]
+        if not fit.half_width(by[1]) < 2.0 * self.PEAK * square:
+            return ()
+        inertia, frequency = square / by_k, 1.0 / (2.0 * np.pi * np.sqrt(square))
+        along = (by[1] - inertia * by[0]) / by_k
+        return (
+            parameter("J_2", inertia, fit.half_width(along), "kg·m²"),
+            parameter("frequency", frequency, fit.half_width(by[1] * frequency / (2.0 * square)), "Hz"),
+        )
+
+    def _rubs(self, fit: Fit) -> bool:
+        """Whether no more friction is on the wave generator's side of its coupling than there is: by as much as its
+        viscous one twists it a motor's angle that is read late differs as well."""
+        both = self.SHARE * fit.coefficients[0]
+        return bool(abs(fit.coefficients[3]) < both and abs(fit.coefficients[4]) < both * fit.known.B_m)
+
     def _of_hub(self, fit: Fit, by: Array) -> tuple[Parameter, ...]:
         """Without a frequency where 1/ω² may as well be nothing: the hub is stiff, as far as can be told. It is no peak
         that has to be seen: far below it the hub's inertia shows as well."""
@@ -186,13 +203,15 @@ class TorsionalMode(Effect):
         return (*turned, parameter("hub_frequency", frequency, half, "Hz"))
 
     def plausible(self, fit: Fit) -> bool:
-        """An inertia is positive, and so is a compliance; of a hub's none that is beyond all that is compared; a flange
-        slows the load as its frequency says; a motor has a rotor of its own."""
+        """An inertia is positive, and so is a compliance; of a hub's and a coupling's none that is beyond all that is
+        compared; a flange slows the load as its frequency says; a motor has a rotor of its own."""
         inertia, *others = fit.coefficients[:2]
         if fit.shape[0] == FLANGE:
             told = fit.coefficients[2] * (2.0 * np.pi * fit.shape[1]) ** 2
             return bool(min(fit.coefficients[:2]) > 0 and 1.0 / self.APART < told < self.APART)
-        if fit.shape[0] == HUB:
+        if fit.shape[0] == COUPLING and not self._rubs(fit):
+            return False
+        if fit.shape[0] in (HUB, COUPLING):
             return bool(inertia > 0 and others[0] > -1.0 / (2.0 * np.pi * fit.shape[1]) ** 2)
         if fit.shape[0] == MOTOR and fit.known.J_m < self.LIGHTEST * (fit.known.J_m + inertia):
             return False  # lines of an encoder in runs that turn steadily: nothing accelerates, and they tell J_m

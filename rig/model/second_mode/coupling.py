@@ -9,50 +9,58 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.second_mode.swung import swung
+from rig.model.second_mode.rates import following, rate
+from rig.model.second_mode.shaken import shaken
 from rig.model.waves import sums
 
 Array = npt.NDArray[np.float64]
 
+TURNS: Final = 5  # each leaves a twentieth
 SMALL: Final = 1e-6  # rad: a twist by less has the tangent's slopes
 
 
-def stiff(s: Signals, through: Array, about: float) -> Mapping[Port, Array]:
-    """One column: the twist under `through` N·m (n,) for 1 rad/(N·m), about a compliance of `about` rad/(N·m)."""
+def stiff(s: Signals, about: float) -> Mapping[Port, Array]:
+    """One column: the twist under what the gear takes for 1 rad/(N·m), about a compliance of `about` rad/(N·m)."""
+    through = through_it(s, about)
     lever, bend = twisted(s, about * through) if about else tangent(s)
     return {Port.KINEMATIC_ERROR: (lever * through)[:, None], Port.MOTOR_TORQUE: (s.torque * bend * through)[:, None]}
 
 
-def soft(s: Signals, omega: float, zeta: float, about: float) -> Mapping[Port, Array]:
-    """Three: for 1/k, 1/ω² and J_2/ω², ψ = H_0·(τ/k + ω̇_m/ω²) being the twist; the motor feels −J_2·ψ̈."""
+def sprung(s: Signals, about: float) -> Mapping[Port, Array]:
+    """Six, for 1/k, J_2/k, b/k, c/k, d/k and J_2: the twist ψ = (T·lever + J_2·ω̇_w − b·(ω_m − ω_w) + c·f + d·ω_m)/k,
+    where c is the share of the friction f that is the wave generator's, and d what it has more of the viscous one; and
+    what the motor feels, J_2·(ω̇_w − ω̇_m). How the wave generator turns, ω_w, the load tells: there is no resonance in
+    it that would make much of little errors.
+    """
 
-    def swinging(whole: Signals) -> tuple[Array, ...]:
-        torque = through_it(whole, about)
-        return (*swung(whole, torque, omega, zeta), *swung(whole, whole.alpha_m, omega, zeta))
+    def turned(whole: Signals) -> tuple[Array, ...]:
+        omega, alpha = wave_generator(whole)
+        return tuple(shaken(whole, x) for x in (alpha, omega - whole.omega_m, alpha - whole.alpha_m))
 
-    by_torque, jerk_t, by_alpha, jerk_a = s.states(swinging)
-    lever, bend = twisted(s, about * by_torque + by_alpha / omega**2) if about else tangent(s)
-    turned, twist, torque = s.torque * bend, np.zeros((lever.size, 3)), np.empty((lever.size, 3))
-    twist[:, 0], twist[:, 1] = lever * by_torque, lever * by_alpha
-    torque[:, 0], torque[:, 1], torque[:, 2] = turned * by_torque, turned * by_alpha - jerk_t, -jerk_a
-    return {Port.KINEMATIC_ERROR: twist, Port.MOTOR_TORQUE: torque}
+    alpha, behind, more = s.states(turned)
+    through = through_it(s, about)
+    friction = s.tau_m - through - s.gear.J_m * s.alpha_m if np.isfinite(s.tau_m).all() else s.way
+    lever, bend = twisted(s, about * through) if about else tangent(s)
+    loads = np.stack([through, alpha, behind, friction, s.omega_m, np.zeros(lever.size)], 1)
+    torque = (s.torque * bend)[:, None] * loads
+    torque[:, 5] = more
+    return {Port.KINEMATIC_ERROR: lever[:, None] * loads, Port.MOTOR_TORQUE: torque}
+
+
+def wave_generator(s: Signals) -> tuple[Array, Array]:
+    """Its speed and acceleration, rad/s and rad/s² (n,), as the load has them: θ_w = N·(θ_l + φ + θ̃_p(θ_w)), φ being
+    the wind-up."""
+    series, theta = s.gear.kinematic_error, s.theta_m
+    wound = following(s.torque / s.gear.K, s.gear.B_sp / s.gear.K, s.dt)
+    for _ in range(TURNS):
+        (error,) = sums(series, theta, 0)
+        theta = s.ratio * (s.theta_l + wound + error)
+    between = rate(wound + error, s.dt)
+    return s.ratio * (s.omega_l + between), s.ratio * (s.alpha_l + rate(between, s.dt))
 
 
 def through_it(s: Signals, about: float) -> Array:
-    """T times the lever at the wave generator's own angle, N·m. Frequency and damping change nothing of it, and are
-    tried many at a time: the last is kept.
-    """
-    last: dict[float, Array] = s.once("coupling", dict)
-    through = last.get(about)
-    if through is None:
-        through = turned_by(s, about)
-        last.clear()
-        last[about] = through
-    return through
-
-
-def turned_by(s: Signals, about: float) -> Array:
-    """The same, made afresh."""
+    """T times the lever at the wave generator's own angle, N·m."""
     straight = s.torque * (1.0 / s.ratio - s.series_slope)
     if not about:
         return straight

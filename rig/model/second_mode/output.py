@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Port, Signals
-from rig.model.memory import follower
+from rig.model.second_mode.rates import following, rate
 from rig.model.second_mode.shaken import shaken
 from rig.model.second_mode.swung import swung
 
 Array = npt.NDArray[np.float64]
-
-AROUND: Final = 3  # rows
-SIXTH: Final = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60  # central difference of the sixth order
 
 
 def hub(s: Signals) -> Mapping[Port, Array]:
@@ -24,8 +20,8 @@ def hub(s: Signals) -> Mapping[Port, Array]:
     spring of k. It winds up under that as 1/(K + B_sp·d/dt): at 80 Hz its damper takes half as much as its spring."""
 
     def carried(whole: Signals) -> tuple[Array, ...]:
-        both = (shaken(whole, x) for x in (whole.alpha_l, _rate(whole.torque_rate, whole.dt)))
-        return tuple(made for x in both for made in (x, behind(x, s.gear.B_sp / s.gear.K, whole.dt)))
+        both = (shaken(whole, x) for x in (whole.alpha_l, rate(whole.torque_rate, whole.dt)))
+        return tuple(made for x in both for made in (x, following(x, s.gear.B_sp / s.gear.K, whole.dt)))
 
     by_load, wound_load, by_spring, wound_spring = s.states(carried)
     lever = 1.0 / s.ratio - s.series_slope
@@ -33,22 +29,6 @@ def hub(s: Signals) -> Mapping[Port, Array]:
         Port.WIND_UP: np.stack([wound_load, wound_spring], 1) / s.gear.K,
         Port.MOTOR_TORQUE: np.stack([by_load, by_spring], 1) * lever[:, None],
     }
-
-
-def behind(x: Array, tau: float, dt: float) -> Array:
-    """x (n,) through 1/(1 + τs), τ in s, x linear between rows dt s apart, exact; starts in balance with x[0]."""
-    keep = float(np.exp(-dt / tau)) if tau > 0 else 0.0
-    slope = tau / dt * (1.0 - keep)
-    now, before = 1.0 - slope, slope - keep
-    return np.asarray(follower(np.ascontiguousarray(x), now, before, keep, float(x[0]) * slope if x.size else 0.0))
-
-
-def _rate(x: Array, dt: float) -> Array:
-    """dx/dt (n,), by the three rows on each side: a difference of neighbours lacks a sixth at a sixth of the rate."""
-    out = np.gradient(x, dt)
-    if x.size > 2 * AROUND:
-        out[AROUND:-AROUND] = np.correlate(x, SIXTH, "valid") / dt
-    return out
 
 
 def flange(s: Signals, omega: float, zeta: float) -> Mapping[Port, Array]:

@@ -21,7 +21,7 @@ from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER
 from rig.analysis.tracing.trace import trace
 from rig.core.errors import UsageError
-from rig.model.second_mode.output import _rate
+from rig.model.second_mode.rates import rate
 from tests.blind.cases import Request
 from tests.blind.generate import write_case
 
@@ -181,5 +181,5 @@ def test_what_was_told_stands_where_fast_rows_cannot_be_fitted_or_are_of_other_r
 def test_a_rate_by_six_neighbours_holds_a_wave_of_a_sixth_of_the_rate() -> None:
     t = np.arange(200) * 2e-3
     omega = 2 * np.pi * 80.0
-    off = _rate(np.sin(omega * t), 2e-3)[3:-3] / omega - np.cos(omega * t)[3:-3]
+    off = rate(np.sin(omega * t), 2e-3)[3:-3] / omega - np.cos(omega * t)[3:-3]
     assert np.abs(off).max() < 0.01  # a difference of neighbours: 0.16

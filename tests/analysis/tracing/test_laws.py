@@ -34,10 +34,10 @@ from rig.model.effects.thermal_friction_drift import CLOCK, HEAT, LOGGED, SOAK, 
 from rig.model.effects.tooth_mesh_error import ToothMeshError
 from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torque_sensor_crosstalk import TorqueSensorCrosstalk
-from rig.model.effects.torsional_mode import AFTER, BEFORE, HUB, SOFT, TorsionalMode
+from rig.model.effects.torsional_mode import COUPLING, HUB, STIFF, TorsionalMode
 from rig.model.fourier import FourierSeries
 from rig.model.second_mode import coupling
-from rig.model.second_mode.output import behind
+from rig.model.second_mode.rates import following
 from tests.contract.test_effects import KNOWN, REACH, N, motion
 
 RAW, FACTOR = 1e-3, 4
@@ -71,7 +71,7 @@ def test_heat_comes_from_friction_stays_with_a_slow_leak_and_goes_with_a_fast_on
     np.testing.assert_allclose(later.heat(20.0), at.heat(20.0)[2:])
 
 
-@pytest.mark.parametrize("side", [BEFORE, AFTER])
+@pytest.mark.parametrize("side", [STIFF, COUPLING])
 @pytest.mark.parametrize(("soft", "about", "within"), [(1e-3, 0.0, 2e-3), (0.05, 0.05, 1e-3)])
 def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(
     side: float, soft: float, about: float, within: float
@@ -81,8 +81,6 @@ def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(
     behind = s.theta_m
     for _ in range(20):
         behind = s.theta_m - soft * s.torque * (1 / N - p.slope(behind))
-    twist = s.theta_m - behind
-    s = dataclasses.replace(s, tau_m=twist / soft + 0.5 * KNOWN.J_m * s.alpha_m)
     error, torque = behind_the_encoder(s, behind)
     ports = TorsionalMode().columns(s, (side, 70.0, 0.04, about))
     np.testing.assert_allclose(soft * ports[Port.KINEMATIC_ERROR][:, 0], error, atol=within * np.abs(error).max())
@@ -97,47 +95,48 @@ def behind_the_encoder(s: Signals, behind: Array) -> tuple[Array, Array]:
 
 
 @pytest.mark.slow
-def test_a_soft_coupling_swings_as_its_own_equation_of_motion_says() -> None:
-    """J_2·(ω̇_m − ψ̈) = k·ψ + c·ψ̇ − T·(1/N − θ̃_p′(θ_m − ψ)), integrated apart."""
-    s, p, omega, zeta, inertia = motion(), KNOWN.kinematic_error, 2 * np.pi * 9.0, 0.06, 5e-4
+def test_a_coupling_swings_as_its_own_equation_of_motion_says() -> None:
+    """J_2·(ω̇_m − ψ̈) = k·ψ + b·ψ̇ − T·(1/N − θ̃_p′(θ_m − ψ)) − f, integrated apart; the load shows how it turns."""
+    s, p, omega, zeta, inertia, rubs = motion(), KNOWN.kinematic_error, 2 * np.pi * 9.0, 0.06, 5e-4, 0.04
+    k, b = inertia * omega**2, 2 * zeta * omega * inertia
 
     def swing(t: float, state: Array) -> Array:
         theta, alpha, torque = (np.interp(t, s.t, x) for x in (s.theta_m, s.alpha_m, s.torque))
-        load = torque * (1 / N - p.slope(np.array(theta - state[0])))
+        load = torque * (1 / N - p.slope(np.array(theta - state[0]))) + rubs
         return np.array([state[1], alpha + load / inertia - omega**2 * state[0] - 2 * zeta * omega * state[1]])
 
-    start = [(s.torque[0] * (1 / N - s.series_slope[0]) / inertia + s.alpha_m[0]) / omega**2, 0.0]
+    start = [(s.torque[0] * (1 / N - s.series_slope[0]) + rubs + inertia * s.alpha_m[0]) / k, 0.0]
     found = solve_ivp(swing, (s.t[0], s.t[-1]), start, t_eval=s.t, rtol=1e-9, atol=1e-12, max_step=s.dt)
     psi = found.y[0]
     accelerated = np.array([swing(t, y)[1] for t, y in zip(s.t, found.y.T, strict=True)])
     error, torque = behind_the_encoder(s, s.theta_m - psi)
-    c = 1 / (inertia * omega**2)
-    ports = TorsionalMode().columns(s, (SOFT, 9.0, zeta, c))
-    coefficients, on = np.array([c, 1 / omega**2, inertia / omega**2]), slice(1, None)
+    s = seen_from_the_load(s, s.theta_m - psi)
+    s = dataclasses.replace(s, tau_m=s.torque * (1 / N - p.slope(s.theta_m - psi)) + rubs + KNOWN.J_m * s.alpha_m)
+    ports = TorsionalMode().columns(s, (COUPLING, 70.0, 0.04, 1 / k))
+    coefficients, on = np.array([1 / k, inertia / k, b / k, 1 / k, 0.0, inertia]), slice(20, -20)
     got = {port: (columns @ coefficients)[on] for port, columns in ports.items()}
-    np.testing.assert_allclose(got[Port.KINEMATIC_ERROR], error[on], atol=0.01 * np.abs(error).max())
+    np.testing.assert_allclose(got[Port.KINEMATIC_ERROR], error[on], atol=0.02 * np.abs(error).max())
     want = (torque - inertia * accelerated)[on]
-    np.testing.assert_allclose(
-        got[Port.MOTOR_TORQUE], want, atol=0.02 * np.abs(want).max()
-    )  # lever of the twist at rest
+    # the lever is that of the twist at rest
+    np.testing.assert_allclose(got[Port.MOTOR_TORQUE], want, atol=0.1 * np.abs(want).max())
 
 
-def test_the_torque_through_a_soft_coupling_is_made_once_for_all_its_frequencies(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    made, of, effect, s = list[float](), coupling.turned_by, TorsionalMode(), motion()
+def seen_from_the_load(s: Signals, theta_w: Array) -> Signals:
+    """With the load where a wave generator at `theta_w` rad (n,) has it."""
+    wound = following(s.torque / KNOWN.K, KNOWN.B_sp / KNOWN.K, s.dt)
+    theta_l = theta_w / N - KNOWN.kinematic_error.value(theta_w) - wound
+    omega_l = np.gradient(theta_l, s.dt)
+    return dataclasses.replace(s, theta_l=theta_l, omega_l=omega_l, alpha_l=np.gradient(omega_l, s.dt))
 
-    def turned(signals: Signals, about: float) -> Array:
-        made.append(about)
-        return of(signals, about)
 
-    monkeypatch.setattr(coupling, "turned_by", turned)
-    shapes = [(SOFT, hz, 0.1, about) for about in (0.02, 0.03, 0.0, 0.02) for hz in (9.0, 12.0, 20.0)]
-    kept = [effect.columns(s, shape) for shape in shapes]
-    assert made == [0.02, 0.03, 0.0, 0.02]
-    for shape, ports in zip(shapes, kept, strict=True):
-        for port, columns in effect.columns(motion(), shape).items():
-            np.testing.assert_array_equal(ports[port], columns)
+def test_how_a_wave_generator_turns_is_read_from_the_load() -> None:
+    s = motion()
+    turned = s.theta_m - 0.01 * np.sin(2 * np.pi * 5.0 * s.t)
+    omega, alpha = coupling.wave_generator(seen_from_the_load(s, turned))
+    inside = slice(20, -20)
+    np.testing.assert_allclose(omega[inside], np.gradient(turned, s.dt)[inside], atol=2e-3)
+    want = np.gradient(np.gradient(turned, s.dt), s.dt)[inside]
+    np.testing.assert_allclose(alpha[inside], want, atol=0.02 * np.abs(want).max())
 
 
 def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
@@ -166,8 +165,8 @@ def test_what_follows_is_a_first_order_behind_at_any_time_constant(tau: float) -
     t = np.arange(1000) * dt
     gone = np.exp(-t / tau) if tau else 0.0 * t
     late = (np.sin(omega * t) - tau * omega * (np.cos(omega * t) - gone)) / (1 + (tau * omega) ** 2)
-    np.testing.assert_allclose(behind(np.sin(omega * t), tau, dt), late, atol=6e-3)
-    np.testing.assert_allclose(behind(np.full(5, 3.0), tau, dt), 3.0, atol=1e-12)
+    np.testing.assert_allclose(following(np.sin(omega * t), tau, dt), late, atol=6e-3)
+    np.testing.assert_allclose(following(np.full(5, 3.0), tau, dt), 3.0, atol=1e-12)
 
 
 def test_an_inertia_on_a_soft_sensor_is_told_whole() -> None:
@@ -401,7 +400,7 @@ def test_a_housing_has_modes_of_its_own_frequencies_and_the_same_one_only_once()
     assert _same(at[0], at[1])
     assert not _same(at[0], at[2])
     assert not _same(at[2], at[0])
-    coupled = [Term(TorsionalMode(), (BEFORE, hz, 0.05, 0.0)) for hz in (20.0, 80.0)]
+    coupled = [Term(TorsionalMode(), (STIFF, hz, 0.05, 0.0)) for hz in (20.0, 80.0)]
     assert _same(*coupled)
 
 

@@ -178,10 +178,11 @@ def _own(run: Recording) -> Array:
     Without the sensor the friction that is the same all along is the test's own too, (n, 3): a friction that falls
     with speed or grows with load, and one beside the spring, would all be that much. And so is a constant: the clamp
     turns the output a little."""
-    gain = joined([run.smoother(piece.tau_l) for piece in run.pieces])
+    f = run.smoother.of("M")
+    gain = joined([f(piece.tau_l) for piece in run.pieces])
     if not run.is_wound:
         return gain[:, None]
-    way = joined([run.smoother(piece.way) for piece in run.pieces])
+    way = joined([f(piece.way) for piece in run.pieces])
     return np.stack([gain, way, np.ones_like(way)], 1)
 
 
@@ -202,11 +203,12 @@ def _derived(run: Recording, channel: str) -> bool:
 def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...]]:
     """Response (n,), baseline columns (n, b) and their places, all rows."""
     make = {"A": _held if run.look.held_load else _angle, "M": _motor, "R": _motor, "L": _load}[channel]
-    made = [make(piece, run.smoother, run.knows) for piece in run.pieces]
+    f = run.smoother.of(channel)
+    made = [make(piece, f, run.knows) for piece in run.pieces]
     if channel == "M" and run.is_wound:
-        made = [_wound(y, z, piece, run.smoother) for (y, z), piece in zip(made, run.pieces, strict=True)]
+        made = [_wound(y, z, piece, f) for (y, z), piece in zip(made, run.pieces, strict=True)]
     if run.look.gain and channel in "MR" and "tau_l" in run.has:
-        made = [(y, z | {"gain": run.smoother(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
+        made = [(y, z | {"gain": f(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
     if run.load_unread and channel in "AM":
         made = [beside_load(channel, *m, p, run) for m, p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])
@@ -238,7 +240,7 @@ def _shaken(run: Recording, alpha: Array) -> bool:
     if noise * (12 * run.thinned) ** 0.5 < 0.99 * COARSE:
         return False
     usual = float(np.nanmedian(np.abs(alpha))) / 0.6745  # the median does not see reversals
-    return usual < SHAKEN * noise * run.smoother.gain(2)
+    return usual < SHAKEN * noise * run.smoother.of("M").gain(2)
 
 
 Columns = tuple[Array, dict[str, Array]]

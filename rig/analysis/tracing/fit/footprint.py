@@ -83,7 +83,7 @@ def footprint(
     for port, columns in ports.items():
         for first in FOOTPRINTS[port](columns, s):
             for channel, column, order in _passed_on(first, s, has, is_wound):
-                made = f(column, order)
+                made = f.of(channel)(column, order)
                 out[channel] = out[channel] + made if channel in out else made
     if held_load and "A" in out:
         out["A"] = f(-ports[Port.READS_THETA_L]) if Port.READS_THETA_L in ports else np.zeros_like(out["A"])

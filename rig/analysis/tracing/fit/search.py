@@ -259,7 +259,8 @@ def _chosen(term: Term) -> tuple[float, ...]:
 
 
 def _new(term: Term, s: Solution) -> bool:
-    return all(t.name != term.name or not _same(t, term) for t in s.design.terms)
+    mine = [t for t in s.design.terms if t.name == term.name]
+    return not any(t.effect.holds(t.shape) or _same(t, term) for t in mine)
 
 
 def _same(a: Term, b: Term) -> bool:

@@ -23,7 +23,7 @@ Columns = tuple[Array, dict[str, Array]]
 def beside_load(channel: str, y: Array, columns: dict[str, Array], s: Signals, run: Recording) -> Columns:
     """Response (n,) and columns of A or M of one piece, less what T has of effects that have columns of their own, and
     beside what more inertia would take."""
-    f, share = run.smoother, _share(channel, s)
+    f, share = run.smoother.of(channel), _share(channel, s)
     if s.carried is not None:
         y = y + f(s.carried * share)
     if run.look.inertia and (run.carries or not run.look.rigid):

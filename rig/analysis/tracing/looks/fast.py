@@ -24,7 +24,7 @@ from rig.analysis.tracing.thresholds import LAWS, NEARLY
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
 from rig.model.effects.support_compliance import SupportCompliance
-from rig.model.effects.torsional_mode import TorsionalMode
+from rig.model.effects.torsional_mode import COUPLINGS, TorsionalMode
 
 MODES: Final = (TorsionalMode(), SupportCompliance())
 NAMES: Final = frozenset(mode.name for mode in MODES)
@@ -37,7 +37,14 @@ def wanted(selected: Selected) -> bool:
     """Whether a mode is named, or something rings above what was compared; and there are rows to tell it by."""
     if not any(has_fast_rows(run) for run in selected.fitted_runs):
         return False
+    if _is_coupled(selected):
+        return False  # the load tells how a wave generator turns, and what is fast of that is mostly noise
     return not NAMES.isdisjoint(selected.names) or rings_above(selected.solution, selected.p.floors)
+
+
+def _is_coupled(selected: Selected) -> bool:
+    modes = [term.shape[0] for term in selected.solution.design.terms if term.name == TorsionalMode.name]
+    return any(law in COUPLINGS for law in modes)
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:

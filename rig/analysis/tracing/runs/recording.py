@@ -153,8 +153,10 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     factor = max(1, round(1 / dt / (often * RATE)))
     work = dt * factor
     encoders = run.manifest.get("encoders") or {}
-    sigma = min(TAMEST / work, quiet(channels["theta_m"], encoders, often * BANDWIDTH))
-    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1)
+    sigma, of_the_motor = (
+        min(TAMEST / work, quiet(channels["theta_m"], encoders, hz)) for hz in (often * BANDWIDTH, BANDWIDTH)
+    )
+    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor if of_the_motor < sigma else np.inf)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)

@@ -87,16 +87,26 @@ def _thinned_narrow(x: Array, taps: Array, m: int, step: int) -> Array:
 
 @dataclass(frozen=True)
 class Smoother:
-    """Low-pass of bandwidth `sigma_hz` on a grid of `dt` s, keeping every `step`-th row."""
+    """Low-pass of bandwidth `sigma_hz` on a grid of `dt` s, keeping every `step`-th row; of the motor's torque one of
+    `motor_hz`, if that is less, with the same rows."""
 
     sigma_hz: float
     dt: float
     step: int
+    motor_hz: float = np.inf
+
+    def of(self, channel: str) -> Smoother:
+        """The one that a channel goes through."""
+        return self._of_the_motor if channel in "MR" and self.motor_hz < self.sigma_hz else self
+
+    @cached_property
+    def _of_the_motor(self) -> Smoother:
+        return Smoother(self.motor_hz, self.dt, self.step)
 
     @cached_property
     def half(self) -> int:
         """Rows of the input lost at each end."""
-        return int((self._kernel(0).size - 1) // 2)
+        return int((kernel(_in_time(min(self.sigma_hz, self.motor_hz)), self.dt, 0).size - 1) // 2)
 
     def _kernel(self, derivative: int) -> Array:
         return kernel(_in_time(self.sigma_hz), self.dt, derivative)
@@ -113,7 +123,9 @@ class Smoother:
         """`x` (n,) or (n, k) → derivative 0..3 by time, (rows(n),) or (rows(n), k)."""
         wide = np.ascontiguousarray(x if x.ndim == 2 else x[:, None], dtype=np.float64)
         thin_out = _thinned_narrow if wide.shape[1] < WIDE else _thinned
-        out = thin_out(wide, _turned_round(self.sigma_hz, self.dt, derivative), self.rows(x.shape[0]), self.step)
+        taps = _turned_round(self.sigma_hz, self.dt, derivative)
+        first = self.half - taps.size // 2  # the rows of a wider low-pass begin later
+        out = thin_out(wide[first : wide.shape[0] - first], taps, self.rows(x.shape[0]), self.step)
         return out if x.ndim == 2 else out[:, 0]
 
     def gain(self, derivative: int) -> float:
