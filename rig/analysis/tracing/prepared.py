@@ -48,9 +48,10 @@ class Prepared:
         return {key: floor_of(self.measured, self.eq, key) for key in self.eq.of(self.split.fitted)}
 
 
-def prepare(campaign: Campaign, hold_out: Sequence[str]) -> Prepared:
-    """Split, fit the baseline, measure the floor, look for what each run has to itself, fit again."""
-    parts = split(campaign.runs, hold_out)
+def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) -> Prepared:
+    """Split, fit the baseline, measure the floor, look for what each run has to itself, fit again. `swapped`: other
+    repeats are held out than usual."""
+    parts = split(campaign.runs, hold_out, swapped)
     eq = equations(parts.runs, Noise({}, {}, {}))
     if not eq.of(parts.fitted) or not eq.of(parts.held_out):
         raise UsageError(

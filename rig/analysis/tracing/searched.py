@@ -32,7 +32,7 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     tried = Tried(p, with_lines(covered, start, runs))
     calm = quiet or is_calm(p)
     selected, found, covered = _selected(p, start, tried, quiet, calm)
-    if calm and not is_certain(selected):
+    if calm and not is_certain(selected, p.held_out):
         found = Found(start, found.ranking)
         selected = select(p, found, runs, covered)
     del tried  # half a gigabyte, and the report is made by two processes

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
+from rig.model.second_mode.ordered import shaking
 from rig.model.second_mode.shaken import shaken
 from rig.model.second_mode.swung import swung
 
@@ -66,8 +67,9 @@ class SupportCompliance(Effect):
         """One column, in both readings or, beyond 1/K, in the wind-up."""
         held, frequency, zeta = shape
         torque = signals.once(self.name, lambda: np.ascontiguousarray(np.nan_to_num(signals.torque)))
-        after, _ = swung(signals, torque, 2.0 * np.pi * frequency, zeta)
-        beyond = shaken(signals, after - torque)[:, None]
+        shakes = shaking(signals, "torque", torque, frequency)
+        after, _ = swung(signals, shakes, 2.0 * np.pi * frequency, zeta)
+        beyond = shaken(signals, after - shakes)[:, None]
         if held == ON_GROUND:
             return {Port.WIND_UP: beyond}
         moved = torque[:, None] + beyond

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.second_mode import coupling, output
+from rig.model.second_mode.ordered import shaking
 from rig.model.second_mode.shaken import EXCITED, shaken
 from rig.model.second_mode.swung import swung
 
@@ -129,8 +130,10 @@ class TorsionalMode(Effect):
 
         def swinging(whole: Signals) -> tuple[Array, ...]:
             if side == DRIVEN:
-                return (shaken(whole, -swung(whole, np.nan_to_num(whole.tau_l), omega, zeta)[1]),)
-            alpha = whole.alpha_m if side == MOTOR else whole.alpha_l
+                torque = shaking(whole, "tau_l", np.nan_to_num(whole.tau_l), frequency)
+                return (shaken(whole, -swung(whole, torque, omega, zeta)[1]),)
+            name = "alpha_m" if side == MOTOR else "alpha_l"
+            alpha = shaking(whole, name, getattr(whole, name), frequency)
             return (shaken(whole, alpha - swung(whole, alpha, omega, zeta)[1] / omega**2),)  # H·ω̇
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE

@@ -122,28 +122,37 @@ def alone(score: HeldOutScore, half: float = 0.1) -> Any:
     term = SimpleNamespace(name=score.name, effect=SimpleNamespace(sizes=lambda words: words[:1]))
     words = {score.name: (Parameter("size", 1.0, (1.0 - half, 1.0 + half), "N·m"),)}
     solution = SimpleNamespace(design=SimpleNamespace(terms=[term]))
-    return SimpleNamespace(scores=[score], solution=solution, words=words, loud=False)
+    return SimpleNamespace(
+        p=SimpleNamespace(held_out="beside it"), scores=[score], solution=solution, words=words, held=()
+    )
+
+
+@pytest.fixture
+def loud(monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    """Floors above which something is left."""
+    above = set[str]()
+    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
+    monkeypatch.setattr(selected, "is_loud", lambda at, solution, held: at in above)
+    return above
 
 
 def test_without_repeats_that_vouch_a_size_must_be_known_where_nothing_is_above_the_floor(
-    monkeypatch: pytest.MonkeyPatch,
+    loud: set[str],
 ) -> None:
-    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
     score = HeldOutScore("torsional_mode", 1.2, 0.8, 0.62, 1.0, ())
-    assert selected.is_certain(alone(score, 0.3))
-    assert not selected.is_certain(alone(score, 0.67))
-    assert selected.is_certain(alone(replace(score, as_repeats=True), 0.67))
+    assert selected.is_certain(alone(score, 0.3), "as before")
+    assert not selected.is_certain(alone(score, 0.67), "as before")
+    assert selected.is_certain(alone(replace(score, as_repeats=True), 0.67), "as before")
 
 
 def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeats_vouch(
-    monkeypatch: pytest.MonkeyPatch,
+    loud: set[str],
 ) -> None:
     """A drive that warms has cooled down by the time of every run that is held out."""
-    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
 
     def certain(**said: Any) -> bool:
         score = HeldOutScore("thermal_friction_drift", 1.2, 0.45, 0.97, 0.9, (), **said)
-        return selected.is_certain(alone(score))
+        return selected.is_certain(alone(score), "as before")
 
     assert certain(as_repeats=True, seen=3.9)
     assert not certain(as_repeats=True, seen=0.9)
@@ -151,14 +160,21 @@ def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeat
 
 
 def test_what_repeats_vouch_for_may_be_smaller_where_nothing_is_above_the_floor(
-    monkeypatch: pytest.MonkeyPatch,
+    loud: set[str],
 ) -> None:
-    monkeypatch.setattr(selected, "confounders_in", lambda solution: [])
 
     def certain(**said: Any) -> bool:
         score = HeldOutScore("stribeck_friction", 1.2, 0.6, 0.8, 1.05, (), **said)
-        return selected.is_certain(alone(score))
+        return selected.is_certain(alone(score), "as before")
 
     assert certain(as_repeats=True)
     assert certain(as_repeats=True, unsteady=0.65, apart=0.65)
     assert not certain()
+
+
+def test_what_stands_out_of_the_floors_beside_it_alone_is_no_reason_against_it(loud: set[str]) -> None:
+    score = HeldOutScore("tooth_mesh_error", 1.2, 0.8, 0.62, 1.0, ())
+    loud.add("beside it")
+    assert selected.is_certain(alone(score), "as before")
+    loud.add("as before")
+    assert not selected.is_certain(alone(score), "as before")

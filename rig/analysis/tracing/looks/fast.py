@@ -23,7 +23,7 @@ from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certai
 from rig.analysis.tracing.thresholds import LAWS, NEARLY
 from rig.core.errors import UsageError
 from rig.model.effect import Reach
-from rig.model.effects.support_compliance import SupportCompliance
+from rig.model.effects.support_compliance import StiffSupport, SupportCompliance
 from rig.model.effects.torsional_mode import COUPLINGS, TorsionalMode
 
 MODES: Final = (TorsionalMode(), SupportCompliance())
@@ -37,44 +37,48 @@ def wanted(selected: Selected) -> bool:
     """Whether a mode is named, or something rings above what was compared; and there are rows to tell it by."""
     if not any(has_fast_rows(run) for run in selected.fitted_runs):
         return False
-    if _is_coupled(selected):
+    modes = [term for term in selected.solution.design.terms if term.name in NAMES]
+    if any(term.shape[0] in COUPLINGS for term in modes if term.name == TorsionalMode.name):
         return False  # the load tells how a wave generator turns, and what is fast of that is mostly noise
-    return not NAMES.isdisjoint(selected.names) or rings_above(selected.solution, selected.p.floors)
-
-
-def _is_coupled(selected: Selected) -> bool:
-    modes = [term.shape[0] for term in selected.solution.design.terms if term.name == TorsionalMode.name]
-    return any(law in COUPLINGS for law in modes)
+    swings = any(not isinstance(term.effect, StiffSupport) for term in modes)
+    return swings or rings_above(selected.solution, selected.p.floors)
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
-    """A mode beside all else that has a name, with a low-pass twice as wide."""
-    p = _prepared(so_far.p.campaign, hold_out)
-    if p is None:
-        return so_far, found
+    """A mode beside all else that has a name, with a low-pass twice as wide. One order meets it at one speed or two,
+    whose runs may all be fitted ones: then other repeats are held out."""
+    for swapped in (False, True):
+        p = _prepared(so_far.p.campaign, hold_out, swapped)
+        if p is not None and (taken := _beside(so_far, found, p)) is not None:
+            return taken
+    return so_far, found
+
+
+def _beside(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Found] | None:
+    """None where no mode counts."""
     beside_it = [term for term in so_far.solution.design.terms if term.name not in NAMES]
     start = fit(design(p.eq, beside_it, p.split.fitted))
     covered = _covered(p)
     if not _shows_a_mode(p, start, covered):
-        return so_far, found
+        return None
     calm = not beside_it and (still(start, p.floors) or is_calm(p))
     ranked = _ranked(p, start, covered)
     if ranked[0].term.name not in NAMES:  # something else explains more
-        return so_far, found
-    for law in (ranked[0].term, *ranked[0].laws):
+        return None
+    for law in [law for one in ranked if one.term.name in NAMES for law in (one.term, *one.laws)]:
         other = _with(law, p, start, covered, calm)
-        if _counts(other, so_far) and not (calm and not is_certain(other)):
+        if _counts(other, so_far) and not (calm and not is_certain(other, p.held_out)):
             return other, replace(found, ranking=_together(found.ranking, ranked))
-    return so_far, found
+    return None
 
 
-def _prepared(first: Campaign, hold_out: Sequence[str]) -> Prepared | None:
+def _prepared(first: Campaign, hold_out: Sequence[str], swapped: bool) -> Prepared | None:
     """The same runs at fast rows; None where these are others now, or too noisy to be fitted: what was told stands."""
     try:
         again = read_campaign(first.folder, Look(fast=True))
         if [run.name for run in again.runs] != [run.name for run in first.runs]:
             return None
-        return prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out)
+        return prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out, swapped)
     except UsageError:
         return None
 

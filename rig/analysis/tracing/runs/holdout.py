@@ -40,8 +40,9 @@ class Split:
     how: str
 
 
-def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
-    """By the names asked for, else whole repeats and levels, else parts of all runs. Raises UsageError."""
+def split(runs: Sequence[Recording], asked: Sequence[str], swapped: bool = False) -> Split:
+    """By the names asked for, else whole repeats and levels, else parts of all runs; `swapped`: repeats of those
+    conditions whose repeats would stay in the fit. Raises UsageError."""
     moving = [i for i, run in enumerate(runs) if run.procedure != "standstill"]
     if not moving:
         raise UsageError("there is nothing but standstill: expected runs in which the motor turns")
@@ -50,7 +51,7 @@ def split(runs: Sequence[Recording], asked: Sequence[str]) -> Split:
     groups = grouped(runs, moving)
     if sum(len(group) > 1 for group in groups) * 3 < len(groups):
         return _parts(runs, moving)
-    held = _levels_and_repeats(runs, groups)
+    held = _levels_and_repeats(runs, groups, swapped)
     fitted = tuple(i for i in moving if i not in held)
     tested = {runs[i].procedure for i in held}
     made, parts = _parted(runs, [i for i in fitted if runs[i].procedure not in tested])
@@ -110,7 +111,7 @@ def _level(run: Recording) -> tuple[float, float]:
     return tau_ext, float(np.mean([np.mean(p.omega_m) for p in run.pieces]))
 
 
-def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> set[int]:
+def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]], swapped: bool) -> set[int]:
     held: set[int] = set()
     by_time = sorted((i for g in groups for i in g), key=lambda i: runs[i].start)
     ends = {by_time[0], by_time[-1]}  # what drifts would be foretold for a time that no fitted run reaches
@@ -123,7 +124,7 @@ def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]]) -> s
         held |= set(whole or ())
         repeated = [g for g in others if len(g) > 1]
         # every second condition keeps its repeats in the fit: the floor is measured there
-        held |= {g[0] if g[1] in ends else g[1] for g in repeated[:: 2 if len(repeated) > 1 else 1]}
+        held |= {g[0] if g[1] in ends else g[1] for g in (repeated[swapped::2] if len(repeated) > 1 else repeated)}
     return held
 
 

@@ -219,11 +219,13 @@ def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach)
     return Selected(selected.p, s, held, scores, _in_words(s, runs, covariance))
 
 
-def is_certain(selected: Selected) -> bool:
-    """Whether what the search found where nothing is above the floor may be said all the same: floors are measured on
+def is_certain(selected: Selected, floors: HeldOut) -> bool:
+    """Whether what the search found where nothing is above the `floors` may be said all the same: they are measured on
     few repeats, and can be too high. Every name must be large and its size known, or repeats vouch for it, of one size
-    in all runs and what it acts on must be explained, and nothing unnamed be needed beside it."""
-    plain = selected.scores and not confounders_in(selected.solution) and not selected.loud
+    in all runs and what it acts on must be explained, and nothing unnamed be needed beside it, by those floors: by the
+    ones that are measured beside it small effects of others may stand out."""
+    loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
+    plain = selected.scores and not confounders_in(selected.solution) and not loud
     return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
 
 
