@@ -38,6 +38,7 @@ REFERENCES: dict[str, str] = {
     "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",
     "findley1976": "W. N. Findley, J. S. Lai, K. Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, "
     "North-Holland (1976)",
+    "lugt2013": "P. M. Lugt, Grease Lubrication in Rolling Bearings, Wiley (2013)",
     "nordin2002": "M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash - a survey, "
     "Automatica 38 (2002) 1633-1649",
     "krause2013": "P. C. Krause, O. Wasynczuk, S. D. Sudhoff, S. Pekarek, Analysis of Electric Machinery and Drive "

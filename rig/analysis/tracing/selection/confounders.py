@@ -28,6 +28,7 @@ from rig.analysis.tracing.nameless.readings import (
     TwoGains,
 )
 from rig.analysis.tracing.nameless.springs import EvenSpring, SpringBySpeed, SpringDrift
+from rig.analysis.tracing.nameless.wiped import WipedGrease
 from rig.model.effect import Effect, Reach
 
 
@@ -169,6 +170,12 @@ CONFOUNDERS: Final = {
         "speed",
         "The motor's drag grows with less than the speed, as of a grease that thins where it is sheared. No effect of "
         "the library does so.",
+    ),
+    "wiped_grease": Confounder(
+        WipedGrease(),
+        "memory",
+        "The motor's friction is more where it has just turned back or set out, and wears off on the way, as of grease "
+        "that is pushed away. No effect of the library does so.",
     ),
     "sector_drag": Confounder(
         SectorDrag(),
