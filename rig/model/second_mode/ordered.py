@@ -41,8 +41,8 @@ def shaking(s: Signals, name: str, x: Array, hz: float) -> Array:
     return s.once(f"orders of {name}", lambda: ordered(s, x)) if hz > FAST else x
 
 
-def _windows(s: Signals) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]] | None:
-    """First row and the one after the last of whole turns around each row (n,); None where there are none."""
+def _windows(s: Signals) -> tuple[Array, Array] | None:
+    """Where whole turns around each row begin and end, in rows and parts of them (n,); None where there are none."""
     gone = np.abs(s.theta_m - s.theta_m[0]) if s.t.size else np.zeros(0)
     wide = 2.0 * np.pi * TURNS
     if not gone.size or gone[-1] < wide:
@@ -51,12 +51,17 @@ def _windows(s: Signals) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]] 
     slow, fast = np.percentile(speed, (5, 95))
     if slow < EXCITED or fast - slow > STEADY * float(speed.mean()):
         return None
-    gone = np.maximum.accumulate(gone)
+    gone, rows = np.maximum.accumulate(gone), np.arange(gone.size, dtype=np.float64)
     begin = np.clip(gone - wide / 2.0, 0.0, gone[-1] - wide)
-    return np.searchsorted(gone, begin), np.searchsorted(gone, begin + wide)
+    return np.interp(begin, gone, rows), np.interp(begin + wide, gone, rows)
 
 
-def _mean(x: npt.NDArray[Any], low: npt.NDArray[np.int64], high: npt.NDArray[np.int64]) -> npt.NDArray[Any]:
-    """Of `x` (n,) in those rows, (n,)."""
+def _mean(x: npt.NDArray[Any], low: Array, high: Array) -> npt.NDArray[Any]:
+    """Of `x` (n,) between those rows, (n,)."""
     sums = np.concatenate([np.zeros(1, x.dtype), np.cumsum(x)])
-    return np.asarray((sums[high] - sums[low]) / (high - low))
+
+    def until(row: Array) -> npt.NDArray[Any]:
+        whole = row.astype(np.int64)
+        return np.asarray(sums[whole] + (row - whole) * x[np.minimum(whole, x.size - 1)])
+
+    return np.asarray((until(high) - until(low)) / (high - low))
