@@ -9,7 +9,8 @@ from typing import Final
 
 RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 orders at 400 rpm end at 100 Hz
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
-FASTER: Final = 2.0  # times both, in a look at what rings above that: J_m·ω̇ is then 6 mN·m of noise
+# times both, in a look at what rings above that; but for the motor's torque, whose J_m·ω̇ would be 6 mN·m of noise
+FASTER: Final = 2.0
 # rad/s of the motor; below it friction is not sliding friction: noise of a 16-bit encoder is a tenth
 SLOWEST_TURNING: Final = 0.04
 LOOSE: Final = 0.01  # s on both sides of a reversal in which the motor may stick: nothing is known of its friction

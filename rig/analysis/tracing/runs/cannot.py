@@ -141,9 +141,9 @@ def _fast(runs: Sequence[Recording]) -> list[str]:
     if not any(run.look.fast for run in runs):
         return []
     most = max(run.smoother.sigma_hz for run in runs)
-    return [f"A mode was looked for at fast rows: runs that have them were compared up to {most:.0f} Hz, "
-            f"{BANDWIDTH:g} Hz at first. Torque balances are noisier there, and small friction is not looked for as "
-            "closely."]  # fmt: skip
+    return [f"A mode was looked for at fast rows: angles and shaft torque of runs that have them were compared up to "
+            f"{most:.0f} Hz, {BANDWIDTH:g} Hz at first. The balance of the load is noisier there, and small friction "
+            "of it is not looked for as closely."]  # fmt: skip
 
 
 def _held_output(runs: Sequence[Recording]) -> list[str]:
