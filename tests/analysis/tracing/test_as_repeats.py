@@ -117,10 +117,12 @@ def test_it_stands_in_for_steadiness_and_for_nothing_else() -> None:
     assert not HeldOutScore("load_dependent_friction", 1.2, 1.4, 0.8, 1.0, (), harm=1.2, as_repeats=True).named
 
 
-def alone(score: HeldOutScore, half: float = 0.1) -> Any:
-    """That effect as the only one that stands, its size known to `half` of itself."""
-    term = SimpleNamespace(name=score.name, effect=SimpleNamespace(sizes=lambda words: words[:1]))
-    words = {score.name: (Parameter("size", 1.0, (1.0 - half, 1.0 + half), "N·m"),)}
+def alone(score: HeldOutScore, half: float = 0.1, law: float = 0.5) -> Any:
+    """That effect as the only one that stands, its size known to `half` of itself and its frequency to `law` of it."""
+    effect = SimpleNamespace(sizes=lambda words: words[:1], shape_names=("frequency",), loose=(True,))
+    term = SimpleNamespace(name=score.name, effect=effect)
+    size = Parameter("size", 1.0, (1.0 - half, 1.0 + half), "N·m")
+    words = {score.name: (size, Parameter("frequency", 50.0, (50.0 - 50.0 * law, 50.0 + 50.0 * law), "Hz"))}
     solution = SimpleNamespace(design=SimpleNamespace(terms=[term]))
     return SimpleNamespace(
         p=SimpleNamespace(held_out="beside it"), scores=[score], solution=solution, words=words, held=()
@@ -143,6 +145,14 @@ def test_without_repeats_that_vouch_a_size_must_be_known_where_nothing_is_above_
     assert selected.is_certain(alone(score, 0.3), "as before")
     assert not selected.is_certain(alone(score, 0.67), "as before")
     assert selected.is_certain(alone(replace(score, as_repeats=True), 0.67), "as before")
+
+
+def test_a_resonance_whose_size_unseen_runs_foretell_is_plain_though_few_runs_show_it(loud: set[str]) -> None:
+    score = HeldOutScore("support_compliance", 0.99, 0.8, 0.62, 1.0, ())
+    assert selected.is_certain(alone(score, 2.0, 0.02), "as before")
+    assert not selected.is_certain(alone(score, 2.0, 0.5), "as before")
+    assert not selected.is_certain(alone(replace(score, share=0.9), 2.0, 0.02), "as before")
+    assert not selected.is_certain(alone(replace(score, size=0.6), 2.0, 0.02), "as before")
 
 
 def test_what_a_fitted_run_shows_loudly_may_be_small_in_unseen_ones_where_repeats_vouch(

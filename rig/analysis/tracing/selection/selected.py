@@ -26,12 +26,14 @@ from rig.analysis.tracing.selection.elimination import (
     backward_elimination,
     instead_of_the_spring,
     run_to_the_end,
+    scales,
     unresolved,
     unscaled,
 )
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import (
+    ALL,
     AS_WELL,
     AT_THE_FLOOR,
     EXPLAINED,
@@ -230,8 +232,12 @@ def is_certain(selected: Selected, floors: HeldOut) -> bool:
 
 
 def _is_plain_to_see(selected: Selected, score: HeldOutScore) -> bool:
+    """Large, and of a size that is known, or foretold of unseen runs where its law is: two runs at one speed may be all
+    that show a resonance, and from two no interval comes out narrow."""
     effect = next(term.effect for term in selected.solution.design.terms if term.name == score.name)
-    known = not all(_is_hardly_known(size) for size in effect.sizes(selected.words.get(score.name, ())))
+    law = scales(selected.solution, score.name, selected.words)
+    foretold = score.share > ALL and bool(law) and not any(_is_hardly_known(scale) for scale in law)
+    known = foretold or not all(_is_hardly_known(size) for size in effect.sizes(selected.words.get(score.name, ())))
     vouched = score.as_repeats and (score.size > VOUCHED_FOR or score.seen > SEEN)
     return score.fairly and ((known and score.size > PLAIN_TO_SEE) or vouched)
 
