@@ -11,13 +11,15 @@ from rig.model.waves import wave
 
 SWING: Final = 1 / 36  # of an output turn: less is a trend
 LAST: Final = 5.0  # overtone: a lobe a fifth of a turn wide
+WHOLE: Final = 0.9  # of an output turn: on less of it a few overtones are as good as any others
 LEAST: Final = 0.7  # of the first order, an overtone at most: a narrow lobe has them nearly as large, a gear's has not
 
 
 def once_or_twice(reach: Reach) -> tuple[Shape, ...]:
-    """First and last order: 1 alone, 2 alone, 1 to 5. On less than a sixth of an output turn the first alone: a weight
-    on the joint is large there, and what looks like it in the angle is asked beside it. () on next to none."""
-    with_overtones = ((1.0, LAST),) if reach.load_turns > 1 / 2 else ()
+    """First and last order: 1 alone, 2 alone, 1 to 5, or 1 and 2 where the output goes no whole turn. On less than a
+    sixth of one the first alone: a weight on the joint is large there, and what looks like it in the angle is asked
+    beside it. () on next to none."""
+    with_overtones = ((1.0, LAST if reach.load_turns > WHOLE else 2.0),) if reach.load_turns > 1 / 2 else ()
     if reach.load_turns <= 1 / 6:
         return ((1.0, 1.0),) if reach.load_turns > SWING else ()
     return ((1.0, 1.0), (2.0, 2.0), *with_overtones)
