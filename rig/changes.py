@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from rig.core.errors import NotReady
 from rig.core.operator import Change, HangWeight, LockOutput, Rigging
@@ -22,7 +23,7 @@ WINDOW = 0.2  # s
 QUIET = 3  # windows in a row
 STILL = 0.01  # rad/s of the motor: 3 counts of a 10 000 line encoder in a window
 PATIENCE = 30.0  # s from torque off to rest
-GLANCE = 0.05  # s between two looks that tell a turning motor: a count of a 2000 line encoder is 0.06 rad/s in it
+COASTS = 5.0  # s in which a motor that nothing drives has come to rest
 TURNING = 0.5  # rad/s, 5 rpm: what turns faster without torque is driven, or not at rest yet
 
 
@@ -50,15 +51,19 @@ def wait_for_rest(instruments: Instruments) -> None:
             )
 
 
-def refuse_turning(instruments: Instruments) -> None:
-    """Before a drive is energised: a motor that turns without its torque is given time to come to rest. Raises NotReady
-    for one that does not. One that tells no new angle is the guard's to judge, before the first torque.
+def refuse_turning(instruments: Instruments, refuse_ended: Callable[[], None]) -> None:
+    """Before a drive is energised: a motor that turns without torque is given time to come to rest. Raises NotReady for
+    one that does not, and what `refuse_ended` raises meanwhile. One that tells no new angle is the guard's to judge,
+    before the first torque.
     """
-    before = instruments.look()
-    instruments.clock.wait_until(instruments.clock.now() + GLANCE)
-    sample = instruments.look()
-    if abs(sample.theta_m - before.theta_m) > TURNING * (sample.t - before.t) > 0.0:
-        wait_for_rest(instruments)
+    give_up = instruments.clock.now() + COASTS
+    while abs(speed := instruments.speed_seen()) > TURNING:
+        refuse_ended()
+        if instruments.clock.now() > give_up:
+            raise NotReady(
+                f"the motor turns at {speed / RPM:.0f} rpm though nothing is energised, and has not come to rest in "
+                f"{COASTS:g} s: does a weight drive it? Hold the output and take the weight off"
+            )
 
 
 def refuse_unfit(change: Change, rigging: Rigging, shaft_limit: float | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 SETTLED = 0.3  # s after the torque is off: the load of a wound-up gear has swung by then
+COASTS = 1.5  # s in which a motor that nothing drives has come to rest
 LOOKS, APART = 10, 0.01  # looks at the shaft torque then, s between two
 WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
@@ -195,7 +197,7 @@ class Loop:
         self.instruments.safe()
         self._last_row(sample, asked)
         if self.supervisor.state is State.STOPPING:
-            why = f"stopped {self.interrupts.who}: {self._at_rest(sample)}, torque off"
+            why = f"stopped {self.interrupts.who}: {self._at_rest(sample)}, torque off{self._turns_on(sample)}"
             return Ending("stopped", why, Exit.STOPPED)
         return Ending("completed", "the procedure came to its end", Exit.PASS, finding)
 
@@ -282,6 +284,29 @@ class Loop:
             return ""
         return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, keep clear of it"
 
+    def _turns_on(self, last: Sample | None = None) -> str:
+        """That the motor turns on without its torque, in words; "" where it comes to rest, as after a `last` sample
+        that was, or where nothing is seen of it. Never raises, as the torque is off.
+        """
+        if last is not None and abs(last.omega_m) < TURNS:
+            return ""
+        speed = 0.0
+        with suppress(Exception):  # nothing is known of the motor then
+            speed = self._coasting()
+        if not abs(speed) > TURNS:
+            return ""
+        return (
+            f"; the motor turns on at {speed / RPM:.0f} rpm without torque: the load drives it, keep clear of it, hold "
+            "the output and take the weight off"
+        )
+
+    def _coasting(self) -> float:
+        """Speed of the motor once it has had time to come to rest, rad/s."""
+        give_up, speed = self.instruments.clock.now() + COASTS, math.inf
+        while abs(speed) > TURNS and self.instruments.clock.now() < give_up:
+            speed = self.instruments.speed_seen()
+        return speed
+
     def _still_carried(self) -> float:
         """Mean of a few looks at the shaft torque, N·m, once the load has swung out."""
         clock, looks = self.instruments.clock, []
@@ -303,9 +328,10 @@ class Loop:
             self.supervisor.act(Act.TRIP, why)
             return Ending("tripped", why, Exit.TRIPPED, ending.finding)
         if ending.status == "tripped":
+            ending = replace(ending, reason=f"{ending.reason}{self._turns_on()}")
             self.supervisor.act(Act.TRIP, ending.reason)
         elif ending.exit is Exit.HALTED:
-            ending = replace(ending, reason=f"{ending.reason}{self._wound_up()}")
+            ending = replace(ending, reason=f"{ending.reason}{self._wound_up()}{self._turns_on()}")
             self.supervisor.act(Act.HALT, ending.reason)
         else:
             self.supervisor.act(Act.FINISH, ending.reason)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rig.bench import read
-from rig.core.errors import NotReady, RecorderError
+from rig.core.errors import Ended, NotReady, RecorderError
 from rig.core.operator import HangWeight
 from rig.procedures.standstill import Standstill
 from rig.process.interrupts import Interrupts
@@ -59,10 +59,29 @@ def test_a_motor_that_a_weight_turns_is_not_energised(session: Session, monkeypa
     assert session.instruments.operator is not None
     session.instruments.operator.make(HangWeight(30.0))
     session.instruments.clock.wait_until(session.instruments.clock.now() + 0.5)
-    with pytest.raises(NotReady, match=r"the motor still turns at -?\d+\.\d rpm 30 s after its torque went off"):
+    refused = r"the motor turns at -?\d+ rpm though nothing is energised, and has not come to rest in 5 s"
+    with pytest.raises(NotReady, match=refused):
         session.run(Standstill(1.0))
     assert not energised
     assert session.folder is None
+
+
+def test_who_asks_for_an_end_is_not_kept_waiting_for_a_motor_that_turns(session: Session) -> None:
+    assert session.instruments.operator is not None
+    session.instruments.operator.make(HangWeight(30.0))
+    clock = session.instruments.clock
+    clock.wait_until(clock.now() + 0.5)
+    since, session.interrupts.count = clock.now(), 0
+    looked = session.instruments.speed_seen
+
+    def stopped() -> float:
+        session.interrupts.request()
+        return looked()
+
+    session.instruments.speed_seen = stopped  # type: ignore[method-assign]
+    with pytest.raises(Ended, match="nothing more was started"):
+        session.run(Standstill(1.0))
+    assert clock.now() - since < 1.0
 
 
 def test_a_motor_that_comes_to_rest_meanwhile_is_waited_for(session: Session) -> None:

@@ -203,7 +203,8 @@ def timing(found: object) -> tuple[list[Row], list[str]]:
         else []
     )
     if found.get("latch_offsets_are"):
-        said.append(f"When a channel was latched: {show(found['latch_offsets_are'])}.")
+        told = str(show(found["latch_offsets_are"])).removeprefix("s after theta_m, ")  # the unit is that of the file
+        said.append(f"When a channel was latched: {told}.")
     return rows, said
 
 

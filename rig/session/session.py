@@ -201,7 +201,7 @@ class Session:
         self._refuse_now()
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
-        refuse_turning(self.instruments)
+        refuse_turning(self.instruments, self._refuse_now)
         mode = self._mode(procedure)
         folder = self.folder = self.create(root, procedure.name, manifest_of(self, procedure, mode), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")

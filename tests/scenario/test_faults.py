@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from rig.bench import read
 from rig.core.channels import Flag
 from rig.core.errors import Exit
+from rig.core.operator import HangWeight
 from rig.guard import Guard
 from rig.instruments import Instruments
 from rig.loop import Ending, Loop
@@ -42,13 +44,14 @@ UNSEEN = {("load encoder frozen", "coming to rest")}  # nothing moves any more
 
 @pytest.mark.slow
 def test_a_torque_sensor_that_repeats_itself_is_flagged_and_does_not_stop_the_run() -> None:
-    ending, sink, _, _, struck = run_with(lambda rig: setattr(rig.torque_sensor, "fault", Frozen()), 3.0)
+    ending, sink, _, _, struck, _ = run_with(lambda rig: setattr(rig.torque_sensor, "fault", Frozen()), 3.0)
     assert ending.status == "completed"
     flagged = [row[0].t for row in sink.rows if row[0].flags & Flag.FROZEN_TAU]
     assert flagged[0] == pytest.approx(struck + 1.0, abs=0.01)
 
 
-def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, Supervisor, float]:
+def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, Supervisor, float, float]:
+    """With when it struck, and when the torque was commanded off [s]."""
     bench, supervisor, sink = read("twin"), Supervisor(), ListSink()
     rig, setting = bench.open("virtual"), bench.setting(lambda text: None)
     rig.connect()
@@ -59,8 +62,10 @@ def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, S
     world.at(struck, lambda: fault(rig))
     guard = Guard(bench.limits, PROCEDURE.envelope(setting), setting.ratio)
     timing = LoopTiming(setting.period, virtual=True)
-    ending = Loop(rig, supervisor, guard, sink, Interrupts(), timing).run(PROCEDURE, setting)
-    return ending, sink, rig, supervisor, struck
+    off: list[float] = []
+    loop = Loop(rig, supervisor, guard, sink, Interrupts(), timing, tripped=lambda why: off.append(world.now()))
+    ending = loop.run(PROCEDURE, setting)
+    return ending, sink, rig, supervisor, struck, *(off or [world.now()])
 
 
 @pytest.mark.slow
@@ -68,7 +73,7 @@ def run_with(fault: Strike, at: float) -> tuple[Ending, ListSink, Instruments, S
 @pytest.mark.parametrize("name", FAULTS)
 def test_every_fault_in_every_phase_ends_without_torque_in_time(name: str, phase: str) -> None:
     strike, word, detection = FAULTS[name]
-    ending, sink, rig, supervisor, struck = run_with(strike, PHASES[phase])
+    ending, sink, rig, supervisor, struck, off = run_with(strike, PHASES[phase])
     world: Any = rig.clock
     assert sink.rows[-1][2] == 0.0
     if (name, phase) in UNSEEN:
@@ -78,8 +83,24 @@ def test_every_fault_in_every_phase_ends_without_torque_in_time(name: str, phase
     assert word in ending.reason
     assert supervisor.state is State.FAULT
     assert sink.rows[-1][0].flags & Flag.TRIPPED
-    assert world.now() - struck <= detection + 3 * 0.001 + 1e-9
+    assert off - struck <= detection + 3 * 0.001 + 1e-9
     assert len(sink.rows) >= (struck - 0.0) * 1000 - 2  # every row before it is there
     world.wait_until(world.now() + 0.02)
     assert abs(world.truth().tau_m) < 1e-6
     rig.close()
+
+
+@pytest.mark.slow
+def test_a_load_that_drives_the_motor_on_after_a_trip_is_said() -> None:
+    ending, *_ = run_with(lambda rig: rig.operator.make(HangWeight(30.0)), 3.0)
+    assert ending.status == "tripped"
+    assert re.search(
+        r"; the motor turns on at \d+ rpm without torque: the load drives it, keep clear of it", ending.reason
+    )
+
+
+@pytest.mark.slow
+def test_a_motor_that_comes_to_rest_after_a_trip_is_not_said_to_turn_on() -> None:
+    ending, _, rig, _, _, off = run_with(lambda rig: rig.drive.trip("over-temperature"), 3.0)
+    assert "turns on" not in ending.reason
+    assert rig.clock.now() - off < 0.5

@@ -235,7 +235,7 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, out
         )
     if ke.trend.covered_deg < 360.0:
         tell(
-            f"The output turned {ke.trend.covered_deg:.1f}°: errors once per output turn look like a trend; a "
+            f"What is used of the run covers {ke.trend.covered_deg:.1f}° of the output: errors once per output turn look like a trend; a "
             "full turn shows them. (Even then, load-encoder eccentricity and runout of the output look alike.)"
         )
     if p.dof < 1:

@@ -91,7 +91,7 @@ def _condition(curves: Curves, run: str, frame: Frame) -> str:
     speed, load = np.asarray(curves[f"run_at.{run}"], dtype=np.float64)
     if frame.narrow:
         return f"{plain(load, 3)} N·m" if abs(load) > 0.5 else f"{plain(speed, 3)} rpm"
-    return f"{plain(speed, 3)} rpm, " + (f"{plain(load, 3)} N·m" if abs(load) > 0.05 else "no load")
+    return f"{plain(speed, 3)} rpm, " + (f"{plain(load, 3)} N·m through the gear" if abs(load) > 0.05 else "no load")
 
 
 def say(curves: Curves, channel: Channel) -> str:
