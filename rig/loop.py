@@ -296,8 +296,8 @@ class Loop:
         if not abs(speed) > TURNS:
             return ""
         return (
-            f"; the motor turns on at {speed / RPM:.0f} rpm without torque: the load drives it, keep clear of it, hold "
-            "the output and take the weight off"
+            f"; the motor turns on at {speed / RPM:.0f} rpm without torque: keep clear of it; where a weight drives "
+            "it, hold the output and take that off"
         )
 
     def _coasting(self) -> float:

@@ -235,8 +235,9 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, out
         )
     if ke.trend.covered_deg < 360.0:
         tell(
-            f"What is used of the run covers {ke.trend.covered_deg:.1f}° of the output: errors once per output turn look "
-            "like a trend; a full turn shows them. (Even then, load-encoder eccentricity and runout of the output look alike.)"
+            f"What is used of the run covers {ke.trend.covered_deg:.1f}° of the output: errors once per output turn "
+            "look like a trend; a full turn shows them. (Even then, load-encoder eccentricity and runout of the output "
+            "look alike.)"
         )
     if p.dof < 1:
         tell("One revolution does not repeat: there is no scatter to make intervals from.")

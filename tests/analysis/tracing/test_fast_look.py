@@ -146,7 +146,13 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
     for name in ("design", "fit", "_covered", "is_calm", "_together"):
         monkeypatch.setattr(fast, name, lambda *given: nothing)
     prepared = SimpleNamespace(split=SimpleNamespace(fitted=()), eq=None, floors={})
-    monkeypatch.setattr(fast, "_prepared", lambda first, hold_out: prepared)
+    held: list[bool] = []
+
+    def made(first: Any, hold_out: Any, swapped: bool) -> Any:
+        held.append(swapped)
+        return prepared
+
+    monkeypatch.setattr(fast, "_prepared", made)
     monkeypatch.setattr(fast, "still", lambda start, floors: False)
     monkeypatch.setattr(fast, "replace", lambda found, **changed: found)
     monkeypatch.setattr(fast, "_shows_a_mode", lambda p, start, covered: shows)
@@ -157,13 +163,16 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
     kept, _ = fast.taken(before, found, nothing, ())  # type: ignore[arg-type]
     assert asked == tried
     assert (kept is before) is not bool(tried)
+    assert held == ([False] if tried else [False, True])  # where none counts other repeats are held out
 
 
-def refusing(campaign: Any, hold_out: Any) -> Any:
+def refusing(campaign: Any, hold_out: Any, swapped: bool) -> Any:
     raise UsageError("J_m comes out as -1 g·m², expected more than nothing")
 
 
-@pytest.mark.parametrize(("names", "prepare"), [(["a"], refusing), (["a", "b"], lambda campaign, hold_out: "prepared")])
+@pytest.mark.parametrize(
+    ("names", "prepare"), [(["a"], refusing), (["a", "b"], lambda campaign, hold_out, swapped: "prepared")]
+)
 def test_what_was_told_stands_where_fast_rows_cannot_be_fitted_or_are_of_other_runs(
     monkeypatch: pytest.MonkeyPatch, names: list[str], prepare: Any
 ) -> None:
