@@ -23,8 +23,7 @@ WINDOW = 0.2  # s
 QUIET = 3  # windows in a row
 STILL = 0.01  # rad/s of the motor: 3 counts of a 10 000 line encoder in a window
 PATIENCE = 30.0  # s from torque off to rest
-COASTS = 5.0  # s in which a motor that nothing drives has come to rest
-TURNING = 0.5  # rad/s, 5 rpm: what turns faster without torque is driven, or not at rest yet
+COASTS = 5.0  # s in which any motor that nothing drives has come to rest
 
 
 def wait_for_rest(instruments: Instruments) -> None:
@@ -56,14 +55,11 @@ def refuse_turning(instruments: Instruments, refuse_ended: Callable[[], None]) -
     one that does not, and what `refuse_ended` raises meanwhile. One that tells no new angle is the guard's to judge,
     before the first torque.
     """
-    give_up = instruments.clock.now() + COASTS
-    while abs(speed := instruments.speed_seen()) > TURNING:
-        refuse_ended()
-        if instruments.clock.now() > give_up:
-            raise NotReady(
-                f"the motor turns at {speed / RPM:.0f} rpm though nothing is energised, and has not come to rest in "
-                f"{COASTS:g} s: does a weight drive it? Hold the output and take the weight off"
-            )
+    if speed := instruments.still_turning(COASTS, refuse_ended):
+        raise NotReady(
+            f"the motor turns at {speed / RPM:.0f} rpm though nothing is energised, and has not come to rest in "
+            f"{COASTS:g} s: does a weight drive it? Hold the output and take the weight off"
+        )
 
 
 def refuse_unfit(change: Change, rigging: Rigging, shaft_limit: float | None) -> None:

@@ -20,6 +20,7 @@ STALE_M, STALE_L, STALE_TAU = int(Flag.STALE_M), int(Flag.STALE_L), int(Flag.STA
 FROZEN_TAU = int(Flag.FROZEN_TAU)  # plain integers: one operation on an enum costs as much as a whole reading
 new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid every tick
 GLANCE = 0.05  # s between two looks that tell a turning motor: a count of a 2000 line encoder is 0.06 rad/s in it
+TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 
 
@@ -137,8 +138,19 @@ class Instruments:
         self.latch()
         return self.read(self.clock.wait_until(asked + ANSWER))
 
-    def speed_seen(self) -> float:
-        """Of the motor outside of a run, between two looks, rad/s; 0 where it tells no new angle."""
+    def still_turning(self, patience: float, meanwhile: Callable[[], None] = lambda: None) -> float:
+        """Speed, rad/s, of a motor without torque that has not come to rest in `patience` s; 0 of one that has, or that
+        tells no new angle. `meanwhile` is called as long as it turns, and may raise.
+        """
+        give_up = self.clock.now() + patience
+        while abs(speed := self._speed_seen()) > TURNS:
+            meanwhile()
+            if self.clock.now() > give_up:
+                return speed
+        return 0.0
+
+    def _speed_seen(self) -> float:
+        """Between two looks, rad/s; 0 where it tells no new angle."""
         before = self.look()
         self.clock.wait_until(self.clock.now() + GLANCE)
         sample = self.look()

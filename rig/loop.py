@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
@@ -16,7 +15,7 @@ from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
 from rig.core.units import RPM
 from rig.guard import Guard, Trip, stale
-from rig.instruments import Instruments
+from rig.instruments import TURNS, Instruments
 from rig.process.interrupts import Interrupts
 from rig.process.realtime import RealTime
 from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
@@ -26,9 +25,8 @@ MOSTLY = 0.5  # of the age of stale data: a program that was away for less is no
 LONG = 0.01  # s without a command: by less no gains that hold a reference lose it
 RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
-TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 SETTLED = 0.3  # s after the torque is off: the load of a wound-up gear has swung by then
-COASTS = 1.5  # s in which a motor that nothing drives has come to rest
+LET_GO = 1.5  # s after the torque is off: most motors rest by then, and of one that does not people have to know soon
 LOOKS, APART = 10, 0.01  # looks at the shaft torque then, s between two
 WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
@@ -292,20 +290,13 @@ class Loop:
             return ""
         speed = 0.0
         with suppress(Exception):  # nothing is known of the motor then
-            speed = self._coasting()
-        if not abs(speed) > TURNS:
+            speed = self.instruments.still_turning(LET_GO)
+        if not speed:
             return ""
         return (
             f"; the motor turns on at {speed / RPM:.0f} rpm without torque: keep clear of it; where a weight drives "
             "it, hold the output and take that off"
         )
-
-    def _coasting(self) -> float:
-        """Speed of the motor once it has had time to come to rest, rad/s."""
-        give_up, speed = self.instruments.clock.now() + COASTS, math.inf
-        while abs(speed) > TURNS and self.instruments.clock.now() < give_up:
-            speed = self.instruments.speed_seen()
-        return speed
 
     def _still_carried(self) -> float:
         """Mean of a few looks at the shaft torque, N·m, once the load has swung out."""

@@ -11,6 +11,7 @@ import pytest
 from rig.bench import read
 from rig.core.errors import Ended, NotReady, RecorderError
 from rig.core.operator import HangWeight
+from rig.core.sample import Sample
 from rig.procedures.standstill import Standstill
 from rig.process.interrupts import Interrupts
 from rig.runfile.run import Run
@@ -72,13 +73,13 @@ def test_who_asks_for_an_end_is_not_kept_waiting_for_a_motor_that_turns(session:
     clock = session.instruments.clock
     clock.wait_until(clock.now() + 0.5)
     since, session.interrupts.count = clock.now(), 0
-    looked = session.instruments.speed_seen
+    looked = session.instruments.look
 
-    def stopped() -> float:
+    def stopped() -> Sample:
         session.interrupts.request()
         return looked()
 
-    session.instruments.speed_seen = stopped  # type: ignore[method-assign]
+    session.instruments.look = stopped  # type: ignore[method-assign]
     with pytest.raises(Ended, match="nothing more was started"):
         session.run(Standstill(1.0))
     assert clock.now() - since < 1.0

@@ -203,8 +203,7 @@ def timing(found: object) -> tuple[list[Row], list[str]]:
         else []
     )
     if found.get("latch_offsets_are"):
-        told = str(show(found["latch_offsets_are"])).removeprefix("s after theta_m, ")  # the unit is that of the file
-        said.append(f"When a channel was latched: {told}.")
+        said.append(f"When a channel was latched is kept as {show(found['latch_offsets_are'])}.")
     return rows, said
 
 

@@ -76,7 +76,8 @@ class TorsionalMode(Effect):
         modes = tuple((side, float(f), self.ZETA, 0.0) for side in (LOAD, MOTOR, DRIVEN) for f in frequencies)
         flange = tuple((FLANGE, float(f), self.ZETA, 0.0) for f in frequencies[::2])
         top = float(max(reach.band, self.LOWEST))
-        return (*modes, *flange, *((side, top, self.ZETA, 0.0) for side in (*COUPLINGS, HUB)))
+        known = COUPLINGS if "tau_m" in reach.has else (STIFF,)  # else of the friction beyond it nothing is
+        return (*modes, *flange, *((side, top, self.ZETA, 0.0) for side in (*known, HUB)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Any frequency that is compared; damping of steel to rubber."""

@@ -39,7 +39,7 @@ def sprung(s: Signals, about: float) -> Mapping[Port, Array]:
 
     alpha, behind, more = s.states(turned)
     through = through_it(s, about)
-    friction = s.tau_m - through - s.gear.J_m * s.alpha_m if np.isfinite(s.tau_m).all() else s.way
+    friction = np.nan_to_num(s.tau_m - through - s.gear.J_m * s.alpha_m)
     lever, bend = twisted(s, about * through) if about else tangent(s)
     loads = np.stack([through, alpha, behind, friction, s.omega_m, np.zeros(lever.size)], 1)
     torque = (s.torque * bend)[:, None] * loads

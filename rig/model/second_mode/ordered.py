@@ -1,4 +1,5 @@
-"""What a motor that turns steadily makes again and again: the orders of a signal, without the noise between them."""
+"""What a motor that turns steadily makes again and again: the orders of a signal, without the noise between them. It
+shakes housings, and inertias on motor and load."""
 
 from __future__ import annotations
 

@@ -127,13 +127,14 @@ def test_one_mode_comes_to_what_had_a_name(before: Any, after: Any, counts: bool
     assert fast._counts(after, before) is counts
 
 
+@pytest.mark.parametrize("repeated", [True, False])
 @pytest.mark.parametrize(("shows", "first", "tried"), [
     (False, "torsional_mode", []),
     (True, "lost_motion", []),  # something else explains more
     (True, "torsional_mode", ["soft", "hub"]),  # until one stands on unseen runs
 ])  # fmt: skip
 def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
-    monkeypatch: pytest.MonkeyPatch, shows: bool, first: str, tried: list[str]
+    monkeypatch: pytest.MonkeyPatch, shows: bool, first: str, tried: list[str], repeated: bool
 ) -> None:
     nothing: Any = None
     laws = [SimpleNamespace(name=first, law=law) for law in ("soft", "hub", "never")]
@@ -153,6 +154,8 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
         return prepared
 
     monkeypatch.setattr(fast, "_prepared", made)
+    monkeypatch.setattr(fast, "_read_again", lambda first: SimpleNamespace(runs=()))
+    monkeypatch.setattr(fast, "split", lambda runs, asked, swapped: SimpleNamespace(held_out=(repeated and swapped,)))
     monkeypatch.setattr(fast, "still", lambda start, floors: False)
     monkeypatch.setattr(fast, "replace", lambda found, **changed: found)
     monkeypatch.setattr(fast, "_shows_a_mode", lambda p, start, covered: shows)
@@ -163,7 +166,8 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
     kept, _ = fast.taken(before, found, nothing, ())  # type: ignore[arg-type]
     assert asked == tried
     assert (kept is before) is not bool(tried)
-    assert held == ([False] if tried else [False, True])  # where none counts other repeats are held out
+    # where none counts other repeats are held out, if there are others
+    assert held == ([False] if tried or not repeated else [False, True])
 
 
 def refusing(campaign: Any, hold_out: Any, swapped: bool) -> Any:
@@ -181,6 +185,7 @@ def test_what_was_told_stands_where_fast_rows_cannot_be_fitted_or_are_of_other_r
     monkeypatch.setattr(fast, "looking", lambda campaign, looks: campaign)
     monkeypatch.setattr(fast, "replace", lambda look, **changed: look)
     monkeypatch.setattr(fast, "prepare", prepare)
+    monkeypatch.setattr(fast, "split", lambda runs, asked, swapped: SimpleNamespace(held_out=(swapped,)))
     before = standing()
     before.p.campaign.runs = [SimpleNamespace(name="a", look=None)]
     nothing: Any = None

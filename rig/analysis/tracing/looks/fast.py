@@ -16,6 +16,7 @@ from rig.analysis.tracing.fit.some import ranking_of_some, some
 from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.rest.above_the_band import has_fast_rows, rings_above
 from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
+from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.searched import Tried, beside
 from rig.analysis.tracing.selection.confounders import of_the_library
@@ -47,10 +48,14 @@ def wanted(selected: Selected) -> bool:
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """A mode beside all else that has a name, with a low-pass twice as wide. One order meets it at one speed or two,
     whose runs may all be fitted ones: then other repeats are held out."""
-    for swapped in (False, True):
-        p = _prepared(so_far.p.campaign, hold_out, swapped)
-        if p is not None and (taken := _beside(so_far, found, p)) is not None:
-            return taken
+    again = _read_again(so_far.p.campaign)
+    if again is None:
+        return so_far, found
+    ways = [split(again.runs, hold_out, swapped).held_out for swapped in (False, True)]
+    for swapped in (False, True) if ways[0] != ways[1] else (False,):
+        p = _prepared(again, hold_out, swapped)
+        if p is not None and (made := _beside(so_far, found, p)) is not None:
+            return made
     return so_far, found
 
 
@@ -72,13 +77,20 @@ def _beside(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Foun
     return None
 
 
-def _prepared(first: Campaign, hold_out: Sequence[str], swapped: bool) -> Prepared | None:
-    """The same runs at fast rows; None where these are others now, or too noisy to be fitted: what was told stands."""
+def _read_again(first: Campaign) -> Campaign | None:
+    """The same runs at fast rows; None where these are others now: what was told stands."""
     try:
         again = read_campaign(first.folder, Look(fast=True))
-        if [run.name for run in again.runs] != [run.name for run in first.runs]:
-            return None
-        return prepare(looking(again, [replace(run.look, fast=True) for run in first.runs]), hold_out, swapped)
+    except UsageError:
+        return None
+    same = [run.name for run in again.runs] == [run.name for run in first.runs]
+    return looking(again, [replace(run.look, fast=True) for run in first.runs]) if same else None
+
+
+def _prepared(again: Campaign, hold_out: Sequence[str], swapped: bool) -> Prepared | None:
+    """None where they are too noisy to be fitted: what was told stands as well."""
+    try:
+        return prepare(again, hold_out, swapped)
     except UsageError:
         return None
 

@@ -124,7 +124,9 @@ def _levels_and_repeats(runs: Sequence[Recording], groups: list[list[int]], swap
         held |= set(whole or ())
         repeated = [g for g in others if len(g) > 1]
         # every second condition keeps its repeats in the fit: the floor is measured there
-        held |= {g[0] if g[1] in ends else g[1] for g in (repeated[swapped::2] if len(repeated) > 1 else repeated)}
+        held |= {
+            g[0] if g[1] in ends else g[1] for g in (repeated[int(swapped) :: 2] if len(repeated) > 1 else repeated)
+        }
     return held
 
 

@@ -154,9 +154,9 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     work = dt * factor
     encoders = run.manifest.get("encoders") or {}
     sigma, of_the_motor = (
-        min(TAMEST / work, quiet(channels["theta_m"], encoders, hz)) for hz in (often * BANDWIDTH, BANDWIDTH)
+        min(TAMEST / work, quiet(channels["theta_m"], encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
     )
-    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor if of_the_motor < sigma else np.inf)
+    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
