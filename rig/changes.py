@@ -26,15 +26,16 @@ PATIENCE = 30.0  # s from torque off to rest
 COASTS = 5.0  # s in which any motor that nothing drives has come to rest
 
 
-def wait_for_rest(instruments: Instruments) -> None:
-    """Torque off, then let time pass until neither shaft moves. Raises NotReady when the drive does not confirm that it
-    is off, and after 30 s, with the speed."""
+def wait_for_rest(instruments: Instruments, meanwhile: Callable[[], None] = lambda: None) -> None:
+    """Torque off, then let time pass until neither shaft moves; `meanwhile` is called as long, and may raise. Raises
+    NotReady when the drive does not confirm that it is off, and after 30 s, with the speed."""
     if not instruments.safe():
         raise NotReady(f"{UNCONFIRMED}: press the hard-wired stop before anybody touches the rig")
     clock, quiet, speed = instruments.clock, 0, math.inf
     give_up = clock.now() + PATIENCE
     before = instruments.look()
     while quiet < QUIET:
+        meanwhile()
         clock.wait_until(clock.now() + WINDOW)
         sample = instruments.look()
         passed = sample.t - before.t

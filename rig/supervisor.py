@@ -101,3 +101,10 @@ class Supervisor:
         if act is Act.CONNECT and (wrong := self.causes()):
             return self.act(Act.TRIP, wrong)
         return self.state
+
+    def amend(self, why: str) -> None:
+        """The fault that has latched in more words, with what was seen since. Raises NotReady where there is none."""
+        if self.state is not State.FAULT:
+            raise NotReady(f"there is no fault to say more of while {self.state}")
+        self.fault = why
+        self.announce(self.state, Act.TRIP, why)

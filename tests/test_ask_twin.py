@@ -89,6 +89,8 @@ def test_values_are_told_with_their_units_and_an_error_code_as_a_run_says_it(
     assert re.search(r"^  t +[0-9.e+-]+ s$", said, re.M)
     assert re.search(r"^  late +[0-9.e+-]+ s$", said, re.M)
     assert re.search(r"^  load +[0-9.]+ % of the bus$", said, re.M)
+    assert re.search(r"^  tau_ext +0 N·m$", said, re.M)
+    assert re.search(r"^  omega_m +[0-9.e+-]+ rad/s$", said, re.M)
     assert ask(tmp_path, "truth") == 0
     said = capsys.readouterr().out
     for key, unit in (("theta_m", "rad"), ("omega_l", "rad/s"), ("tau_m", "N·m"), ("phi", "rad")):

@@ -154,6 +154,25 @@ def test_a_motor_that_would_not_come_to_rest_is_not_said_to_have() -> None:
     assert bench.torque_free()
 
 
+def test_a_fault_latches_before_anybody_looks_whether_the_motor_turns_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+    states: list[State] = []
+
+    def turning(patience: float) -> float:
+        states.append(bench.supervisor.state)
+        return 50.0
+
+    monkeypatch.setattr(bench.instruments, "still_turning", turning)
+
+    def at() -> None:
+        bench.world.fault = "over-current"
+
+    ending = bench.run(at)
+    assert states == [State.FAULT]
+    assert "; the motor turns on at 477 rpm without torque" in ending.reason
+    assert bench.supervisor.fault == ending.reason
+
+
 def test_one_interrupt_brings_the_motor_to_rest_before_the_torque_goes() -> None:
     bench = Bench()
     ending = bench.run(bench.interrupts.request, tau=0.35)

@@ -15,7 +15,8 @@ from rig.core.sample import Sample
 from rig.procedures.standstill import Standstill
 from rig.process.interrupts import Interrupts
 from rig.runfile.run import Run
-from rig.session import Session
+from rig.session import Session, Watch
+from rig.session.observer import Begun, Observer
 from rig.supervisor import Act, State
 
 
@@ -83,6 +84,31 @@ def test_who_asks_for_an_end_is_not_kept_waiting_for_a_motor_that_turns(session:
     with pytest.raises(Ended, match="nothing more was started"):
         session.run(Standstill(1.0))
     assert clock.now() - since < 1.0
+
+
+def test_who_asks_for_an_end_is_not_kept_waiting_for_rest_before_a_change_by_hand(session: Session) -> None:
+    assert session.instruments.operator is not None
+    session.instruments.operator.make(HangWeight(30.0))
+    clock, wait = session.instruments.clock, session.instruments.clock.wait_until
+    wait(clock.now() + 0.5)
+    since = clock.now()
+    session.interrupts.request()
+    with pytest.raises(Ended, match="nothing more was started"):
+        session.come_to_rest()
+    assert clock.now() - since < 1.0
+
+
+def test_what_others_build_on_names_its_folder_where_it_came_to_no_end(session: Session) -> None:
+    begun = Observer.begun
+
+    def stopped(self: Observer, run: Begun) -> Watch:
+        session.interrupts.request()
+        return begun(self, run)
+
+    session.observer.begun = stopped.__get__(session.observer)  # type: ignore[method-assign]
+    with pytest.raises(Ended, match="did not finish") as ended:
+        session.finding(Standstill(1.0))
+    assert ended.value.__notes__ == [f"what was recorded is in {session.folder}"]
 
 
 def test_a_motor_that_comes_to_rest_meanwhile_is_waited_for(session: Session) -> None:

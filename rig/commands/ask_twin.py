@@ -37,7 +37,7 @@ UNITS = {
     **dict.fromkeys(("t", "late"), "s"),
     **dict.fromkeys(("theta_m", "theta_l", "phi"), "rad"),
     **dict.fromkeys(("omega_m", "omega_l"), "rad/s"),
-    **dict.fromkeys(("tau_m", "tau_l"), "N·m"),
+    **dict.fromkeys(("tau_m", "tau_l", "tau_ext"), "N·m"),
 }
 
 

@@ -12,7 +12,6 @@ from rig.changes import (
     judge_weight,
     refuse_driving,
     refuse_unfit,
-    wait_for_rest,
 )
 from rig.core.operator import Change, FreeOutput, HangWeight, LockOutput, Reassemble
 from rig.procedures.lock_check import LockCheck
@@ -60,6 +59,6 @@ def show(session: Session, change: Change) -> str:
 
 def _wound_up(session: Session) -> float:
     """N·m at the torque sensor, at rest; 0 without a sensor."""
-    wait_for_rest(session.instruments)
+    session.come_to_rest()
     tau = session.instruments.look().tau_l
     return 0.0 if math.isnan(tau) else tau

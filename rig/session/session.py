@@ -141,10 +141,10 @@ class Session:
         """
         operator = self._operator(change)
         prepare(self, change)
-        wait_for_rest(self.instruments)
+        self.come_to_rest()
         self.unsure = change.words()
         operator.make(change)
-        wait_for_rest(self.instruments)  # what was touched swings
+        self.come_to_rest()  # what was touched swings
         before, self.rigging = self.rigging, change.applied(self.rigging)
         try:
             shown = show(self, change)
@@ -158,7 +158,7 @@ class Session:
         """After a trip: somebody has looked, the fault is cleared, every check is made anew. Raises NotReady."""
         change = ClearFault(self.supervisor.fault)
         operator = self._operator(change)
-        wait_for_rest(self.instruments)
+        self.come_to_rest()
         operator.make(change)
         self.reset()
 
@@ -177,7 +177,7 @@ class Session:
         if self.instruments.operator is not None and self.instruments.operator.begins_anew:
             for change in made:
                 self.instruments.operator.make(change)
-                wait_for_rest(self.instruments)
+                self.come_to_rest()
         self.rigging = rigging
 
     def run(self, procedure: Procedure, watch: Watch = nobody) -> Done:
@@ -192,7 +192,9 @@ class Session:
         """The finding of a run that others build on. Raises Ended when it came to no end."""
         done = self._run(procedure, self.root / self.checks, nobody)
         if done.ending.status != "completed":
-            raise Ended(f"the {procedure.title()} run did not finish: {done.ending.reason}", done.ending.exit)
+            ended = Ended(f"the {procedure.title()} run did not finish: {done.ending.reason}", done.ending.exit)
+            ended.add_note(f"what was recorded is in {done.folder}")
+            raise ended
         return done.ending.finding
 
     def _run(self, procedure: Procedure, root: Path, watch: Watch) -> Done:
@@ -211,6 +213,10 @@ class Session:
             return one.make(folder, procedure, mode, watch)
         finally:
             self.log.close()
+
+    def come_to_rest(self) -> None:
+        """Torque off and at rest, unless the operator asks for an end first. Raises NotReady, Ended."""
+        wait_for_rest(self.instruments, self._refuse_now)
 
     def _refuse_now(self) -> None:
         """Raises Ended once the operator has asked for an end."""

@@ -39,8 +39,9 @@ def plant_verbs(assembly: Assembly, reactor: Reactor, faults: Verb = dict) -> di
         return {"t": world.t, **world.truth()._asdict(), "simulated": True}
 
     def status() -> dict[str, Any]:
-        """Bus, nodes, process, standing faults; late: the longest that an event waited since last asked [s]"""
+        """Bus, nodes, plant, process, standing faults; late: the longest that an event waited since last asked [s]"""
         late, reactor.late = reactor.late, 0.0
+        world.advance_to(agenda.now)
         return {
             "t": agenda.now,
             "load": bus.load,
@@ -49,6 +50,8 @@ def plant_verbs(assembly: Assembly, reactor: Reactor, faults: Verb = dict) -> di
             "drive": assembly.drive.drive_state.name,
             "error_code": assembly.drive.error_code.number,
             "output": "locked" if world.plant.locked else "free",
+            "tau_ext": world.plant.tau_ext,
+            "omega_m": world.truth().omega_m,
             "nmt": {node.id: node.state.name for node in assembly.nodes},
             "late": late,
             **(faults() or {}),
