@@ -24,6 +24,7 @@ from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
 from rig.analysis.turning.torsion_words import add_torsion
 from rig.analysis.turning.units import wrong_unit
+from rig.analysis.turning.weight import other_weight
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
 
@@ -96,6 +97,8 @@ def _with_load(
     if not slow:
         add_speed_figures(found, motion, strokes)
     found.estimates += evenness
+    if weight := other_weight(run, motion, strokes, tau_l):
+        found.cannot.append(weight)
     if not add_torsion(found, motion, tau_l) and regime_of(run.procedure) is Regime.OTHER:  # the others keep their load
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"
         found.cannot.append(f"Stiffness: {why}; a lock test shows it (hdrig run stiffness-lock).")

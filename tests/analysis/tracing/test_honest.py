@@ -144,7 +144,7 @@ def test_one_beside_a_name_or_that_has_a_reason_keeps_it_and_no_other_is_without
     assert better[0].why.endswith(
         "; it does not explain all, or not as well as what the verdict tells, so that it is not named"
     )
-    assert none[0].why.endswith("; there is too little of it to name anything")
+    assert none[0].why.endswith("too little to name anything by")
     assert better[1] == none[1] == weak
 
 

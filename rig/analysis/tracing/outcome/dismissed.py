@@ -35,5 +35,5 @@ def _with_the_rest(c: Candidate, verdict: Verdict, pooled: Errors) -> Candidate:
         return c
     against = "it does not explain all, or not as well as what the verdict tells, so that it is not named"
     if verdict.status is Status.NOTHING:
-        against = "there is too little of it to name anything"
+        against = "but that excess is within what repeats of a run differ by: too little to name anything by"
     return replace(c, why=f"{c.why}; {against}")
