@@ -17,6 +17,7 @@ from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.uneven_friction import uneven_friction
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
@@ -44,8 +45,8 @@ def decide(asked: Asked) -> Conclusion:
         return said
     if not asked.loud:
         inside = None if names else hidden(p, s, asked.after, asked.floors)
-        drifting = inside or _drifting(p, s, names, asked.floors)
-        return drifting or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+        in_the_zeros = inside or _drifting(p, s, names, asked.floors) or _uneven(p, names, asked.floors)
+        return in_the_zeros or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     where = _where(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
 
@@ -146,6 +147,17 @@ def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[
     return Conclusion(
         Verdict(Status.UNKNOWN, names, (), "time", None, None, drift.sentence()), None, ("time",), along("time")
     )
+
+
+def _uneven(p: Prepared, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
+    """Nothing is above the floor, but the motor's friction is another one each way; None where it is not. Names stand
+    beside it."""
+    loudness = [x for (_, c), x in floors.items() if c == "M"]
+    uneven = uneven_friction(p.campaign.runs, float(np.median(loudness))) if loudness else None
+    if uneven is None:
+        return None
+    verdict = Verdict(Status.UNKNOWN, names, (), "direction", None, None, uneven.sentence())
+    return Conclusion(verdict, None, ("direction",), along("direction"))
 
 
 def _of_the_same_order(s: Solution, rest: Home) -> set[str]:

@@ -1,0 +1,79 @@
+"""Friction that is more one way, by the same at every speed: every run has a zero of the motor's torque of its own,
+which takes it on, so that no error shows it.
+
+It is told by what the motor's torque is in the mean of both ways where nothing hangs on the output, and by a run at
+standstill, which has the zero of its reading and none of the friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.special import stdtrit
+
+from rig.analysis.tracing.runs.recording import Recording
+
+RUNS: Final = 2  # that turn both ways
+EACH_WAY: Final = 0.2  # of the rows, at least
+STILL: Final = 0.2  # of what is seen: a zero that is as much may be all of it
+CARRIED: Final = 0.5  # of what is seen, at the motor: what the load pulls one way
+ALIKE: Final = 5.0  # standard errors
+LARGE: Final = 1.0  # floors of the motor's torque: less matters to nobody
+
+
+@dataclass(frozen=True)
+class UnevenFriction:
+    """By how much friction is more forward than backward, at the motor, and the 95 % half width of it [N·m]."""
+
+    size: float
+    half: float
+
+    def sentence(self) -> str:
+        """What is said of it."""
+        way = "forward" if self.size > 0 else "backward"
+        return (
+            f"The motor needs {1e3 * abs(self.size):.3g} ± {1e3 * self.half:.2g} mN·m more torque {way} than the other "
+            "way, whatever the speed, while its torque reads zero at standstill: friction that is another one each "
+            "way. Every run has a zero of its own for that torque, so that no error shows it, and no effect of the "
+            "library explains it."
+        )
+
+
+def uneven_friction(runs: Sequence[Recording], floor: float) -> UnevenFriction | None:
+    """Of the runs of a campaign, standstill among them; None where both ways are alike to `floor` [N·m], the reading
+    may have that zero, or something pulls one way."""
+    still = [r for r in runs if r.procedure == "standstill" and "tau_m" in r.has]
+    both = [m for r in runs if (m := _mean_of_both_ways(r)) is not None]
+    if not still or len(both) < RUNS:
+        return None
+    found = np.array([motor for motor, _ in both])
+    mean, error = float(found.mean()), float(found.std(ddof=1)) / np.sqrt(found.size)
+    zero = max(abs(float(np.mean(x))) if np.ptp(x := _all(r, "tau_m")) > 0 else np.inf for r in still)
+    pulled = float(np.mean([load for _, load in both]))
+    if zero > STILL * abs(mean) or not abs(pulled) <= CARRIED * abs(mean):
+        return None
+    if abs(mean) < max(LARGE * floor, ALIKE * error):
+        return None
+    return UnevenFriction(2.0 * mean, 2.0 * float(stdtrit(found.size - 1, 0.975)) * error)
+
+
+def _mean_of_both_ways(run: Recording) -> tuple[float, float] | None:
+    """Torque of the motor, and of the load at the motor, N·m, in the mean of both ways; None where it did not turn both
+    ways with nothing on it, or one of them was not measured."""
+    if run.locked or run.procedure == "standstill" or not {"tau_m", "tau_l"} <= run.has or not run.load_stated:
+        return None
+    if any(np.any(piece.tau_ext) for piece in run.pieces):
+        return None
+    way = _all(run, "way")
+    ways = [way == side for side in (1, -1)]
+    if min(float(np.mean(mine)) for mine in ways) < EACH_WAY:
+        return None
+    motor, load = (float(np.mean([np.mean(_all(run, name)[mine]) for mine in ways])) for name in ("tau_m", "tau_l"))
+    return motor, load / run.ratio
+
+
+def _all(run: Recording, name: str) -> np.ndarray:
+    return np.concatenate([getattr(piece, name) for piece in run.pieces])

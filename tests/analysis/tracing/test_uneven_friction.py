@@ -1,0 +1,70 @@
+"""Friction that is more one way is told from a zero of the reading, from what hangs on the output, and from nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest.uneven_friction import UnevenFriction, uneven_friction
+
+FRICTION, NOISE, FLOOR = 0.18, 2e-3, 2e-3  # N·m at the motor
+ROWS, RATIO = 4000, 50.0
+BOTH = frozenset({"t", "theta_m", "theta_l", "tau_m", "tau_l"})
+
+
+def run(seed: int, more: float, *, zero: float = 0.0, pulls: float = 0.0, **other: Any) -> Any:
+    """A triangle: friction larger by `more` forward than backward, a `zero` of the reading, a load that `pulls`."""
+    rng = np.random.default_rng(seed)
+    way = np.repeat([1.0, -1.0], ROWS // 2)
+    tau_m = (FRICTION + more / 2 * way) * way + zero + pulls / RATIO + NOISE * rng.standard_normal(ROWS)
+    piece = SimpleNamespace(way=way, tau_m=tau_m, tau_l=0.4 * way + pulls, tau_ext=np.zeros(ROWS))
+    made = {"procedure": "kinematic_error", "locked": False, "has": BOTH, "load_stated": True, "ratio": RATIO}
+    return SimpleNamespace(**{**made, "pieces": (piece,), **other})
+
+
+def standstill(zero: float = 0.0, noise: float = NOISE) -> Any:
+    tau_m = zero + noise * np.random.default_rng(9).standard_normal(ROWS)
+    return SimpleNamespace(procedure="standstill", has=BOTH, locked=False, pieces=(SimpleNamespace(tau_m=tau_m),))
+
+
+def found(more: float, still: Any = None, floor: float = FLOOR, **of_the_runs: Any) -> UnevenFriction | None:
+    runs = [run(seed, more, **of_the_runs) for seed in (1, 2, 3)]
+    return uneven_friction([*runs, still or standstill()], floor)
+
+
+@pytest.mark.parametrize(("more", "way"), [(10e-3, "forward"), (-10e-3, "backward")])
+def test_friction_that_is_more_one_way_is_told_with_its_size_and_an_interval(more: float, way: str) -> None:
+    told = found(more)
+    assert told is not None
+    assert abs(told.size - more) < told.half < 0.5e-3
+    assert f"mN·m more torque {way} than the other way" in told.sentence()
+
+
+def test_alike_both_ways_or_within_the_floor_is_nothing() -> None:
+    assert found(0.0) is None
+    assert found(10e-3, floor=6e-3) is None
+
+
+@pytest.mark.parametrize(
+    ("still", "of_the_runs"),
+    [
+        (standstill(5e-3), {"zero": 5e-3}),  # the reading has that zero
+        (standstill(0.0, noise=0.0), {"zero": 5e-3}),  # a drive that is off says nothing of its reading
+        (standstill(), {"pulls": 0.5}),  # something pulls the load one way
+        (standstill(), {"has": BOTH - {"tau_l"}}),  # or might
+        (standstill(), {"load_stated": False}),
+        (standstill(), {"locked": True}),
+    ],
+)
+def test_what_may_be_no_friction_is_not_called_so(still: Any, of_the_runs: Mapping[str, Any]) -> None:
+    more = 0.0 if {"zero", "pulls"} & of_the_runs.keys() else 10e-3
+    assert found(more, still, **of_the_runs) is None
+
+
+def test_without_a_standstill_or_with_one_run_alone_nothing_is_told() -> None:
+    assert uneven_friction([run(seed, 10e-3) for seed in (1, 2)], FLOOR) is None
+    assert uneven_friction([run(1, 10e-3), standstill()], FLOOR) is None
