@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import chdtri
@@ -12,10 +12,11 @@ from rig.analysis.tracing.fit.channels import CHANNELS, INDEX
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
+from rig.analysis.tracing.floor.friction import Scattering
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
 from rig.analysis.tracing.floor.uncertain import beside, is_inferred, of_the_inertia
-from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, TURNED
+from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, MISSING, TURNED
 from rig.model.effect import Array
 
 
@@ -29,6 +30,8 @@ class HeldOut:
     lenient: dict[Key, float]  # how much more than others a single block may exceed its floor by chance
     gains: dict[Key, float]  # what a torque sensor's gain may do along T in a lock test, rad per N·m
     inferred: frozenset[Key] = frozenset()  # blocks that lean on orders of θ̃_p which nobody has read
+    friction: Scattering = field(default_factory=Scattering)  # of the motor's friction from run to run
+    rubs: Mapping[Key, float] = field(default_factory=dict)  # share of that in the square of a floor
     calm: bool = False  # the baseline alone is at the floor
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
@@ -80,8 +83,14 @@ class HeldOut:
         """The same beside what chance does to the rows of a channel too, where they are few. Reversals of one run whose
         floor others' repeats stand for are judged as that run alone."""
         many = [k for k in _by_channel(e) if k[0][1] != "R" or len(k) > 1 or self.lenient[k[0]] < LENIENT]
-        most = max((self.ratio(e, keys) / _by_chance(e, keys) for keys in many), default=0.0)
+        most = max((self.ratio(e, keys) / self._by_chance(e, keys) for keys in many), default=0.0)
         return most, self._worst_run(e)
+
+    def _by_chance(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
+        """By how much more than others the rows of one channel may exceed the floor by chance."""
+        rows = np.array([e[k].size for k in keys])
+        shares = np.array([self.rubs.get(k, 0.0) for k in keys]) * rows / rows.sum()
+        return max(_by_chance(int(rows.sum())), min(self.friction.of_a_channel(shares) / EXPLAINED, LENIENT))
 
     def _worst_run(self, e: Mapping[Key, Array]) -> float:
         return max(self.ratio(e, [k]) / self.lenient[k] for k in e)
@@ -91,10 +100,9 @@ def _by_channel(e: Mapping[Key, Array]) -> list[list[Key]]:
     return [keys for c in CHANNELS if (keys := [k for k in e if k[1] == c])]
 
 
-def _by_chance(e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
-    """By how much more than others the rows of one channel may exceed the floor by chance, 1 where there are many: of
-    15 at the reversals of a third of one run 1.54 times it is no more than noise does."""
-    rows = sum(e[k].size for k in keys)
+def _by_chance(rows: int) -> float:
+    """By how much more than others so many rows may exceed the floor by chance, 1 where there are many: of 15 at the
+    reversals of a third of one run 1.54 times it is no more than noise does."""
     return max(float(np.sqrt(chdtri(rows, 1 - CHANCE) / rows)) / EXPLAINED, 1.0)
 
 
@@ -103,14 +111,20 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
-    lenient = {key: leniency(measured, eq, key) for key in held}
+    rubs = {k: share for k in held if k[1] == "M" and (share := measured.friction.share(eq.runs[k[0]], floors[k]))}
+    lenient = {key: _lenient(measured, eq, key, rubs.get(key, 0.0)) for key in held}
     # without repeats of a lock test the gain may be all that its floor is known by
     repeated = any(eq.runs[i].locked for i, c in measured.by_run if c == "A")
     wound = [key for key in held if repeated and eq.runs[key[0]].locked and not eq.runs[key[0]].look.held_load]
     gains = {key: g for key in wound if (g := gain_of(measured, eq, key)) > 0}
     inferred = frozenset(key for key in held if is_inferred(eq, key))
     floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}
-    return HeldOut(tuple(runs), {key: floors[key] for key in eq.of(runs)}, seen, lenient, gains, inferred)
+    mine = {key: floors[key] for key in eq.of(runs)}
+    return HeldOut(tuple(runs), mine, seen, lenient, gains, inferred, measured.friction, rubs)
+
+
+def _lenient(measured: Measured, eq: Equations, key: Key, rubs: float) -> float:
+    return max(leniency(measured, eq, key), min(measured.friction.of_one_run(rubs) / MISSING, LENIENT))
 
 
 def unseen(s: Solution, at: HeldOut) -> Design:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.friction import Scattering, evened
 from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
@@ -36,6 +37,7 @@ class Measured:
     how: dict[str, str]
     freedom: dict[Key, float]  # degrees of freedom of the RMS of a pair of repeats
     apart: frozenset[Key] = frozenset()  # whose repeats differ by more than noise: no other condition's floor
+    friction: Scattering = field(default_factory=Scattering)
 
 
 def guess(eq: Equations) -> Noise:
@@ -66,6 +68,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     free: dict[Key, float] = {}
     how: dict[str, str] = {}
     apart: set[Key] = set()
+    friction = Scattering()
     for channel in WHOLE:
         found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
         words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
@@ -76,6 +79,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
             words = f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
         if not found:
             continue
+        if channel == "M" and found[0].pair[0] != found[0].pair[1]:
+            found, friction = evened(solution, found, sigma["M"] ** 2 * kappa["M"])
         far = outlying(eq, found)
         how[channel] = words + _said(eq, far)
         usual = [s for s in found if s not in far]
@@ -98,7 +103,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
-    return Measured(noise, by_run, white, how, free, frozenset(apart))
+    return Measured(noise, by_run, white, how, free, frozenset(apart), friction)
 
 
 def _said(eq: Equations, far: Sequence[Scatter]) -> str:
@@ -128,7 +133,7 @@ def quieter(one: Measured, other: Measured) -> Measured:
     how = {c: m.how[c] for c, m in best.items() if c in m.how}
     free = {key: nu for c, m in best.items() for key, nu in m.freedom.items() if key[1] == c}
     apart = frozenset(key for c, m in best.items() for key in m.apart if key[1] == c)
-    return Measured(noise, by_run, white, how, free, apart)
+    return Measured(noise, by_run, white, how, free, apart, best["M"].friction)
 
 
 def _alone(
