@@ -16,10 +16,10 @@ class ExternalVibration(Effect):
     """
 
     name: ClassVar[str] = "external_vibration"
-    in_short: ClassVar[str] = "a torque on the load at a fixed frequency whatever the speed"
+    in_short: ClassVar[str] = "a torque at a fixed frequency whatever the speed"
     glosses: ClassVar[Mapping[str, str]] = {
         "frequency": "f, frequency of the vibration",
-        "torque_amplitude": "amplitude of its torque on the load",
+        "torque_amplitude": "amplitude of its torque, on the load unless it is said to act on the motor",
     }
     source: ClassVar[str] = "randall2011"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})

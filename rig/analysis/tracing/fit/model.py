@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +16,7 @@ from rig.analysis.tracing.thresholds import CLEAR, HEAVIER, LAG, LATEST, MESH, S
 from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
-STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle
-BOUNDS = {"mesh": (0.0, MESH / STIFFNESS), "lag": (0.0, LATEST)}
+STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle, of a gear that is no stiffer
 UNSEEN = 1e-12  # of the normal matrix' diagonal: what rounding leaves of a column that is a constant
 PINNED = 1e6  # times what the data know of it
 HELD = 100.0  # times what noise seems to know of it
@@ -52,6 +52,16 @@ class Design:
     def size(self) -> int:
         """Coefficients in all."""
         return len(BASELINE) + sum(self.widths)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """N·m/rad, that of the gear where it is stiffer than the paper's: its mesh drags by a smaller angle."""
+        return max(STIFFNESS, float(self.eq.runs[0].pieces[0].gear.K))
+
+    @property
+    def prior(self) -> Array:
+        """Information (p,) known beforehand."""
+        return prior(self.size, self.stiffness)
 
     def place(self, term: int) -> slice:
         """Where the coefficients of a term are."""
@@ -96,7 +106,7 @@ class Solution:
     @property
     def gain(self) -> float:
         """How much of the weighted sum of squares of the responses the fit explains, less what its prior takes."""
-        gram = self.design.gram + np.diag(prior(self.design.size))
+        gram = self.design.gram + np.diag(self.design.prior)
         return float(2 * self.design.right @ self.x - self.x @ gram @ self.x)
 
     @property
@@ -173,7 +183,7 @@ def extended(d: Design, term: Term, runs: Sequence[int], held: bool = True) -> D
     part, right, noise = part[:, at], right[at], noise[np.ix_(at, at)]
     own = part[d.size :]
     if held:
-        own = own + held_still(d.gram + np.diag(prior(d.size)), part[: d.size], own, noise)
+        own = own + held_still(d.gram + np.diag(d.prior), part[: d.size], own, noise)
     gram = np.block([[d.gram, part[: d.size]], [part[: d.size].T, own]])
     return replace(out, gram=gram, right=np.concatenate([d.right, right]))
 
@@ -244,9 +254,9 @@ def without(s: Solution, terms: Sequence[int]) -> Solution:
     """The fit when those terms are not there: their coefficients are zero, the others find their best."""
     gone = np.concatenate([np.arange(s.design.size)[s.design.place(i)] for i in terms]) if terms else np.zeros(0, int)
     stay = np.setdiff1d(np.arange(s.design.size), gone)
-    gram = s.design.gram + np.diag(prior(s.design.size))
+    gram = s.design.gram + np.diag(s.design.prior)
     x = np.zeros(s.design.size)
-    x[stay], _, _ = bounded(gram[np.ix_(stay, stay)], s.design.right[stay])
+    x[stay], _, _ = bounded(gram[np.ix_(stay, stay)], s.design.right[stay], s.design.stiffness)
     return Solution(x, s.gram, s.right, s.design, s.keys)
 
 
@@ -258,17 +268,17 @@ def solve(gram: Array, right: Array) -> Array:
 
 def fit(d: Design) -> Solution:
     """Fit all columns of the design to its blocks."""
-    x, gram, right = bounded(d.gram + np.diag(prior(d.size)), d.right)
+    x, gram, right = bounded(d.gram + np.diag(d.prior), d.right, d.stiffness)
     return Solution(x, gram, right, d, tuple(d.y))
 
 
-def bounded(gram: Array, right: Array) -> tuple[Array, Array, Array]:
-    """Least squares whose baseline keeps to BOUNDS: coefficients, and normal equations that pin those at a bound.
+def bounded(gram: Array, right: Array, stiffness: float = STIFFNESS) -> tuple[Array, Array, Array]:
+    """Least squares whose baseline keeps to its bounds: coefficients, and normal equations that pin those at one.
 
     Unbound, a drag of the mesh ten times any gear's would take the place of an encoder read late.
     """
     x = solve(gram, right)
-    for name, (low, high) in BOUNDS.items():
+    for name, (low, high) in {"mesh": (0.0, MESH / stiffness), "lag": (0.0, LATEST)}.items():
         i = INDEX[name]
         at = float(np.clip(x[i], low, high))
         if at != x[i]:

@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, damping_of, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, prior, solve
+from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
 from rig.analysis.tracing.fit.refine import nudged
 from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
@@ -57,7 +57,7 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
 
 def _at_its_bound(s: Solution, lag: Parameter) -> Parameter:
     """No delay, for no sensor is early: as late as it may be by an interval that knows of no bound."""
-    unbound = replace(s, gram=s.design.gram + np.diag(prior(s.design.size)))
+    unbound = replace(s, gram=s.design.gram + np.diag(s.design.prior))
     half = Z95 * float(np.sqrt(max(0.0, covariance(unbound)[INDEX["lag"], INDEX["lag"]])))
     return replace(lag, value=0.0, ci95=(0.0, half))
 

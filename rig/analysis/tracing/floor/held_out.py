@@ -111,7 +111,7 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
-    rubs = {k: share for k in held if k[1] == "M" and (share := measured.friction.share(eq.runs[k[0]], floors[k]))}
+    rubs = {k: share for k in held if k[1] in "MR" and (share := measured.friction.share(eq.runs[k[0]], floors[k]))}
     lenient = {key: _lenient(measured, eq, key, rubs.get(key, 0.0)) for key in held}
     # without repeats of a lock test the gain may be all that its floor is known by
     repeated = any(eq.runs[i].locked for i, c in measured.by_run if c == "A")

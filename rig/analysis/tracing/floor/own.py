@@ -11,9 +11,10 @@ from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.ringing import ringing
+from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
 from rig.analysis.tracing.floor.steps import LOST, explained, find_steps, lost_counts, step_columns
-from rig.analysis.tracing.floor.vibration import find_vibration
+from rig.analysis.tracing.floor.vibration import VIBRATION, find_vibration
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
 from rig.analysis.tracing.thresholds import OWN
@@ -56,10 +57,13 @@ def find(s: Solution, parts: Split) -> Own:
     line = None
     if shaken is not None:
         beside = sidebands(eq, everywhere, [line.frequency_hz for line in shaken.lines])
-        made["external_vibration"] = joined([shaken.columns, beside])
-        words["external_vibration"] = shaken.parameters()
+        made[VIBRATION.name] = joined([shaken.columns, beside])
+        words[VIBRATION.name] = shaken.parameters()
     elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
+        if line is not None and (motor := shaken_motor(s, line)) is not None:
+            made[VIBRATION.name], words[VIBRATION.name] = line.columns, motor.parameters()
+            notes[VIBRATION.name], line = motor.sentence(), None
     began = ringing(eq, s.design.terms, sorted({i for i, _ in everywhere}))
     if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
         return Own(made, words, line, notes, began)
