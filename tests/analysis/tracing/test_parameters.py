@@ -19,7 +19,7 @@ from rig.model.fourier import FourierSeries
 
 K, B_SP = 7160.0, 7.0
 HZ = (13.3, 6.7)
-RUN: Any = SimpleNamespace(locked=False, look=SimpleNamespace(inertia=False))
+RUN: Any = SimpleNamespace(locked=False, look=SimpleNamespace(inertia=False), pieces=())
 
 
 def waves(derivative: int) -> np.ndarray:

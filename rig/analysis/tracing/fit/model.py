@@ -56,7 +56,7 @@ class Design:
     @cached_property
     def stiffness(self) -> float:
         """N·m/rad, that of the gear where it is stiffer than the paper's: its mesh drags by a smaller angle."""
-        return max(STIFFNESS, float(self.eq.runs[0].pieces[0].gear.K))
+        return max((STIFFNESS, *(float(run.pieces[0].gear.K) for run in self.eq.runs[:1] if run.pieces)))
 
     @property
     def prior(self) -> Array:

@@ -22,7 +22,7 @@ from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.analysis.tracing.thresholds import CHANCE
 from rig.model.effect import Array
 
-LEAST_LEFT: Final = 0.25  # of the square of what a pair differs by: so much of it is no friction
+LEAST_LEFT: Final = 0.05  # of the square of what a pair differs by: so much of it is no friction
 DRIFTS: Final = ENOUGH + 1  # pairs, of which a common change can be taken off
 OF_A_CHANNEL: Final = 0.98  # of campaigns: half a dozen runs, whose friction is known of half a dozen pairs
 
