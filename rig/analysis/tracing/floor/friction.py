@@ -44,6 +44,12 @@ class Scattering:
     square: float = 0.0
     pairs: int = 0
 
+    def words(self) -> str:
+        """For the floor's account of itself; "" where nothing is known."""
+        if not self.square:
+            return ""
+        return f"; friction differs by {1e3 * np.sqrt(self.square):.2g} mN·m RMS from run to run"
+
     def share(self, run: Recording, floor: float) -> float:
         """Of the square of the `floor` of the motor torque [N·m] of one run: none where its mean is its own."""
         if run.locked or abs(mean_way(run)) > ONE_WAY:

@@ -70,17 +70,12 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     apart: set[Key] = set()
     friction = Scattering()
     for channel in WHOLE:
-        found = [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]
-        words = f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
-        if not found:
-            found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
-            found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
-            many = f"{len(found)} run{'' if len(found) == 1 else 's'}"
-            words = f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
+        found, words = _compared(eq, e, channel, pairs, among)
         if not found:
             continue
-        if channel == "M" and found[0].pair[0] != found[0].pair[1]:
+        if channel == "M":
             found, friction = evened(solution, found, sigma["M"] ** 2 * kappa["M"])
+            words += friction.words()
         far = outlying(eq, found)
         how[channel] = words + _said(eq, far)
         usual = [s for s in found if s not in far]
@@ -104,6 +99,18 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
     return Measured(noise, by_run, white, how, free, frozenset(apart), friction)
+
+
+def _compared(
+    eq: Equations, e: Mapping[Key, Array], channel: str, pairs: Sequence[tuple[int, int]], among: Sequence[int]
+) -> tuple[list[Scatter], str]:
+    """What repeats differ by, or where there are none neighbouring turns or strokes of one run, and how in words."""
+    if found := [s for pair in pairs if (s := scatter(eq, e, pair, channel)) is not None]:
+        return found, f"{len(found)} pair{'s' if len(found) > 1 else ''} of repeats compared at equal motor angle"
+    found = [s for i in among if (s := neighbours(eq, e, (i, channel))) is not None]
+    found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
+    many = f"{len(found)} run{'' if len(found) == 1 else 's'}"
+    return found, f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
 
 
 def _said(eq: Equations, far: Sequence[Scatter]) -> str:
