@@ -50,11 +50,15 @@ class Scattering:
             return ""
         return f"; friction differs by {1e3 * np.sqrt(self.square):.2g} mN·m RMS from run to run"
 
-    def share(self, run: Recording, floor: float) -> float:
-        """Of the square of the `floor` of the motor torque [N·m] of one run: none where its mean is its own."""
+    def of(self, run: Recording) -> float:
+        """Square of it [N²·m²] in what is left of a run: none where its mean is its own."""
         if run.locked or abs(mean_way(run)) > ONE_WAY:
             return 0.0
-        return min((1.0 - mean_way(run) ** 2) * self.square / floor**2, 1.0)
+        return (1.0 - mean_way(run) ** 2) * self.square
+
+    def share(self, run: Recording, floor: float) -> float:
+        """The same of the square of the `floor` of the motor torque [N·m]."""
+        return min(self.of(run) / floor**2, 1.0)
 
     def of_one_run(self, share: float) -> float:
         """How much more than its floor a run may leave by chance, where so much of that is friction's."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 from scipy.special import chdtri
@@ -18,6 +19,8 @@ from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gai
 from rig.analysis.tracing.floor.uncertain import beside, is_inferred, of_the_inertia
 from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, MISSING, TURNED
 from rig.model.effect import Array
+
+OF_ONE_RUN: Final = 2.0  # how much more than others at most, of friction: half a dozen pairs do not tell what is usual
 
 
 @dataclass(frozen=True)
@@ -83,14 +86,16 @@ class HeldOut:
         """The same beside what chance does to the rows of a channel too, where they are few. Reversals of one run whose
         floor others' repeats stand for are judged as that run alone."""
         many = [k for k in _by_channel(e) if k[0][1] != "R" or len(k) > 1 or self.lenient[k[0]] < LENIENT]
-        most = max((self.ratio(e, keys) / self._by_chance(e, keys) for keys in many), default=0.0)
+        most = max((self.beside_chance(e, keys) for keys in many), default=0.0)
         return most, self._worst_run(e)
 
-    def _by_chance(self, e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
-        """By how much more than others the rows of one channel may exceed the floor by chance."""
+    def beside_chance(self, e: Mapping[Key, Array], keys: Sequence[Key], usual: float = EXPLAINED) -> float:
+        """RMS over floor of blocks of one channel, over how much more than the `usual` limit it may be by chance: of
+        few rows, and where friction makes much of the floor."""
         rows = np.array([e[k].size for k in keys])
         shares = np.array([self.rubs.get(k, 0.0) for k in keys]) * rows / rows.sum()
-        return max(_by_chance(int(rows.sum())), min(self.friction.of_a_channel(shares) / EXPLAINED, LENIENT))
+        rubs = min(self.friction.of_a_channel(shares) / usual, LENIENT)
+        return self.ratio(e, keys) / max(_by_chance(int(rows.sum())), rubs)
 
     def _worst_run(self, e: Mapping[Key, Array]) -> float:
         return max(self.ratio(e, [k]) / self.lenient[k] for k in e)
@@ -111,7 +116,7 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     floors = {key: floor_of(measured, eq, key) for key in eq.of(range(len(eq.runs)))}
     held = set(eq.of(runs))
     seen = {key: floor for key, floor in floors.items() if key not in held}
-    rubs = {k: share for k in held if k[1] in "MR" and (share := measured.friction.share(eq.runs[k[0]], floors[k]))}
+    rubs = _rubs(eq, measured, {key: floor for key, floor in floors.items() if key in held and key[1] in "MR"})
     lenient = {key: _lenient(measured, eq, key, rubs.get(key, 0.0)) for key in held}
     # without repeats of a lock test the gain may be all that its floor is known by
     repeated = any(eq.runs[i].locked for i, c in measured.by_run if c == "A")
@@ -123,8 +128,14 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     return HeldOut(tuple(runs), mine, seen, lenient, gains, inferred, measured.friction, rubs)
 
 
+def _rubs(eq: Equations, measured: Measured, floors: Mapping[Key, float]) -> dict[Key, float]:
+    """Which share of the squares of `floors` of the motor torque is friction's that scatters; none is left out."""
+    found = {key: measured.friction.share(eq.runs[key[0]], floor) for key, floor in floors.items()}
+    return {key: share for key, share in found.items() if share}
+
+
 def _lenient(measured: Measured, eq: Equations, key: Key, rubs: float) -> float:
-    return max(leniency(measured, eq, key), min(measured.friction.of_one_run(rubs) / MISSING, LENIENT))
+    return max(leniency(measured, eq, key), min(measured.friction.of_one_run(rubs) / MISSING, OF_ONE_RUN))
 
 
 def unseen(s: Solution, at: HeldOut) -> Design:

@@ -106,7 +106,11 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
     same = {i: v for i, v in usual.items() if eq.runs[i].procedure == eq.runs[run].procedure}
     if said:
         return float(np.sqrt(np.mean(np.square(said))))
-    return _at_other_conditions(same, eq, run) if same else _elsewhere(measured, eq, key)
+    if same:
+        return _at_other_conditions(same, eq, run)
+    # most of the others go one way, and have no friction in what they differ by
+    friction = measured.friction.of(eq.runs[run]) if channel == "M" else 0.0
+    return float(np.sqrt(_elsewhere(measured, eq, key) ** 2 + friction))
 
 
 def _at_other_conditions(same: Mapping[int, float], eq: Equations, run: int) -> float:

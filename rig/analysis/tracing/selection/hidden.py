@@ -102,7 +102,7 @@ def _nearly_loud(
     left, floors = {key: s.residual(key) for key in s.keys}, {**floors, **p.held_out.floors}
     for c in WHOLE:
         mine = [key for key in after if key[1] == c]
-        if not mine or (before := p.held_out.ratio(after, mine)) < NOTEWORTHY:
+        if not mine or (before := p.held_out.beside_chance(after, mine, NOTEWORTHY)) < NOTEWORTHY:
             continue
         where = home(p.eq, {key: e for key, e in left.items() if key[1] == c}, floors)
         if where and p.held_out.ratio(smooth_term(p.eq, left, after, floors, where[0]), mine) < 1.0:
