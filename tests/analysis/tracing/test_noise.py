@@ -11,6 +11,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
 from rig.analysis.tracing.floor import of_a_run
+from rig.analysis.tracing.floor.friction import Scattering
 from rig.analysis.tracing.floor.noise import Measured, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
@@ -53,6 +54,18 @@ def floor(of: Measured, run: int) -> float:
 def test_a_clock_that_jitters_is_carried_to_speeds_that_were_never_repeated() -> None:
     assert floor(measured(500.0), 6) == pytest.approx(np.hypot(1e-3, 40 * JITTER), rel=1e-3)
     assert floor(measured(500.0), 7) == pytest.approx(1e-3, rel=1e-2)
+
+
+def test_friction_that_scatters_is_in_the_floor_of_a_staircase_that_was_never_repeated() -> None:
+    runs = [*(run_at(w, 0.0) for w in SPEEDS[:6]), run_at(12.0, 0.0)]
+    runs[6].procedure = runs[6].said = "friction"
+    runs[6].counts_m, scatters = 0.0, 2e-3
+    rows = {(6, "M"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool))}
+    eq: Any = SimpleNamespace(runs=runs, rows=rows)
+    of = replace(measured(500.0, jitter=0.0), friction=Scattering(scatters**2, 6))
+    for way, expected in (([1.0, -1.0], np.hypot(5e-4, scatters)), ([1.0, 1.0], 5e-4)):
+        runs[6].pieces[0].way = np.array(way)
+        assert floor_of(of, eq, (6, "M")) == pytest.approx(expected)
 
 
 def test_the_gain_of_a_torque_sensor_is_carried_to_loads_that_were_never_repeated() -> None:
