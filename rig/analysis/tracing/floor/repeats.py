@@ -15,6 +15,7 @@ from rig.analysis.tracing.thresholds import FLOOR_LEAST, UNCORRELATED
 from rig.model.effect import Array
 
 WHOLE = 1e-9  # of a ratio: the teeth of a strain-wave gear make it a whole number, or far from one
+OVERLAP = 25  # rows
 HOLE = 10.0  # usual distances between rows: further apart, there is nothing between them
 
 
@@ -34,21 +35,34 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     """Differences of two residuals at equal motor angle, stroke by stroke, as if of one run; (n,)."""
     both = without_common_orders(np.concatenate([theta_a, theta_b]), np.concatenate([e_a, e_b]))
     e_a, e_b = both[: e_a.size], both[e_a.size :]
-    parts = []
-    for a, b in zip(strokes(theta_a), strokes(theta_b), strict=False):
-        sign = np.sign(theta_b[b][-1] - theta_b[b][0])
-        if sign != np.sign(theta_a[a][-1] - theta_a[a][0]):
-            continue
-        x, at = np.maximum.accumulate(sign * theta_b[b]), sign * theta_a[a]
-        inside = (at > x[0]) & (at < x[-1]) & beside_a_row(at, x)
-        if inside.sum() > 25:
-            parts.append(e_a[a][inside] - np.interp(at[inside], x, e_b[b]))
-    if not parts:
-        return np.zeros(0)
-    d = np.concatenate(parts)
+    first, second = strokes(theta_a), strokes(theta_b)
+    parts = [
+        part
+        for a, b in zip(first, second, strict=False)
+        if (part := _differences(theta_a, e_a, a, theta_b, e_b, b)).size
+    ]
+    if not parts:  # triangles that begin at another angle, and the other way
+        parts = [
+            max((_differences(theta_a, e_a, a, theta_b, e_b, b) for b in second), key=len) for a in first if second
+        ]
+    d = np.concatenate(parts) if parts else np.zeros(0)
+    if not d.size:
+        return d
     rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))
     # interpolation between two rows of correlation rho leaves 2/3 + rho/3 of their variance
     return np.asarray(d / np.sqrt(1 + 2 / 3 + rho / 3))
+
+
+def _differences(theta_a: Array, e_a: Array, a: slice, theta_b: Array, e_b: Array, b: slice) -> Array:
+    """Of one stroke and another the same way, where they overlap by more than a few rows; else none."""
+    sign = np.sign(theta_b[b][-1] - theta_b[b][0])
+    if sign != np.sign(theta_a[a][-1] - theta_a[a][0]):
+        return np.zeros(0)
+    x, at = np.maximum.accumulate(sign * theta_b[b]), sign * theta_a[a]
+    inside = (at > x[0]) & (at < x[-1]) & beside_a_row(at, x)
+    if inside.sum() <= OVERLAP:
+        return np.zeros(0)
+    return np.asarray(e_a[a][inside] - np.interp(at[inside], x, e_b[b]))
 
 
 def beside_a_row(at: Array, x: Array) -> npt.NDArray[np.bool_]:
@@ -65,6 +79,8 @@ def scatter(eq: Equations, e: Mapping[Key, Array], pair: tuple[int, int], channe
         return None
     theta_a, theta_b = eq.rows[a].theta_m, eq.rows[b].theta_m
     d = compare(theta_a, e[a], theta_b + output_turns(theta_a, theta_b, eq.runs[pair[0]].ratio), e[b])
+    if channel == "M" and d.size < FLOOR_LEAST:  # of what is on the motor's side the output's angle is no part
+        d = compare(theta_a, e[a], theta_b + motor_turns(theta_a, theta_b), e[b])
     if d.size < FLOOR_LEAST or not np.any(d):  # a copy of a run is no repeat
         return None
     offset = float(d.mean())
@@ -78,9 +94,17 @@ def output_turns(theta_a: Array, theta_b: Array, ratio: float) -> float:
     The motor is where the last run left it: repeats at constant torque begin anywhere. After a turn of the output both
     angles are what they were; after one of the motor alone the output is not.
     """
-    turn = 2 * np.pi * round(ratio)
     if abs(ratio - round(ratio)) > WHOLE:
         return 0.0
+    return _turns(theta_a, theta_b, 2 * np.pi * round(ratio))
+
+
+def motor_turns(theta_a: Array, theta_b: Array) -> float:
+    """Whole turns of the motor that bring b next to a, rad: where both runs began anywhere."""
+    return _turns(theta_a, theta_b, 2 * np.pi)
+
+
+def _turns(theta_a: Array, theta_b: Array, turn: float) -> float:
     middle = 0.5 * (theta_a.min() + theta_a.max() - theta_b.min() - theta_b.max())
     return float(turn * np.round(middle / turn))
 
