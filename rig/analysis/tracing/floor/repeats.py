@@ -36,15 +36,13 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     both = without_common_orders(np.concatenate([theta_a, theta_b]), np.concatenate([e_a, e_b]))
     e_a, e_b = both[: e_a.size], both[e_a.size :]
     first, second = strokes(theta_a), strokes(theta_b)
-    parts = [
-        part
-        for a, b in zip(first, second, strict=False)
-        if (part := _differences(theta_a, e_a, a, theta_b, e_b, b)).size
-    ]
-    if not parts:  # triangles that begin at another angle, and the other way
-        parts = [
-            max((_differences(theta_a, e_a, a, theta_b, e_b, b) for b in second), key=len) for a in first if second
-        ]
+
+    def differ(a: slice, b: slice) -> Array:
+        return _differences(theta_a, e_a, a, theta_b, e_b, b)
+
+    parts = [differ(a, b) for a, b in zip(first, second, strict=False)]
+    if not any(part.size for part in parts):  # triangles that begin at another angle, or the other way
+        parts = [max([differ(a, b) for b in second], key=np.size) for a in first if second]
     d = np.concatenate(parts) if parts else np.zeros(0)
     if not d.size:
         return d
