@@ -43,7 +43,7 @@ def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
     parts = [differ(a, b) for a, b in zip(first, second, strict=False)]
     if not any(part.size for part in parts):  # triangles that begin at another angle, or the other way
         parts = [max([differ(a, b) for b in second], key=lambda part: part.size) for a in first if second]
-    d: Array = np.concatenate(parts) if parts else np.zeros(0)
+    d = np.concatenate([np.zeros(0), *parts])
     if not d.size:
         return d
     rho = float(np.clip(d[1:] @ d[:-1] / max(d @ d, 1e-300), 0.0, 1.0))

@@ -48,7 +48,7 @@ from rig.analysis.tracing.thresholds import (
     WORSE,
 )
 from rig.core.quantiles import Z95
-from rig.model.effect import Array, Parameter, Reach
+from rig.model.effect import Array, Effect, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""
@@ -137,26 +137,33 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
-    vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
+    unsaid = unscaled(selected.solution, selected.words) if selected.scores else []
+    vague = unsaid if selected.loud else []
     insignificant = [
         score
         for score in selected.scores
         if (sizes := effect[score.name].sizes(selected.words.get(score.name, ())))
         and (
             score.name in vague
-            or all(size.holds_zero for size in sizes)
+            or _may_be_nothing(selected, effect[score.name], score.name)
             or (score.overall < most and not _vouched_for(score, most) and all(_is_hardly_known(p) for p in sizes))
         )
     ]
     needless = {score.name for score in insignificant}
+    # of whose law nothing is known either: what is left to explain without it is not explained by it
+    empty = {name for name in needless.intersection(unsaid) if _may_be_nothing(selected, effect[name], name)}
     few = _few_repeats(selected.p, runs)
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
-        if (no_name or selected.loud or not fewer.loud) and gone <= needless:
+        if (no_name or selected.loud or not fewer.loud or gone <= empty) and gone <= needless:
             return _without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _may_be_nothing(selected: Selected, effect: Effect, name: str) -> bool:
+    return all(size.holds_zero for size in effect.sizes(selected.words.get(name, ())))
 
 
 def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:
