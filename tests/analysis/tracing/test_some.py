@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.fit import some as module
 from rig.analysis.tracing.fit.bank import fill, reach
+from rig.analysis.tracing.fit.channels import Rows
+from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.fit.model import design, fit
-from rig.analysis.tracing.fit.some import laid_out, search_some, some
+from rig.analysis.tracing.fit.some import Stretches, laid_out, search_some, some
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.smoothing import Smoother
@@ -52,6 +57,27 @@ def test_stretches_that_would_touch_are_one() -> None:
 def test_of_a_piece_nothing_is_asked_of_nothing_is_made() -> None:
     rows, here, local = laid_out(SMOOTHER, np.zeros(SMOOTHER.rows(4000), dtype=bool), 4000)
     assert (rows.size, int(here.sum()), local.size) == (0, 0, 0)
+
+
+def test_a_channel_of_few_rows_of_which_none_is_left_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lock test has a dozen rows in the motor's torque, all at one end of it."""
+    first, last = np.zeros((2, 100), dtype=bool)
+    first[:50], last[88:] = True, True
+    left = Stretches(first, (np.arange(50),), np.ones(50, dtype=bool))
+    monkeypatch.setattr(module, "stretches", lambda eq, i, share: left)
+    monkeypatch.setattr(Stretches, "recording", lambda self, run: run)
+    run: Any = SimpleNamespace(pieces=(SimpleNamespace(t=np.zeros(100)),))
+
+    def rows(keep: np.ndarray) -> Rows:
+        n = int(keep.sum())
+        return Rows(np.zeros(n), np.ones((n, 1)), (0,), keep, np.zeros(n), np.ones((n, 1)))
+
+    blocks = {(0, "A"): rows(first | last), (0, "M"): rows(last)}
+    own = {key: np.ones((r.y.size, 1)) for key, r in blocks.items()}
+    noise = Noise({}, {}, dict.fromkeys("AM", 1.0))
+    made = some(Equations((run,), blocks, noise, own, {}, dict.fromkeys(blocks, 2.0)), [0])
+    assert {key: r.y.size for key, r in made.rows.items()} == {(0, "A"): 50}
+    assert made.own.keys() == made.stands_for.keys() == {(0, "A")}
 
 
 @pytest.mark.slow

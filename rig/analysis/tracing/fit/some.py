@@ -70,7 +70,8 @@ def some(eq: Equations, runs: Sequence[int]) -> Equations:
     share = 1.0 if most <= MOST else LEFT / most
     left = {i: stretches(eq, i, share) for i in runs if eq.kept(i)}
     left = {i: s for i, s in left.items() if s.shorter(eq.runs[i])}
-    rows = {key: left[key[0]].rows(r) if key[0] in left else r for key, r in eq.rows.items()}
+    cut = {key: left[key[0]].rows(r) if key[0] in left else r for key, r in eq.rows.items()}
+    rows = {key: r for key, r in cut.items() if r.y.size}  # a lock test may have a dozen in M, and none of them here
     kept = {c: sum(rows[i, c].y.size for i in runs if (i, c) in rows) / max(n, 1) for c, n in count.items()}
 
     def stands_for(key: Key, before: float) -> float:
@@ -81,9 +82,9 @@ def some(eq: Equations, runs: Sequence[int]) -> Equations:
         eq,
         runs=tuple(left[i].recording(run) if i in left else run for i, run in enumerate(eq.runs)),
         rows=rows,
-        own={key: x[left[key[0]].of(eq.rows[key])] if key[0] in left else x for key, x in eq.own.items()},
+        own={k: x[left[k[0]].of(eq.rows[k])] if k[0] in left else x for k, x in eq.own.items() if k in rows},
         noisy={i: left[i].recording(run) if i in left else run for i, run in eq.noisy.items()},
-        stands_for={key: stands_for(key, before) for key, before in eq.stands_for.items()},
+        stands_for={key: stands_for(key, before) for key, before in eq.stands_for.items() if key in rows},
     )
 
 

@@ -137,8 +137,7 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
     the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
-    unsaid = unscaled(selected.solution, selected.words) if selected.scores else []
-    vague = unsaid if selected.loud else []
+    vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
     insignificant = [
         score
         for score in selected.scores
@@ -150,16 +149,21 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         )
     ]
     needless = {score.name for score in insignificant}
-    # of whose law nothing is known either: what is left to explain without it is not explained by it
-    empty = {name for name in needless.intersection(unsaid) if _may_be_nothing(selected, effect[name], name)}
+    nothing = {score.name for score in insignificant if _may_be_nothing(selected, effect[score.name], score.name)}
     few = _few_repeats(selected.p, runs)
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
-        if (no_name or selected.loud or not fewer.loud or gone <= empty) and gone <= needless:
+        if gone <= needless and (no_name or selected.loud or not fewer.loud or _says_nothing(selected, gone & nothing)):
             return _without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _says_nothing(selected: Selected, names: set[str]) -> bool:
+    """Whether there are any, and of the law of none of them is anything known: what is left without such a name is not
+    explained by it either."""
+    return bool(names) and names <= set(unscaled(selected.solution, selected.words))
 
 
 def _may_be_nothing(selected: Selected, effect: Effect, name: str) -> bool:
