@@ -77,6 +77,7 @@ OUTDONE: Final = (
     2.0  # times its evidence another effect must have: of 64 right lone names in five exams none is outdone
 )
 KNOWN: Final = 1 / 3  # of itself, half a 95 % interval: so well a second choice must know its scale, a fit the spring
+UNKNOWN: Final = 10.0  # of itself: a warming of 12 000 ± 790 000 s explains nothing; true laws had 3 at most
 TRIED: Final = 2  # candidates tried again, each by itself: each costs a selection
 TURNS: Final = 4  # prefixes of what the search found, each selected from anew
 HARMFUL: Final = 1.1  # RMS of a loud channel over that without the effect: what explains one sensor spoils no other
@@ -97,6 +98,7 @@ BURST_RUN: Final = 1.5  # RMS of that run over its usual half second: 1.23 at mo
 LOCKS_DIFFER: Final = 3.0  # times as much as runs that turn freely: on clean campaigns 0.8 to 1.4
 CHANCE: Final = 0.998  # of single runs that are no more than noise: a campaign has thirty blocks
 LENIENT: Final = 1.5  # how much more than that at most: from few repeats no spread is known
+RUBS_ANEW: Final = 2.0  # the same of a run by its friction, another one in each: half a dozen pairs tell little of it
 MOSTLY: Final = 0.9  # of the excess: with so much explained a remainder is said, and the effects stand
 PART: Final = 0.25  # of a channel's excess: names that take no more are none beside all the rest
 AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there it is not what it is called

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final
 
 import numpy as np
 from scipy.special import chdtri
@@ -17,10 +16,8 @@ from rig.analysis.tracing.floor.friction import Scattering
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
 from rig.analysis.tracing.floor.uncertain import beside, is_inferred, of_the_inertia
-from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, MISSING, TURNED
+from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, MISSING, RUBS_ANEW, TURNED
 from rig.model.effect import Array
-
-OF_ONE_RUN: Final = 2.0  # how much more than others at most, of friction: half a dozen pairs do not tell what is usual
 
 
 @dataclass(frozen=True)
@@ -135,7 +132,7 @@ def _rubs(eq: Equations, measured: Measured, floors: Mapping[Key, float]) -> dic
 
 
 def _lenient(measured: Measured, eq: Equations, key: Key, rubs: float) -> float:
-    return max(leniency(measured, eq, key), min(measured.friction.of_one_run(rubs) / MISSING, OF_ONE_RUN))
+    return max(leniency(measured, eq, key), min(measured.friction.of_one_run(rubs) / MISSING, RUBS_ANEW))
 
 
 def unseen(s: Solution, at: HeldOut) -> Design:

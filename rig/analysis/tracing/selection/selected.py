@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 
@@ -45,13 +44,12 @@ from rig.analysis.tracing.thresholds import (
     PLAIN_TO_SEE,
     QUIET,
     SEEN,
+    UNKNOWN,
     VOUCHED_FOR,
     WORSE,
 )
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Effect, Parameter, Reach
-
-UNKNOWN: Final = 10.0  # times itself, half a 95 % interval: a warming of 12 000 ± 790 000 s; true laws had 3 at most
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""
@@ -158,7 +156,8 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
-        if gone <= needless and (no_name or selected.loud or not fewer.loud or _says_nothing(selected, gone & nothing)):
+        empty = gone <= nothing and _says_nothing(selected, gone)
+        if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
             return _without_insignificant(fewer, runs, covered)
     return selected
 
