@@ -21,8 +21,9 @@ READ: Final[Mapping[str, tuple[str, Callable[[Signals], Array]]]] = {
 
 
 def refuse_odd_torques(runs: Sequence[Recording], name: str) -> None:
-    """Raises UsageError when a torque does not follow the weights that were hung, as far as they differ."""
-    free = [r for r in runs if not r.locked and r.procedure != "standstill" and _both_ways(r)]
+    """Raises UsageError when a torque does not follow the weights that were hung, as far as they are stated and differ:
+    one that was read from the torque says nothing of it."""
+    free = [r for r in runs if r.load_stated and not r.locked and r.procedure != "standstill" and _both_ways(r)]
     weight = np.array([-float(r.pieces[0].tau_ext[0]) for r in free])
     if weight.size == 0 or np.ptp(weight) < WEIGHT:
         return
