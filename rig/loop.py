@@ -322,7 +322,7 @@ class Loop:
             self.supervisor.act(Act.TRIP, ending.reason)  # latched before anything is looked at
             if seen := self._turns_on():
                 ending = replace(ending, reason=f"{ending.reason}{seen}")
-                self.supervisor.amend(ending.reason)
+                self.supervisor.amend(seen)
         elif ending.exit is Exit.HALTED:
             ending = replace(ending, reason=f"{ending.reason}{self._wound_up()}{self._turns_on()}")
             self.supervisor.act(Act.HALT, ending.reason)

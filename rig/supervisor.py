@@ -102,9 +102,9 @@ class Supervisor:
             return self.act(Act.TRIP, wrong)
         return self.state
 
-    def amend(self, why: str) -> None:
-        """The fault that has latched in more words, with what was seen since. Raises NotReady where there is none."""
+    def amend(self, seen: str) -> None:
+        """What was `seen` since, behind the fault that has latched: its cause stays. Raises NotReady without a fault."""
         if self.state is not State.FAULT:
             raise NotReady(f"there is no fault to say more of while {self.state}")
-        self.fault = why
-        self.announce(self.state, Act.TRIP, why)
+        self.fault += seen
+        self.announce(self.state, Act.TRIP, self.fault)

@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from scipy.special import fdtri
 
-from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.local import at_rows
 from rig.analysis.tracing.floor.offsets import ENOUGH, offset
 from rig.analysis.tracing.floor.repeats import Scatter
 from rig.analysis.tracing.runs.alike import ONE_WAY
@@ -107,17 +107,10 @@ def _friction(s: Solution, one: Scatter) -> Friction | None:
         return Friction(one.pair, float(second - first), 0.0)
     if any(abs(mean) > ONE_WAY for mean in means):
         return None
-    first, second = (_along(_way(s, (i, "M")), s.residual((i, "M"))) for i in (early, late))
+    first, second = (_along(at_rows(eq, (i, "M"), "way"), s.residual((i, "M"))) for i in (early, late))
     return Friction(one.pair, second - first, 1.0 - float(np.mean(np.square(means))))
 
 
 def _along(way: Array, e: Array) -> float:
     """How much of `e` (n,) goes with the way, beside a constant."""
     return float(np.linalg.lstsq(np.stack([np.ones(way.size), way], 1), e, rcond=None)[0][1])
-
-
-def _way(s: Solution, key: Key) -> Array:
-    """Direction of each row of a block, (n,)."""
-    run = s.design.eq.runs[key[0]]
-    whole = np.concatenate([piece.way[run.smoother.centres(piece.t.size)] for piece in run.pieces])
-    return np.asarray(whole[s.design.eq.rows[key].keep])

@@ -15,8 +15,14 @@ from rig.model.effect import Array
 
 def clock(eq: Equations, key: Key) -> Array:
     """Time of each row, s."""
+    return at_rows(eq, key, "t")
+
+
+def at_rows(eq: Equations, key: Key, name: str) -> Array:
+    """What the signals of a run have by that name, at each row of a block, (n,)."""
     run = eq.runs[key[0]]
-    return np.asarray(np.concatenate([p.t[run.smoother.centres(p.t.size)] for p in run.pieces])[eq.rows[key].keep])
+    whole = [getattr(piece, name)[run.smoother.centres(piece.t.size)] for piece in run.pieces]
+    return np.asarray(np.concatenate(whole)[eq.rows[key].keep])
 
 
 def joined(made: Sequence[Mapping[Key, Array]]) -> dict[Key, Array]:
