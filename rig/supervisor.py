@@ -103,7 +103,7 @@ class Supervisor:
         return self.state
 
     def amend(self, seen: str) -> None:
-        """What was `seen` since, behind the fault that has latched: its cause stays. Raises NotReady without a fault."""
+        """What was `seen` since, behind the fault that latched: its cause stays. Raises NotReady without a fault."""
         if self.state is not State.FAULT:
             raise NotReady(f"there is no fault to say more of while {self.state}")
         self.fault += seen
