@@ -19,6 +19,8 @@ from rig.core.errors import NotReady
 
 STEP_PATIENCE = 1.0  # s for one transition: brakes and precharge take their time
 CONFIRM = 0.2  # s for the drive to say that it is off; the frame that takes the torque off has long been sent
+BARRED = "switch on disabled"
+HELD_OFF = ": safe torque off, a hard-wired stop or a missing supply keeps a drive there; no reset does away with that"
 Hold = Callable[[int], object]
 
 
@@ -30,7 +32,8 @@ def walk(node: Node, hold: Hold, controlword: int, wanted: str) -> None:
         if state.startswith("fault"):
             raise NotReady(f"{node.who} is in {state}: {error_of(node)}")
         if node.bus.clock.now() > until:
-            raise NotReady(f"{node.who} stays in '{state}', expected '{wanted}' within {STEP_PATIENCE:g} s")
+            stuck = f"{node.who} stays in '{state}', expected '{wanted}' within {STEP_PATIENCE:g} s"
+            raise NotReady(stuck + (HELD_OFF if state == BARRED else ""))
         hold(controlword)
 
 

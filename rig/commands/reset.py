@@ -7,6 +7,11 @@ from pathlib import Path
 
 from rig.core.errors import Exit, NotReady
 
+NO_VOLTAGE = (
+    "the drive tells of no voltage at its power stage. Some never do while they are torque-free; if a run is refused, "
+    "see to its safe torque off, the hard-wired stop and its supply"
+)
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig reset`."""
@@ -26,6 +31,8 @@ def run(args: argparse.Namespace) -> int:
         mark = " (SIMULATED)" if session.simulated else ""
         if session.supervisor.state is not State.FAULT:
             print(f"{bench.file.name}{mark}: nothing to reset, no device is in fault")
+            if session.instruments.drive.voltage is False:
+                print(f"{bench.file.name}{mark}: {NO_VOLTAGE}")
             return Exit.PASS
         why = session.supervisor.fault
         print(f"{bench.file.name}{mark} is in fault: {why}")

@@ -82,8 +82,8 @@ class Session:
         return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
 
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs. Raises NotReady: in fault, what is missing or too
-        much; UsageError: no room on the disk for what it records.
+        """The bench can do what the procedure needs, and nothing turns. Raises NotReady: in fault, what is missing or too
+        much, a motor that turns without torque; UsageError: no room on the disk for what it records; Ended.
         """
         if self.supervisor.state is State.FAULT:
             raise NotReady(
@@ -96,6 +96,7 @@ class Session:
             raise NotReady(f"{self.bench.source} has no {' and no '.join(missing)}, which {procedure.title()} needs")
         refuse_beyond_limits(self.bench, procedure)
         refuse_no_room(self.root, self._rows(procedure), procedure.title())
+        refuse_turning(self.instruments, self._refuse_now)
 
     def _rows(self, procedure: Procedure) -> float:
         """Most that it records, with the proof that has to come first."""
@@ -203,7 +204,6 @@ class Session:
         self._refuse_now()
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
-        refuse_turning(self.instruments, self._refuse_now)
         mode = self._mode(procedure)
         folder = self.folder = self.create(root, procedure.name, manifest_of(self, procedure, mode), self.bench.text)
         timing = LoopTiming(1.0 / self.bench.file.loop.rate, virtual=self.clock == "virtual")

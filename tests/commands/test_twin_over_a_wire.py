@@ -44,6 +44,20 @@ def test_a_reset_says_so(rig: Wired, capsys: pytest.CaptureFixture[str], fault: 
     assert all("twin-can (SIMULATED)" in line for line in capsys.readouterr().out.splitlines())
 
 
+def test_a_safe_torque_off_that_stands_is_named_by_the_reset_and_by_the_run_it_refuses(
+    rig: Wired, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rig.twin.drive.sto(True, fault=False)
+    rig.wire.wait_until(rig.wire.now() + 0.01)
+    assert main(["reset", "--bench", "twin-can"]) == Exit.PASS
+    said = capsys.readouterr().out
+    assert "nothing to reset" in said
+    assert "no voltage at its power stage" in said
+    assert main(["run", "jog", "--bench", "twin-can"]) == Exit.NOT_READY
+    assert "stays in 'switch on disabled'" in (told := capsys.readouterr().err)
+    assert "safe torque off, a hard-wired stop or a missing supply keeps a drive there" in told
+
+
 def test_a_run_on_a_rig_in_fault_says_both_before_anything_is_announced(
     rig: Wired, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -1,4 +1,4 @@
-"""Weights that were hung have to be in the torques; one that was read from them says nothing of them."""
+"""Weights that were hung have to be in the torques; one read from them says nothing of them; another is told."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.runs.weights import refuse_odd_torques
+from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.core.errors import UsageError
 
 BOTH = np.repeat([1.0, -1.0], 500)
@@ -35,3 +35,26 @@ def test_a_weight_that_nobody_stated_and_the_torque_told_refuses_no_campaign() -
     refuse_odd_torques([run(0.0, 5.0), run(5.0, 5.0, stated=False)], "c")
     with pytest.raises(UsageError):
         refuse_odd_torques([run(0.0, 5.0), run(5.0, 5.0)], "c")
+
+
+def test_another_weight_than_stated_is_told_of_its_run_alone() -> None:
+    fine = [run(w, w + 0.2) for w in (0.0, 5.0, 10.0, 40.0)]
+    assert other_weights(fine) == []
+    (said,) = other_weights([*fine, run(0.0, 5.2)])
+    assert (said.run, said.became) == ("0", "")
+    assert "shows -5 N·m" in said.reason
+    assert "manifest 0 N·m" in said.reason
+
+
+def test_a_zero_that_all_runs_have_is_no_weight_and_friction_is_none_either() -> None:
+    assert other_weights([run(w, w + 3.0) for w in (0.0, 5.0, 10.0)]) == []
+    cut = run(0.0, 0.0)
+    cut.pieces[0].way, cut.pieces[0].tau_l = BOTH[:800], 20.0 * BOTH[:800]  # a triangle that was cut short
+    assert other_weights([cut]) == []
+    still = run(0.0, 5.0)
+    still.pieces[0].way = 0.0 * BOTH
+    assert other_weights([still]) == []
+
+
+def test_a_weight_that_was_not_stated_is_not_another_one() -> None:
+    assert other_weights([run(5.0, 9.0, stated=False)]) == []

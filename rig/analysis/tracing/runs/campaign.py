@@ -24,7 +24,7 @@ from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
 from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
-from rig.analysis.tracing.runs.weights import refuse_odd_torques
+from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
@@ -96,7 +96,7 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
         runs, odd = sort(runs)
         out += odd
     runs, carrying = weighed(runs)
-    out += carrying
+    out += [*carrying, *other_weights(runs)]
     clocked = [r for r in runs if r.clocked]
     unfit += [said_of(len(clocked), len(runs) - len(clocked), hz)] if hz is not None and clocked else []
     notes = unfit + mixed(opened) + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
