@@ -82,8 +82,8 @@ class Session:
         return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
 
     def check(self, procedure: Procedure) -> None:
-        """The bench can do what the procedure needs, and nothing turns. Raises NotReady: in fault, what is missing or too
-        much, a motor that turns without torque; UsageError: no room on the disk for what it records; Ended.
+        """The bench can do what the procedure needs, and nothing turns. Raises NotReady: in fault, what is missing or
+        too much, a motor that turns without torque; UsageError: no room on the disk for what it records; Ended.
         """
         if self.supervisor.state is State.FAULT:
             raise NotReady(

@@ -71,3 +71,15 @@ def test_the_motors_torque_and_lock_tests_lean_on_orders_where_no_load_angle_was
     assert not of(False, "L", "theta_m", "tau_l")
     assert not of(True, "A", "theta_m", "theta_l", "tau_l")
     assert not of(False, "M", "theta_m", "theta_l", "tau_l")
+
+
+def test_a_covariance_that_sensor_noise_left_below_zero_moves_nothing_that_way() -> None:
+    """Noise taken off the normal matrix can leave it indefinite, and what is known of two orders along with it."""
+    known = known_to(a2=1e-5, b2=1e-5)
+    known[INDEX["a2"], INDEX["b2"]] = known[INDEX["b2"], INDEX["a2"]] = 3e-10  # beyond what two variances allow
+    turn = np.linspace(-np.pi, np.pi, 2000)  # a whole one, on which both waves are as large
+    d = block({"a2": np.cos(2 * turn), "b2": np.sin(2 * turn)})
+    for sign, least, most in ((1.0, 0.0, 0.2), (-1.0, 0.99, 1.0)):
+        e = 1e-5 * (np.cos(2 * turn) + sign * np.sin(2 * turn))
+        rest = np.std(beside(e, d, KEY, known, FLOOR)) / np.std(e)
+        assert least <= rest <= most * (1 + 1e-9)

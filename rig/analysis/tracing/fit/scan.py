@@ -106,12 +106,14 @@ def drops(bank: Bank, mine: Own, u: dict[str, Array], s: Solution) -> list[Drop]
 
 def _drop(i: int, gram: Array, noise: Array, v: Array, b: Array) -> Drop:
     """One term: project out the model, leave directions out that are not its own or mostly sensor noise."""
-    least = NOISE_ALONE * np.abs(np.diag(noise))
-    size = np.sqrt(np.maximum(np.maximum(np.diag(gram), least), 1e-300))
+    alone = NOISE_ALONE * np.abs(np.diag(noise))
+    size = np.sqrt(np.maximum(np.maximum(np.diag(gram), alone), 1e-300))
     noise = noise / size / size[:, None]
     left = gram / size / size[:, None] - noise - (v / size).T @ (v / size)
     values, vectors = np.linalg.eigh(left)
-    good = (values > FAINTEST) & (values > CLEAR * (values + np.diag(vectors.T @ noise @ vectors)))
+    # less than nothing in one direction, noise taken off, is how well any of them is known
+    least = max(FAINTEST, -float(values[0]))
+    good = (values > least) & (values > CLEAR * (values + np.diag(vectors.T @ noise @ vectors)))
     along = vectors[:, good].T @ (b / size)
     x = (vectors[:, good] @ (along / values[good])) / size
     return Drop(i, float(np.sum(along**2 / values[good])), x)

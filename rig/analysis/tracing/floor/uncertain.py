@@ -55,8 +55,8 @@ def beside(e: Array, d: Design, key: Key, covariance: Array, floor: float) -> Ar
     columns = columns - columns.mean(0)
     prior = covariance[np.ix_(baseline.at[mine], baseline.at[mine])]
     weight = min(PIECES, e.size) / (e.size * floor**2)
-    # (P⁻¹ + w·ZᵀZ)⁻¹·w·Zᵀe without the inverse of a prior that may be singular
-    moved = np.linalg.solve(
-        np.eye(len(mine)) + weight * prior @ (columns.T @ columns), weight * prior @ (columns.T @ e)
-    )
-    return np.asarray(e - columns @ moved)
+    # sensor noise taken off can leave a covariance below zero somewhere: nothing moves there
+    sizes, axes = np.linalg.eigh(prior)
+    freely = columns @ (axes * np.sqrt(np.maximum(sizes, 0.0)))
+    moved = np.linalg.solve(np.eye(len(mine)) + weight * freely.T @ freely, weight * freely.T @ e)
+    return np.asarray(e - freely @ moved)
