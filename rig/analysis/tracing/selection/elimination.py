@@ -6,16 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
 from rig.analysis.tracing.fit.search import ROUNDS, as_fit, possible, reduced
 from rig.analysis.tracing.floor.held_out import HeldOut, unseen
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.score import HeldOutScore, scores
-from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, KNOWN, SHADOW
-from rig.core.quantiles import Z95
+from rig.analysis.tracing.thresholds import ASTRAY, HARMFUL, SHADOW
 from rig.core.units import TURN
 from rig.model.effect import Parameter, Reach
 
@@ -110,30 +107,6 @@ def _is_resolved(s: Solution, name: str, found: Sequence[Parameter], covered: Re
     if len(scaled) == len(within):
         return any(a and b for a, b in zip(within, scaled, strict=True))
     return any(within) and (any(scaled) or not scaled)
-
-
-def instead_of_the_spring(s: Solution) -> list[str]:
-    """Effects in angle beside which the stiffness is not known any more, as it is without them: under a torque that
-    goes with the angle, as an arm's weight does, they and the spring are one wave."""
-    if not s.design.terms or _is_stiff(s):
-        return []
-    found = []
-    for name in dict.fromkeys(term.name for term in s.design.terms):
-        mine = [i for i, term in enumerate(s.design.terms) if term.name == name]
-        if _acts_in_angle(s.design, mine) and _is_stiff(fit(reduced(s.design, mine))):
-            found.append(name)
-    return found
-
-
-def _is_stiff(s: Solution) -> bool:
-    """Whether the compliance is known to a third of itself."""
-    at = INDEX["compliance"]
-    return KNOWN * s.value("compliance") > Z95 * float(np.sqrt(max(0.0, covariance(s)[at, at])))
-
-
-def _acts_in_angle(d: Design, places: Sequence[int]) -> bool:
-    starts = {int(d.place(i).start) for i in places}
-    return any(int(part.at[0]) in starts for key, parts in d.parts.items() if key[1] == "A" for part in parts)
 
 
 def scales(s: Solution, name: str, words: Mapping[str, Sequence[Parameter]]) -> list[Parameter]:

@@ -24,12 +24,12 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in, with_confounders
 from rig.analysis.tracing.selection.elimination import (
     backward_elimination,
-    instead_of_the_spring,
     run_to_the_end,
     scales,
     unresolved,
     unscaled,
 )
+from rig.analysis.tracing.selection.instead_of import instead_of_the_gear
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import (
@@ -126,7 +126,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
 def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
     """Effects of whose law, or of which beside the spring, the data say nothing; beside an unknown rest those too that
     a law at the end of its range was needed for."""
-    vague = unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_spring(s)
+    vague = unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_gear(s)
     ended = run_to_the_end(s, covered)
     return vague or (ended if ended and is_loud(p.held_out, s, held) else [])
 

@@ -1,0 +1,68 @@
+"""Effects that take the place of what the gear has: a name for its spring, or for an inertia, is none that it lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import INDEX
+from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.model import Design, Solution, fit
+from rig.analysis.tracing.fit.search import reduced
+from rig.analysis.tracing.thresholds import KNOWN
+from rig.core.quantiles import Z95
+
+
+def instead_of_the_gear(s: Solution) -> list[str]:
+    """Effects in the place of what every gear has: of its spring, or of an inertia."""
+    return instead_of_the_spring(s) or instead_of_an_inertia(s)
+
+
+def instead_of_the_spring(s: Solution) -> list[str]:
+    """Effects in angle beside which the stiffness is not known any more, as it is without them: under a torque that
+    goes with the angle, as an arm's weight does, they and the spring are one wave."""
+    if not s.design.terms or _is_stiff(s):
+        return []
+    return [
+        name for name, mine in _by_name(s).items() if _acts_in_angle(s.design, mine) and _is_stiff(_without(s, mine))
+    ]
+
+
+def instead_of_an_inertia(s: Solution) -> list[str]:
+    """Effects beside which an inertia is surely below zero, as in no gear, and without them is not: what the inertia
+    was is in them. Where neither the load's angle nor its torque was read an inertia shows little, and a lever that
+    goes with the load may be it."""
+    if not s.design.terms or not (below := _below_zero(s)):
+        return []
+    return [name for name, mine in _by_name(s).items() if not below <= _below_zero(_without(s, mine))]
+
+
+def _below_zero(s: Solution) -> frozenset[str]:
+    known = covariance(s)
+    return frozenset(
+        name
+        for name in ("J_m", "J_l")
+        if s.value(name) < -Z95 * float(np.sqrt(max(0.0, known[INDEX[name], INDEX[name]])))
+    )
+
+
+def _by_name(s: Solution) -> dict[str, list[int]]:
+    """The places of each effect's terms."""
+    terms = s.design.terms
+    return {one.name: [i for i, term in enumerate(terms) if term.name == one.name] for one in terms}
+
+
+def _without(s: Solution, places: Sequence[int]) -> Solution:
+    return fit(reduced(s.design, places))
+
+
+def _is_stiff(s: Solution) -> bool:
+    """Whether the compliance is known to a third of itself."""
+    at = INDEX["compliance"]
+    return KNOWN * s.value("compliance") > Z95 * float(np.sqrt(max(0.0, covariance(s)[at, at])))
+
+
+def _acts_in_angle(d: Design, places: Sequence[int]) -> bool:
+    starts = {int(d.place(i).start) for i in places}
+    return any(int(part.at[0]) in starts for key, parts in d.parts.items() if key[1] == "A" for part in parts)
