@@ -33,6 +33,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.tracing.fit.answered import answered, lowest_answered
 from rig.analysis.tracing.fit.holding import holds
 from rig.analysis.tracing.fit.unread_load import beside_load
 from rig.analysis.tracing.runs.declared import UNKNOWN
@@ -155,7 +156,7 @@ def rows(run: Recording, channel: str) -> Rows:
     theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
     shared, z = shared_columns(run, channel, at), z[keep]
-    own = _own(run)[keep] if channel == "M" and run.locked else np.zeros((len(z), 0))
+    own = _own(run, channel, keep.size)[keep]
     if shared.all():  # most runs: theirs is the bulk of what a trace holds, and is copied no more than it must
         return Rows(y[keep], z, at, keep, theta_m[keep], own)
     places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
@@ -167,10 +168,20 @@ def again(run: Recording, channel: str, before: Rows) -> Rows:
     y, z, at = unmasked(run, channel)
     shared, y, z = shared_columns(run, channel, at), y[before.keep], z[before.keep]
     places = tuple(i for i, mine in zip(at, shared, strict=True) if mine)
-    return Rows(y, z[:, shared], places, before.keep, before.theta_m, np.hstack([z[:, ~shared]]))
+    own = _own(run, channel, before.keep.size)[before.keep]
+    return Rows(y, z[:, shared], places, before.keep, before.theta_m, np.hstack([z[:, ~shared], own]))
 
 
-def _own(run: Recording) -> Array:
+def _own(run: Recording, channel: str, n: int) -> Array:
+    """Columns of M whose coefficients are each run's own, pieces joined, all rows (n, q); of the others none."""
+    if channel == "M" and run.locked:
+        return _held_torque(run)
+    if channel == "M" and np.isfinite(lowest_answered(run)):
+        return answered(run, ORDERS)
+    return np.zeros((n, 0))
+
+
+def _held_torque(run: Recording) -> Array:
     """T of a lock test, pieces joined, all rows (n, 1). A torque sensor's gain is good to some tenths of a per cent, a
     motor's torque constant to less, and both drift: at such torques that is several floors of M, and what of it lies
     along T is each test's own. Left to all it would go into θ̃_p′, which stands before T there.
