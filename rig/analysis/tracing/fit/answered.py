@@ -1,8 +1,10 @@
-"""Orders of the motor that a load nobody reads answers by its resonance: in M they are each run's own.
+"""Orders of the motor that a side nobody reads answers by its resonance: in M they are each run's own.
 
 Where neither the load's angle nor its torque was read T is what the load's inertia takes of a motion that is as stiff
 as the motor's. Below its resonance on the gear's spring, √(K/J_l), that is so; near it the load swings several times
-as far, by a damping that nothing here tells. At such speeds an order says nothing of what made it. Slow runs do.
+as far, by a damping that nothing here tells. At such speeds an order says nothing of what made it. Slow runs do. And so
+it is of a motor whose angle nobody read: what its inertia takes is known by the load's motion and torque twice
+differentiated, which is their noise, below √(K/J_m)/N already.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.runs.declared import UNKNOWN
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Array
 from rig.model.waves import powers
@@ -19,11 +22,18 @@ NEAR: Final = 0.2  # of the resonance: a load swings a twentieth further than a 
 
 
 def lowest_answered(run: Recording) -> float:
-    """The lowest order that its load answers at the speed of a run; infinite where the load, or none, was read."""
-    if not run.load_unread or "theta_l" in run.has or "t" not in run.has:
+    """The lowest order that the unread side answers at the speed of a run; infinite where both were read, or none."""
+    if run.locked or not {"tau_m", "t"} <= run.has or {"theta_m", "theta_l"} <= run.has:
         return np.inf
-    gear = run.pieces[0].gear
-    return float(np.ceil(NEAR * np.sqrt(gear.K / gear.J_l) / max(run.turning, 1e-9)))
+    # as declared: what a fit makes of an inertia leans on which orders it is asked
+    K, J_m, J_l = (abs(run.declared.get(name, getattr(UNKNOWN, name))) for name in ("K", "J_m", "J_l"))
+    if "theta_m" not in run.has:
+        resonance = np.sqrt(K / J_m) / run.ratio
+    elif "tau_l" not in run.has:
+        resonance = np.sqrt(K / J_l)
+    else:
+        return np.inf
+    return float(np.ceil(NEAR * resonance / max(run.turning, 1e-9)))
 
 
 def answered(run: Recording, orders: int) -> Array:

@@ -229,6 +229,11 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
         z[:, [names.index(name) for name in WIND_UP if name in names]] = 0.0
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
         z[:, names.index("J_m")] = 0.0
+    if channel == "M" and (lowest := lowest_answered(run)) <= ORDERS:
+        # beside waves of the run's own nothing of these is left but the noise that they are made of
+        spent = {f"{part}{n}" for n in range(int(lowest), ORDERS + 1) for part in "ab"}
+        spent |= set[str]() if "theta_m" in run.has else {"J_m", "compliance", "damping"}
+        z[:, [i for i, name in enumerate(names) if name in spent]] = 0.0
     return y, z, tuple(INDEX[name] for name in names)
 
 
@@ -289,7 +294,8 @@ def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
         columns = _with_angle(columns, s, f, has, s.gear.J_m * s.ratio)
     elif "theta_l" not in has and "tau_l" not in has:
         columns = _with_angle(columns, s, f, has, -s.gear.J_l / s.ratio)
-    columns |= {"J_m": f(s.theta_m, 2), "B_m": f(s.theta_m, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
+    theta = s.theta_m if "theta_m" in has else s.theta_l * s.ratio  # what it is ahead by has columns of its own
+    columns |= {"J_m": f(theta, 2), "B_m": f(theta, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
     if "tau_l" not in has and "theta_l" in has:  # what the load's bearings take is missing in T
         lever = 1 / s.ratio - s.series_slope
         columns |= {"B_l": f(s.omega_l * lever), "tau_cl": f(s.way * lever)}

@@ -8,15 +8,17 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.equations import acting
 from rig.analysis.tracing.fit.model import Design, Solution, fit
 from rig.analysis.tracing.fit.search import reduced
 from rig.analysis.tracing.thresholds import KNOWN
 from rig.core.quantiles import Z95
+from rig.model.effect import Port
 
 
 def instead_of_the_gear(s: Solution) -> list[str]:
     """Effects in the place of what every gear has: of its spring, or of an inertia."""
-    return instead_of_the_spring(s) or instead_of_an_inertia(s)
+    return instead_of_the_spring(s) or of_a_spring_unseen(s) or instead_of_an_inertia(s)
 
 
 def instead_of_the_spring(s: Solution) -> list[str]:
@@ -27,6 +29,15 @@ def instead_of_the_spring(s: Solution) -> list[str]:
     return [
         name for name, mine in _by_name(s).items() if _acts_in_angle(s.design, mine) and _is_stiff(_without(s, mine))
     ]
+
+
+def of_a_spring_unseen(s: Solution) -> list[str]:
+    """Effects in the wind-up where nobody read the motor's angle, and with it no wind-up, and the torques say nothing
+    of the spring either."""
+    d = s.design
+    if not d.terms or any("theta_m" in run.has for run in d.eq.runs) or _is_stiff(s):
+        return []
+    return list(dict.fromkeys(term.name for term in d.terms if Port.WIND_UP in acting(d.eq.runs[0], term)[0]))
 
 
 def instead_of_an_inertia(s: Solution) -> list[str]:
