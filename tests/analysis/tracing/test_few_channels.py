@@ -84,6 +84,27 @@ def test_without_a_load_encoder_the_torque_at_speed_gives_the_kinematic_error(tm
     assert values["b4"] == pytest.approx(truth["kinematic_error_b_rad"][4], rel=0.25)
 
 
+LOADS = ("load_10nm_1", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1", "speed_400rpm_1")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drop", [("theta_l", "tau_l"), ("theta_m",), ("theta_m", "tau_l")])
+def test_of_a_side_that_nobody_read_orders_are_told_by_slow_runs_under_load(
+    tmp_path: Path, open_1: Path, drop: tuple[str, ...]
+) -> None:
+    """At speed the side that was not read answers them by a resonance that nothing tells; a motor that was not read is
+    ahead by the wind-up."""
+    p = prepare(read_campaign(reduced(tmp_path, open_1, [*FEW, *LOADS], drop)), ())
+    truth = json.loads((open_1.parent / "TRUTH.json").read_text())["open-1"]
+    of = {c: np.array(truth[f"kinematic_error_{c}_rad"]) for c in "ab"}
+    for order in (2, 4):
+        told = complex(*(p.baseline.value(f"{c}{order}") for c in "ab"))
+        true = complex(*(of[c][order] for c in "ab"))
+        assert abs(told - true) < 0.2 * abs(true)
+    left = [np.sqrt(np.mean(p.baseline.residual(key) ** 2)) / p.floors[key] for key in p.baseline.keys]
+    assert max(left) < 1.4
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "runs",

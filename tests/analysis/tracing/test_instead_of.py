@@ -1,0 +1,49 @@
+"""A name in the place of what every gear has, of its spring or of an inertia, does not stand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.fit.channels import BASELINE, INDEX
+from rig.analysis.tracing.selection import instead_of as module
+from rig.analysis.tracing.selection.instead_of import instead_of_an_inertia, of_a_spring_unseen
+from rig.model.effect import Port
+
+
+def solution(*names: str, J_m: float = 1e-3, has: frozenset[str] = frozenset({"theta_l", "tau_m"})) -> Any:
+    values = dict.fromkeys(BASELINE, 1e-6) | {"J_m": J_m, "J_l": 0.8}
+    terms = tuple(SimpleNamespace(name=name) for name in names)
+    eq = SimpleNamespace(runs=(SimpleNamespace(has=has),))
+    return SimpleNamespace(design=SimpleNamespace(terms=terms, eq=eq), value=values.__getitem__)
+
+
+@pytest.fixture(autouse=True)
+def _known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every inertia is known to 1e-4 kg·m², a compliance not at all."""
+    known = np.zeros((len(BASELINE), len(BASELINE)))
+    for name, sigma in (("J_m", 1e-4), ("J_l", 1e-4), ("compliance", 1.0)):
+        known[INDEX[name], INDEX[name]] = sigma**2
+    monkeypatch.setattr(module, "covariance", lambda s: known)
+
+
+@pytest.mark.parametrize(("J_m", "without", "gone"), [(-5e-4, 1e-3, True), (-5e-4, -6e-4, False), (-1e-4, 1e-3, False)])
+def test_a_name_that_makes_an_inertia_surely_negative_is_the_inertia(
+    monkeypatch: pytest.MonkeyPatch, J_m: float, without: float, gone: bool
+) -> None:
+    monkeypatch.setattr(module, "_without", lambda s, places: solution(J_m=without))
+    assert instead_of_an_inertia(solution("load_dependent_kinematic_error", J_m=J_m)) == (
+        ["load_dependent_kinematic_error"] if gone else []
+    )
+
+
+def test_a_law_of_the_spring_does_not_stand_where_neither_wind_up_nor_spring_was_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ports = {"nonlinear_stiffness": Port.WIND_UP, "gravity_unbalance": Port.LOAD_TORQUE}
+    monkeypatch.setattr(module, "acting", lambda run, term: [{ports[term.name]: None}])
+    assert of_a_spring_unseen(solution(*ports)) == ["nonlinear_stiffness"]
+    assert of_a_spring_unseen(solution(*ports, has=frozenset({"theta_m", "theta_l"}))) == []
