@@ -33,9 +33,9 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.fit.answered import answered, lowest_answered
 from rig.analysis.tracing.fit.holding import holds
 from rig.analysis.tracing.fit.unread_load import beside_load
+from rig.analysis.tracing.runs.answered import answered, lowest_answered
 from rig.analysis.tracing.runs.declared import UNKNOWN
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.resolution import COARSE
@@ -177,7 +177,7 @@ def _own(run: Recording, channel: str, n: int) -> Array:
     if channel == "M" and run.locked:
         return _held_torque(run)
     if channel == "M" and np.isfinite(lowest_answered(run)):
-        return answered(run, ORDERS)
+        return answered(run)
     return np.zeros((n, 0))
 
 
@@ -229,7 +229,7 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
         z[:, [names.index(name) for name in WIND_UP if name in names]] = 0.0
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
         z[:, names.index("J_m")] = 0.0
-    if channel == "M" and (lowest := lowest_answered(run)) <= ORDERS:
+    if channel == "M" and np.isfinite(lowest := lowest_answered(run)):
         # beside waves of the run's own nothing of these is left but the noise that they are made of
         spent = {f"{part}{n}" for n in range(int(lowest), ORDERS + 1) for part in "ab"}
         spent |= set[str]() if "theta_m" in run.has else {"J_m", "compliance", "damping"}

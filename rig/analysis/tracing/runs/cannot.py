@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.runs.answered import lowest_answered
 from rig.analysis.tracing.runs.holdout import grouped
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.thresholds import BANDWIDTH
-from rig.core.units import RPM
+from rig.core.units import RPM, TURN
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
 EVEN: Final = 2.0  # of the slower quarter's speed, the faster one's: a sine has 2.4
@@ -46,11 +47,25 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     has = frozenset().union(*(run.has for run in runs))
     found = [sentence for channel, sentence in SENSORS.items() if channel not in has]
     moving = [run for run in runs if run.procedure != "standstill"]
+    found += _answered(moving)
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
     found += _held_output(moving)
     found += _gain(moving)
     found += _fast(moving)
     return tuple(found)
+
+
+def _answered(runs: Sequence[Recording]) -> list[str]:
+    spent = [run for run in runs if np.isfinite(lowest_answered(run))]
+    if not spent:
+        return []
+    side = "load" if "theta_m" in spent[0].has else "motor"
+    order = min(lowest_answered(run) * run.turning for run in spent)
+    return [
+        f"Nobody read how the {side} moves, and it answers by its resonance what comes faster than "
+        f"{order / TURN:.2g} times a second: what orders of the motor's torque that fast are made by cannot be told, "
+        "and they are each run's own. Slower runs, under load, tell it."
+    ]
 
 
 def _no_torque(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:

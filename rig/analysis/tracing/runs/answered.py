@@ -18,11 +18,13 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Array
 from rig.model.waves import powers
 
+HIGHEST: Final = 15  # order of θ̃_p      [ghorbel2001, Eq. 8]
 NEAR: Final = 0.2  # of the resonance: a load swings a twentieth further than a stiff one there
 
 
 def lowest_answered(run: Recording) -> float:
-    """The lowest order that the unread side answers at the speed of a run; infinite where both were read, or none."""
+    """The lowest order that the unread side answers at the speed of a run; infinite where both were read, or it
+    turns too slowly."""
     if run.locked or not {"tau_m", "t"} <= run.has or {"theta_m", "theta_l"} <= run.has:
         return np.inf
     # as declared: what a fit makes of an inertia leans on which orders it is asked
@@ -33,11 +35,12 @@ def lowest_answered(run: Recording) -> float:
         resonance = np.sqrt(K / J_l)
     else:
         return np.inf
-    return float(np.ceil(NEAR * resonance / max(run.turning, 1e-9)))
+    lowest = np.ceil(NEAR * resonance / max(run.turning, 1e-9))
+    return float(lowest) if lowest <= HIGHEST else np.inf
 
 
-def answered(run: Recording, orders: int) -> Array:
-    """Waves of those up to `orders`, pieces joined, all rows of M (n, q)."""
+def answered(run: Recording) -> Array:
+    """Waves of those, pieces joined, all rows of M (n, q)."""
     f, lowest = run.smoother.of("M"), lowest_answered(run)
-    waves = np.concatenate([f(powers(piece.theta_m, orders)) for piece in run.pieces])
-    return waves[:, np.repeat(np.arange(1, orders + 1) >= lowest, 2)]
+    waves = np.concatenate([f(powers(piece.theta_m, HIGHEST)) for piece in run.pieces])
+    return waves[:, np.repeat(np.arange(1, HIGHEST + 1) >= lowest, 2)]
