@@ -19,10 +19,13 @@ from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
 from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
+from rig.analysis.tracing.runs.answered import KEPT, slow_enough, too_fast
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.runs.holdout import Split, split
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.weights import refuse_odd_torques
 from rig.core.errors import UsageError
+from rig.core.units import RPM
 
 FEWEST: Final = 250  # rows, eight for each number of a kinematic error
 
@@ -54,9 +57,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) 
     parts = split(campaign.runs, hold_out, swapped)
     eq = equations(parts.runs, Noise({}, {}, {}))
     if not eq.of(parts.fitted) or not eq.of(parts.held_out):
-        raise UsageError(
-            f"{campaign.name}: no run to fit, or none to test with, has two angles or an angle and a torque"
-        )
+        raise UsageError(f"{campaign.name}: {_nothing(eq.runs)}")
     _refuse_too_short(eq, parts.fitted, campaign.name)
     refuse_odd_torques(campaign.runs, campaign.name)
     if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
@@ -77,6 +78,18 @@ def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) 
     if columns := own.columns():
         s = fit(design(replace(eq, own=columns), (), parts.fitted))
     return built(campaign, parts, eq, measure(s, parts.fitted), own)
+
+
+def _nothing(runs: Sequence[Recording]) -> str:
+    """Why no equation holds in any row."""
+    if fast := [run for run in runs if too_fast(run)]:
+        side, limit = "load" if "theta_m" in fast[0].has else "motor", slow_enough(fast[0]) / RPM
+        return (
+            f"nobody read how the {side} moves, and {fast[0].name} swings too fast to know it: at some angles of the "
+            f"motor it is never slower than {limit / KEPT:.0f} rpm, below which the {side} moves as stiffly as the "
+            "other side; runs at even speeds, slower ones, or both angles can be traced"
+        )
+    return "no run to fit, or none to test with, has two angles or an angle and a torque"
 
 
 def _refuse_too_short(eq: Equations, fitted: Sequence[int], name: str) -> None:

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.tracing.runs.answered import told
 from rig.analysis.tracing.runs.counts import FREE, LOCKED, one_a_stay, resting
 from rig.analysis.tracing.runs.first_stroke import has_turned
 from rig.analysis.tracing.runs.recording import Recording
@@ -35,8 +36,10 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
         return np.asarray(known if torque_known else known & sliding & _load_slides(piece, run))
     if channel == "L":
         sliding &= _load_slides(piece, run)
-    elif run.is_wound:  # the torque is that of A, and a loop in it
-        sliding &= has_turned(piece)[smooth.centres(piece.t.size)]
+    else:
+        sliding &= smooth(told(piece, run)) > 1 - 1e-9
+        if run.is_wound:  # the torque is that of A, and a loop in it
+            sliding &= has_turned(piece)[smooth.centres(piece.t.size)]
     return np.asarray(inside & sliding)
 
 

@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.runs.answered import lowest_answered
+from rig.analysis.tracing.runs.answered import EVEN as STEADY
+from rig.analysis.tracing.runs.answered import KEPT, lowest_answered, slow_enough
 from rig.analysis.tracing.runs.holdout import grouped
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.thresholds import BANDWIDTH
@@ -15,7 +16,6 @@ from rig.core.units import RPM, TURN
 
 ONE_SPEED: Final = 1.5  # fastest over slowest: drag and Coulomb friction then differ by less than their own intervals
 EVEN: Final = 2.0  # of the slower quarter's speed, the faster one's: a sine has 2.4
-MOVES: Final = 0.05  # of its fastest, below which a run rests
 ONE_LOAD: Final = 2.0  # N·m between the least and the largest torque: less than soft wind-up and meshing need to show
 ONE_WAY: Final = 0.02  # of the travel: less of it the other way round is a start or a stop, not a direction
 
@@ -60,11 +60,12 @@ def _answered(runs: Sequence[Recording]) -> list[str]:
     if not spent:
         return []
     side = "load" if "theta_m" in spent[0].has else "motor"
-    order = min(lowest_answered(run) * run.turning for run in spent)
+    swings = not all(run.keeps_speed(STEADY) for run in spent)
+    left_out = f", rows left out where order {KEPT} is so in runs whose speed changes all along" if swings else ""
     return [
         f"Nobody read how the {side} moves, and it answers by its resonance what comes faster than "
-        f"{order / TURN:.2g} times a second: what orders of the motor's torque that fast are made by cannot be told, "
-        "and they are each run's own. Slower runs, under load, tell it."
+        f"{slow_enough(spent[0]) / TURN:.2g} times a second: what orders of the motor's torque that fast are made by "
+        f"cannot be told, and they are each run's own{left_out}. Slower runs, under load, tell it."
     ]
 
 
@@ -119,14 +120,7 @@ def one_speed(runs: Sequence[Recording]) -> bool:
     """Whether all runs that turn do so at about one speed, each from begin to end."""
     free = [run for run in runs if not run.locked]
     speeds = [run.turning for run in free]
-    return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds) and all(map(_is_even, free))
-
-
-def _is_even(run: Recording) -> bool:
-    """Whether a run keeps its speed while it moves; a joint that swings does not."""
-    speed = np.concatenate([np.abs(piece.omega_m) for piece in run.pieces])
-    low, high = np.quantile(speed[speed >= MOVES * speed.max()], (0.25, 0.75))
-    return bool(high < EVEN * low)
+    return bool(speeds) and max(speeds) < ONE_SPEED * min(speeds) and all(run.keeps_speed(EVEN) for run in free)
 
 
 def highest_order(runs: Sequence[Recording]) -> int:

@@ -35,6 +35,7 @@ DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the
 SPARSEST = (
     0.201  # s between rows, 5 Hz as a clock has them: order 15 of a slow run (9.6 rpm) still has two of them a period
 )
+MOVES = 0.05  # of its fastest, below which a run rests
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
@@ -97,6 +98,13 @@ class Recording(Once):
     def turning(self) -> float:
         """Mean |speed| of the motor, rad/s."""
         return float(np.mean([np.mean(np.abs(piece.omega_m)) for piece in self.pieces]))
+
+    def keeps_speed(self, within: float) -> bool:
+        """Whether, while it moves, the speed of its fastest quarter is no more than `within` times its slowest's."""
+        speed = np.concatenate([np.abs(piece.omega_m) for piece in self.pieces])
+        moves = speed[speed >= MOVES * speed.max()]
+        low, high = np.quantile(moves, (0.25, 0.75)) if moves.size else (0.0, 0.0)
+        return bool(high <= within * low)
 
     @cached_property
     def mean_torque(self) -> float:
