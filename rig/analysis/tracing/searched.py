@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 from rig.analysis.tracing.fit.bank import Bank, fill, reach, torque_noise
 from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.learnt import change
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found, relawed, still
 from rig.analysis.tracing.fit.some import search_some, some
@@ -21,6 +23,8 @@ from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certai
 from rig.analysis.tracing.workers import give_back
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
+
+OTHER: Final = 0.05  # relative: more than what an effect that is there changes of a gear that was fitted without it
 
 
 def searched(p: Prepared) -> tuple[Selected, Found]:
@@ -74,6 +78,11 @@ def _selected(
     covered = tried.covered
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
     selected = _shaken_as_it_stands(selected, found, runs, covered)
+    if selected.loud and not selected.names and not selected.taken and _another_gear(p, again):
+        # the equations lean on what effects that do not stand had made of the gear: it goes with them
+        alone = select(replace(p, held_out=replace(p.held_out, calm=calm)), Found(start, ()), runs, covered)
+        if not alone.loud:
+            return alone, Found(start, found.ranking), covered
     if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
@@ -81,6 +90,12 @@ def _selected(
         other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
         return (selected, found, covered) if other[0].loud else other
     return selected, found, covered
+
+
+def _another_gear(p: Prepared, again: Prepared) -> bool:
+    """Whether what effects lean on is another gear by now than beside the baseline alone."""
+    before, now = (one.eq.runs[0].pieces[0].gear for one in (p, again))
+    return change(before, now) > OTHER
 
 
 def _shaken_as_it_stands(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
