@@ -78,11 +78,8 @@ def _selected(
     covered = tried.covered
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
     selected = _shaken_as_it_stands(selected, found, runs, covered)
-    if selected.loud and not selected.names and not selected.taken and _another_gear(p, again):
-        # the equations lean on what effects that do not stand had made of the gear: it goes with them
-        alone = select(replace(p, held_out=replace(p.held_out, calm=calm)), Found(start, ()), runs, covered)
-        if not alone.loud:
-            return alone, Found(start, found.ranking), covered
+    if alone := _at_the_floor_alone(p, again, selected, start, covered, calm):
+        return alone, Found(start, found.ranking), covered
     if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
@@ -92,10 +89,18 @@ def _selected(
     return selected, found, covered
 
 
-def _another_gear(p: Prepared, again: Prepared) -> bool:
-    """Whether what effects lean on is another gear by now than beside the baseline alone."""
+def _at_the_floor_alone(
+    p: Prepared, again: Prepared, selected: Selected, start: Solution, covered: Reach, calm: bool
+) -> Selected | None:
+    """The baseline, where it leaves nothing by itself and no effect stands that was found beside it: the equations lean
+    on what those had made of the gear by then, and it goes with them."""
+    if not selected.loud or selected.names or selected.taken:
+        return None
     before, now = (one.eq.runs[0].pieces[0].gear for one in (p, again))
-    return change(before, now) > OTHER
+    if change(before, now) <= OTHER:
+        return None
+    alone = select(replace(p, held_out=replace(p.held_out, calm=calm)), Found(start, ()), p.split.fitted, covered)
+    return None if alone.loud else alone
 
 
 def _shaken_as_it_stands(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
