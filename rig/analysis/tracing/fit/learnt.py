@@ -7,8 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import known_of
+from rig.analysis.tracing.fit.channels import INDEX, known_of
+from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.thresholds import KNOWN
+from rig.core.quantiles import Z95
 from rig.model.effect import Known
 
 TURNS_ON: Final = 1.0  # N·m, torques that effects turn on are not less
@@ -26,7 +29,17 @@ def learnt(s: Solution) -> Known:
     loads = [s.residual(key) for key in s.keys if key[1] == "L"]
     left = float(np.sqrt(np.mean(np.concatenate(loads) ** 2))) if loads else 0.0
     known = left < LOUD * s.design.eq.noise.sigma["L"]
-    return now if known else replace(now, torque_zero=before.torque_zero)
+    now = now if known else replace(now, torque_zero=before.torque_zero)
+    return now if _weighed(s) else replace(now, J_l=before.J_l)
+
+
+def _weighed(s: Solution) -> bool:
+    """Whether the load's inertia is known to a third of itself. Where nobody read its angle the spring and the orders
+    of θ̃_p take its place at speed: let go of, it makes columns of which it comes out larger still."""
+    if any("theta_l" in run.has for run in s.design.eq.runs):
+        return True
+    at = INDEX["J_l"]
+    return KNOWN * abs(s.x[at]) > Z95 * float(np.sqrt(max(scatter(s)[at, at], 0.0)))
 
 
 def change(before: Known, now: Known) -> float:
