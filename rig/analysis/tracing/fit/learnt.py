@@ -34,12 +34,16 @@ def learnt(s: Solution) -> Known:
 
 
 def _weighed(s: Solution) -> bool:
-    """Whether the load's inertia is known to a third of itself. Where nobody read its angle the spring and the orders
-    of θ̃_p take its place at speed: let go of, it makes columns of which it comes out larger still."""
-    if any("theta_l" in run.has for run in s.design.eq.runs):
+    """Whether the fit tells the load's inertia better than the manifests do. Where nobody read the load's angle the
+    spring and the orders of θ̃_p take its place at speed, and what it comes out as is too large; let go of, it makes
+    columns of which it comes out larger still. Of one that nobody declared it tells what it knows to a third."""
+    runs = s.design.eq.runs
+    if any("theta_l" in run.has for run in runs):
         return True
+    if all("J_l" in run.declared for run in runs):
+        return False
     at = INDEX["J_l"]
-    return KNOWN * abs(s.x[at]) > Z95 * float(np.sqrt(max(scatter(s)[at, at], 0.0)))
+    return bool(KNOWN * abs(s.x[at]) > Z95 * np.sqrt(max(scatter(s)[at, at], 0.0)))
 
 
 def change(before: Known, now: Known) -> float:
