@@ -20,6 +20,7 @@ no torque sensor   T = J_l·ω̇_l − τ_ext from L with the inertia declared, 
                    of a locked output T = K·(θ̃ − θ̃_p), and what else A says stands in M
 no load angle      θ_l = θ_m/N − θ̃ from A, in L: J_l·(ω̇_m/N − d²θ̃/dt²)
 no motor angle     θ_m = N·(θ_l + θ̃) from A, in M: J_m·N·(ω̇_l + d²θ̃/dt²)
+one side unread    in M, orders that this side answers by its resonance are each run's own (runs/answered.py)
 no time            rows have no known distance: whatever is a rate belongs to each run alone
 """
 
