@@ -39,9 +39,9 @@ def slow_enough(run: Recording) -> float:
 
 def lowest_answered(run: Recording) -> float:
     """The lowest order that the unread side answers at the speed of a run; infinite where there is none."""
-    lowest = np.ceil(slow_enough(run) / max(run.turning, 1e-9))
-    if not run.keeps_speed(EVEN) and np.isfinite(lowest):
-        lowest = KEPT + 1
+    if not np.isfinite(limit := slow_enough(run)):
+        return np.inf
+    lowest = np.ceil(limit / max(run.turning, 1e-9)) if run.keeps_speed(EVEN) else KEPT + 1
     return float(lowest) if lowest <= HIGHEST else np.inf
 
 

@@ -40,7 +40,7 @@ def substituted(c: Mapping[str, Array], dt: float, run: Source, tau_ext: float, 
 
 
 def _wound_up(c: Mapping[str, Array], run: Source, tau_ext: float) -> Array:
-    """θ_m of a motor that nobody read, by the wind-up that a sensor or the weight tells: 40 N·m turn it a sixth of a
+    """θ_m of a motor that nobody read, by the wind-up that a sensor or the weight tells: 40 N·m turn it a quarter of a
     radian further than the load says, at ratio 50, and the phase of order 4 by one."""
     torque = flat(c["tau_l"]) if np.isfinite(c["tau_l"]).all() else -tau_ext
     return np.asarray(run.ratio * (c["theta_l"] + torque / believed(run).K))
