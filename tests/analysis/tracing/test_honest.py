@@ -14,6 +14,7 @@ from rig.analysis.tracing.outcome.honest import honest, not_told
 from rig.analysis.tracing.outcome.result import Errors
 from rig.analysis.tracing.runs.cannot import highest_order, together
 from rig.analysis.tracing.runs.meanings import computed_torque
+from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Parameter, parameter
 from rig.report.numbers import SPACE
 from rig.report.trace.sizes import said as sized
@@ -21,9 +22,13 @@ from rig.report.trace.sizes import said as sized
 RPM = np.pi / 30
 
 
+class Turning(SimpleNamespace):
+    keeps_speed = Recording.keeps_speed
+
+
 def run(rpm: float, rate: float = 250.0, locked: bool = False) -> Any:
     piece = SimpleNamespace(theta_m=np.array([0.0, 1.0, 0.0]), omega_m=np.full(3, rpm * RPM))
-    return SimpleNamespace(
+    return Turning(
         turning=rpm * RPM,
         locked=locked,
         procedure="other",

@@ -17,7 +17,7 @@ FITTED = dict.fromkeys(BASELINE, 0.0) | {"compliance": 1e-4, "J_m": 2e-3, "J_l":
 
 @pytest.mark.parametrize(("left", "zero"), [(0.1, 8.6), (7.6, KNOWN.torque_zero)])
 def test_a_load_that_is_another_one_from_time_to_time_tells_no_zero(left: float, zero: float) -> None:
-    run = SimpleNamespace(pieces=(SimpleNamespace(gear=KNOWN),))
+    run = SimpleNamespace(pieces=(SimpleNamespace(gear=KNOWN),), has={"theta_l"})
     design = SimpleNamespace(eq=SimpleNamespace(runs=(run,), noise=SimpleNamespace(sigma={"L": 0.3})))
     s: Any = SimpleNamespace(
         design=design, values=FITTED, keys=((0, "A"), (0, "L")), residual=lambda key: np.full(100, left)
