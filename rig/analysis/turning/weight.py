@@ -21,14 +21,19 @@ def other_weight(run: Source, motion: Motion, strokes: list[Stroke], tau_l: Arra
     ways = [_mean(tau_l, [s for s in strokes if s.direction == way]) for way in (1, -1)]
     declared = number(run.conditions.get("tau_ext"), 0.0)
     seen = -sum(ways) / 2
-    if run.conditions.get("output_locked") or not abs(seen - declared) > SHARE * abs(declared) + ZERO:
-        return ""  # NaN, where a direction is missing, compares false
+    if run.conditions.get("output_locked") or not is_another(seen, declared):
+        return ""
     said = f"{declared:+g}" if declared else "0"
     return (
         f"What hangs on the output: the torque sensor shows {seen:+.2f} N·m in the mean of both directions (positive "
         f"drives the load forward), the manifest says {said} N·m: a weight that nobody declared, gravity of a load off "
         "its axis, or a sensor that was not tared; this run cannot say which."
     )
+
+
+def is_another(seen: float, declared: float) -> bool:
+    """Whether a weight that a torque sensor shows is not the one that is said to hang there, N·m; NaN is not."""
+    return bool(abs(seen - declared) > SHARE * abs(declared) + ZERO)
 
 
 def _mean(tau_l: Array | None, strokes: list[Stroke]) -> float:

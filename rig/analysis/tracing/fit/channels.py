@@ -36,16 +36,14 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.holding import holds
 from rig.analysis.tracing.fit.unread_load import beside_load
-from rig.analysis.tracing.runs.answered import answered, lowest_answered
-from rig.analysis.tracing.runs.declared import UNKNOWN
+from rig.analysis.tracing.runs.answered import HIGHEST, answered, lowest_answered
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.resolution import COARSE
 from rig.analysis.tracing.runs.smoothing import Smoother
-from rig.model.effect import Array, Known, Signals
-from rig.model.fourier import FourierSeries
+from rig.model.effect import Array, Signals
 from rig.model.waves import powers
 
-ORDERS: Final = 15  # terms of θ̃_p      [ghorbel2001, Eq. 8]
+ORDERS: Final = HIGHEST  # terms of θ̃_p      [ghorbel2001, Eq. 8]
 
 
 class Channel(NamedTuple):
@@ -104,7 +102,6 @@ NEEDS: Final[Mapping[str, frozenset[str]]] = {
 }
 """What has to be measured for a channel."""
 ROUNDING: Final = 1e-12  # relative
-LIGHTEST: Final = 0.1  # of a load's inertia as believed before: what one fit may make of it
 SHAKEN: Final = 2.0  # times the noise that rounding alone makes
 
 
@@ -339,28 +336,3 @@ def series(theta: Array) -> Array:
 def slopes(theta: Array) -> Array:
     """d/dθ of `series`, shape (n, 30)."""
     return powers(theta, ORDERS, slopes=True)
-
-
-def damping_of(coefficient: float, stiffness: float, lag: float) -> float:
-    """B_sp [N·m·s/rad] from what stands before ṙ in A, −B_sp/K² + δ/K."""
-    return (lag / stiffness - coefficient) * stiffness**2
-
-
-def known_of(values: Mapping[str, float], before: Known = UNKNOWN) -> Known:
-    """What effects may lean on, from the baseline's coefficients; what they do not say is as it was `before`."""
-    stiffness = 1 / values["compliance"] if values["compliance"] > 0 else before.K
-    measured = values["compliance"] > 0 and values["damping"] != 0.0
-    return Known(
-        K=stiffness,
-        B_sp=damping_of(values["damping"], stiffness, values["lag"]) if measured else before.B_sp,
-        J_m=values["J_m"] if values["J_m"] > 0 else before.J_m,
-        J_l=values["J_l"] if values["J_l"] > 0 else max(before.J_l + values["inertia"], LIGHTEST * before.J_l),
-        torque_zero=values["tau_l0"],
-        tau_c=max(values["tau_c"], 0.0),
-        B_m=max(values["B_m"], 0.0),
-        tau_cl=max(values["tau_cl"], 0.0),
-        B_l=max(values["B_l"], 0.0),
-        kinematic_error=FourierSeries(
-            tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
-        ),
-    )

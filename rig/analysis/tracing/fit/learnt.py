@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX, known_of
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS
 from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.thresholds import KNOWN
 from rig.core.quantiles import Z95
 from rig.model.effect import Known
+from rig.model.fourier import FourierSeries
 
 TURNS_ON: Final = 1.0  # N·m, torques that effects turn on are not less
+LIGHTEST: Final = 0.1  # of a load's inertia as believed before: what one fit may make of it
 LOUD: Final = 10.0  # RMS that the load's equation leaves over the noise: another load hangs there from time to time
 
 
@@ -35,8 +38,8 @@ def learnt(s: Solution) -> Known:
 
 def _weighed(s: Solution) -> bool:
     """Whether the fit tells the load's inertia better than the manifests do. Where nobody read the load's angle the
-    spring and the orders of θ̃_p take its place at speed, and what it comes out as is too large; let go of, it makes
-    columns of which it comes out larger still. Of one that nobody declared it tells what it knows to a third."""
+    spring and the orders of θ̃_p take its place at speed: it came out up to a quarter too large, once many times, and
+    let go of it makes columns of which it comes out larger still. One that nobody declared it may tell to a third."""
     runs = s.design.eq.runs
     if any("theta_l" in run.has for run in runs):
         return True
@@ -53,3 +56,28 @@ def change(before: Known, now: Known) -> float:
     series = float(np.linalg.norm(old - np.array([*b.a, *b.b])) / max(float(np.linalg.norm(old)), 1e-12))
     rubs = abs(now.tau_cl - before.tau_cl) / TURNS_ON
     return max(series, abs(now.K / before.K - 1), abs(now.J_l / before.J_l - 1), abs(now.J_m / before.J_m - 1), rubs)
+
+
+def damping_of(coefficient: float, stiffness: float, lag: float) -> float:
+    """B_sp [N·m·s/rad] from what stands before ṙ in A, −B_sp/K² + δ/K."""
+    return (lag / stiffness - coefficient) * stiffness**2
+
+
+def known_of(values: Mapping[str, float], before: Known) -> Known:
+    """What effects may lean on, from the baseline's coefficients; what they do not say is as it was `before`."""
+    stiffness = 1 / values["compliance"] if values["compliance"] > 0 else before.K
+    measured = values["compliance"] > 0 and values["damping"] != 0.0
+    return Known(
+        K=stiffness,
+        B_sp=damping_of(values["damping"], stiffness, values["lag"]) if measured else before.B_sp,
+        J_m=values["J_m"] if values["J_m"] > 0 else before.J_m,
+        J_l=values["J_l"] if values["J_l"] > 0 else max(before.J_l + values["inertia"], LIGHTEST * before.J_l),
+        torque_zero=values["tau_l0"],
+        tau_c=max(values["tau_c"], 0.0),
+        B_m=max(values["B_m"], 0.0),
+        tau_cl=max(values["tau_cl"], 0.0),
+        B_l=max(values["B_l"], 0.0),
+        kinematic_error=FourierSeries(
+            tuple(values[f"a{n}"] for n in range(1, ORDERS + 1)), tuple(values[f"b{n}"] for n in range(1, ORDERS + 1))
+        ),
+    )

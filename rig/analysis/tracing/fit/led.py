@@ -13,8 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import known_of
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.learnt import known_of
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.runs.smoothing import flat
 from rig.model.effect import Array, Known, Signals

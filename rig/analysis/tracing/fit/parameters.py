@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, damping_of, third_rate
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.learnt import damping_of
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
 from rig.analysis.tracing.fit.refine import nudged
 from rig.core.quantiles import Z95

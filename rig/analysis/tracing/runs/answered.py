@@ -20,7 +20,7 @@ from rig.model.effect import Array, Signals
 from rig.model.waves import powers
 
 HIGHEST: Final = 15  # order of θ̃_p      [ghorbel2001, Eq. 8]
-NEAR: Final = 0.2  # of the resonance: a load swings a twentieth further than a stiff one there
+NEAR: Final = 0.2  # of the resonance: a load swings 4 % further than a stiff one there
 EVEN: Final = 1.3  # of the speed of its slowest quarter, that of its fastest: waves of one size all along
 SECTORS: Final = 12  # of a turn, in all of which a run has to be slow at some time
 KEPT: Final = 4  # order that is told in the rows that a run of uneven speed keeps

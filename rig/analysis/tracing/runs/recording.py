@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.smallest_step import smallest_step
-from rig.analysis.motion.source import Motion, Source, increases, motion_of, not_seconds
+from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import Tame
 from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
+from rig.analysis.tracing.runs.grid import grid, is_even, joined, refuse_other_time, refuse_sparse, uniform
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.meanings import computed_torque
@@ -29,12 +28,6 @@ from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
 from rig.runfile.run import Run
 
-UNTIMED = 1000.0  # Hz, taken for the rate of rows without a time: taken for less, ω̇ of a 16-bit encoder is all noise
-FEWEST = 50  # rows; fewer make no piece, nor tell how noisy a reading is
-DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the filters grow with the rate
-SPARSEST = (
-    0.201  # s between rows, 5 Hz as a clock has them: order 15 of a slow run (9.6 rpm) still has two of them a period
-)
 MOVES = 0.05  # of its fastest, below which a run rests
 TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
@@ -146,17 +139,17 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)
     motion = motion_of(run)
-    _refuse_other_time(run.column("t"), motion)
+    refuse_other_time(run.column("t"), motion)
     channels, breaks, holes = without_holes(_channels(run, motion), motion.breaks if motion else ())
     clocked = is_clocked(run)
     if hz is not None and clocked:
         channels["t"] = np.arange(next(x.size for x in channels.values() if x is not None)) / hz
     has = frozenset(name for name, values in channels.items() if values is not None)
     rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
-    t, dt, steady = _grid(channels["t"], rows, run)
-    _refuse_sparse(rows, dt)
+    t, dt, steady = grid(channels["t"], rows, run)
+    refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
-    uneven = None if _is_even(t, dt) else t
+    uneven = None if is_even(t, dt) else t
     often = FASTER if look.fast else 1.0
     factor = max(1, round(1 / dt / (often * RATE)))
     work = dt * factor
@@ -168,7 +161,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
-        for lo, hi in _joined(t, dt, breaks, steady)
+        for lo, hi in joined(t, dt, breaks, steady)
     ]
     if hz is not None and "t" not in has and run.procedure == "kinematic_error":
         made = [piece if piece is None else slowed(piece) for piece in made]
@@ -212,58 +205,9 @@ def _there(x: Array | None) -> Array | None:
     return x if x is not None and float(np.mean(np.isfinite(x))) > 0.5 else None
 
 
-def _grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
-    """Time of each row, s between rows, and whether there is a time at all (else rows count)."""
-    if t is None or t.size < 3:
-        said = abs(stated(run.manifest, "sample_rate_hz", UNTIMED))
-        return np.arange(rows) / said, 1 / said, False
-    return t, float(np.median(np.diff(t))), True
-
-
 def _refuse_ratio(ratio: float) -> None:
     if not RATIOS[0] <= ratio <= RATIOS[1]:
         raise UsageError(f"gear.ratio is {ratio:g}, expected {RATIOS[0]:g} to {RATIOS[1]:g}")
-
-
-def _refuse_other_time(t: Array | None, motion: Motion | None) -> None:
-    """Without its time a run would say the rest in silence: speeds and inertias are what most ask it for."""
-    if t is None or motion is None or motion.t is not None:
-        return
-    known = t[np.isfinite(t)]
-    if increases(known) and (wrong := not_seconds(known)):
-        raise UsageError(f"t says {wrong}")
-
-
-def _refuse_sparse(rows: int, dt: float) -> None:
-    if rows < FEWEST:
-        raise UsageError(f"it has {rows} rows, expected at least {FEWEST}")
-    if not DENSEST <= dt <= SPARSEST:  # NaN too
-        raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:.1g} s")
-
-
-def _joined(t: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tuple[int, int]]:
-    """Rows lo..hi without a gap or a new encoder reference between them."""
-    cuts = set(breaks)
-    if steady:
-        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > LONG * dt)}
-    edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
-    return [(lo, hi) for lo, hi in itertools.pairwise(edges) if hi - lo > 50]
-
-
-def _is_even(t: Array, dt: float) -> bool:
-    """Whether rows lie where an even clock has them."""
-    return bool(np.max(np.abs(t - (t[0] + dt * np.arange(t.size)))) < 0.02 * dt)
-
-
-def _uniform(t: Array, x: Array, dt: float) -> Array:
-    """`x` on a uniform grid of `dt`; left alone when it already is. Cubic: a straight line between rows 4 ms apart
-    takes 6 % from an order at 27 Hz, a cubic 0.2 %."""
-    if _is_even(t, dt):
-        return x
-    from scipy.interpolate import CubicSpline  # a tenth of a second, and most loggers keep time
-
-    grid = np.arange(t[0], t[-1], dt)
-    return np.asarray(CubicSpline(t, x)(grid)) if np.isfinite(x).all() else np.interp(grid, t, x)
 
 
 def _piece(
@@ -278,7 +222,7 @@ def _piece(
     timed: bool,
 ) -> Signals | None:
     """One piece at the working rate."""
-    c = {name: _uniform(t, x, dt) for name, x in c.items()}
+    c = {name: uniform(t, x, dt) for name, x in c.items()}
     first = t[0]
     if factor > 1:
         thinned = {name: thin(x, factor) for name, x in c.items()}

@@ -9,14 +9,13 @@ import numpy as np
 
 from rig.analysis.tracing.runs.recording import Recording, mean_way
 from rig.analysis.tracing.runs.told_once import Said
+from rig.analysis.turning.weight import is_another
 from rig.core.errors import UsageError
 from rig.model.effect import Array, Signals
 
 WEIGHT: Final = 1.0  # N·m, by which hung weights must differ to be compared
 SHARE: Final = (0.3, 3.0)  # of the weight that a torque may show: friction of a poor gear takes half of it
 EVEN: Final = 0.3  # mean direction: a triangle that was cut short has a fifth
-GAIN: Final = 0.05  # of the weight: masses, pulley radius, gain of the sensor
-ZERO: Final = 0.5  # N·m: zeros of a sensor that was tared move by less from run to run
 FEWEST: Final = 3  # runs of which one common zero can be known
 READ: Final[Mapping[str, tuple[str, Callable[[Signals], Array]]]] = {
     "tau_l": ("τ_l", lambda s: s.tau_l),
@@ -50,7 +49,6 @@ def other_weights(runs: Sequence[Recording]) -> list[Said]:
     stated = np.array([float(r.pieces[0].tau_ext[0]) for r in free])
     shown = np.array([-_without_friction(r) for r in free])
     common = float(np.median(shown - stated)) if len(free) >= FEWEST else 0.0
-    off = np.abs(shown - common - stated) > GAIN * np.abs(stated) + ZERO
     return [
         Said(
             run.name,
@@ -58,8 +56,8 @@ def other_weights(runs: Sequence[Recording]) -> list[Said]:
             f"its shaft torque shows {said - common:+.3g} N·m on the output in the mean of both directions, its "
             f"manifest {_signed(there)} N·m: another weight, gravity of a load off its axis, or a zero that moved",
         )
-        for run, said, there, other in zip(free, shown, stated, off, strict=True)
-        if other
+        for run, said, there in zip(free, shown, stated, strict=True)
+        if is_another(said - common, there)
     ]
 
 
