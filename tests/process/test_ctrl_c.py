@@ -197,10 +197,10 @@ def test_a_stop_in_an_import_comes_when_the_module_is_whole(slow: str, tmp_path:
 
 
 PRESSED_AGAIN = """
-import atexit, builtins, os, signal, sys
+import atexit, builtins, signal, sys
 import rig.cli, rig.commands.list_, rig.core.way_out
 def press(*args):
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)  # in this thread, now: of a process another one may take it, and later
     signal.sigtimedwait({{signal.SIGUSR1}}, 0.1)
 def after(act):
     def both(*args, **words):
