@@ -19,7 +19,8 @@ Shape = tuple[float, ...]
 class Fit:
     """What the data say of one effect: coefficients (k,), then shape (s,); covariance (k+s, k+s) of both together.
     `beside_series` (k+s+2n, k+s+2n) is that of both and of the cosines and sines, in turn, of the kinematic error that
-    is `known`: a share of it is known no better than what stays of it."""
+    is `known`: a share of it is known no better than what stays of it. `tau_c` is the model's
+    Coulomb friction beside the effect, N·m, where it was fitted."""
 
     coefficients: Array
     shape: Shape
@@ -27,6 +28,7 @@ class Fit:
     known: Known
     ratio: float
     beside_series: Array | None = None
+    tau_c: float | None = None
 
     def half_width(self, gradient: Array) -> float:
         """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,), or by them

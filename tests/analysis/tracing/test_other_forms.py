@@ -7,11 +7,13 @@ import dataclasses
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
 
 from rig.model.effect import Array, Fit, Port
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
 from rig.model.effects.presliding_friction import BRISTLES, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
+from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import DRIVEN, FLANGE, TorsionalMode
 from tests.contract.test_effects import KNOWN, N, motion
@@ -71,6 +73,24 @@ def test_a_ripple_may_saturate_alike_whichever_way_the_torque_points() -> None:
     assert left(of[effect.REACTING], ripple) > 0.12
     fit = Fit(np.array([0.01, 0.0, -0.004, 0.0]), (6.0, effect.SATURATING), np.zeros((6, 6)), KNOWN, N)
     assert [p.name for p in effect.parameters(fit)][2] == "order_6_saturating_amplitude"
+
+
+@pytest.mark.parametrize("fall", [0.15, 0.25, 0.6])
+def test_the_time_constant_of_a_warm_up_holds_for_an_oil_as_well(fall: float) -> None:
+    """F·exp(−a·(1 − exp(−t/820 s))) in half an hour, fitted with τ_c + τ_1·exp(−t/t_w): t_w comes out short."""
+    t = np.linspace(0.0, 2000.0, 400)
+    friction = 0.13 * np.exp(-fall * -np.expm1(-t / 820.0))
+    found = least_squares(
+        lambda x: x[0] + x[1] * np.exp(-t / x[2]) - friction, [0.1, 0.02, 700.0], x_scale=[0.1, 0.01, 500.0]
+    ).x
+    assert found[2] < (1.0 - 0.3 * fall) * 820.0
+    fit = Fit(np.array([found[1], 0.0]), (found[2], 0.0, 1e-3), np.zeros((5, 5)), KNOWN, N, tau_c=found[0])
+    told = {p.name: p.ci95 for p in ThermalFrictionDrift().parameters(fit)}
+    assert told["t_w"][0] == pytest.approx(found[2])
+    assert 820.0 < told["t_w"][1] < 1.1 * 820.0
+    assert {p.name: p.ci95[1] for p in ThermalFrictionDrift().parameters(dataclasses.replace(fit, tau_c=None))}[
+        "t_w"
+    ] == pytest.approx(found[2])
 
 
 def test_a_gap_may_be_wider_at_one_angle() -> None:

@@ -205,7 +205,8 @@ def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = (
     beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in SERIES]]])
     joint = beside @ c @ beside.T
     k = len(by)
-    return Fit(s.x[place], s.design.terms[i].shape, joint[:k, :k], first.pieces[0].gear, first.ratio, joint)
+    tau_c = s.value("tau_c") if s.gram[INDEX["tau_c"], INDEX["tau_c"]] > UNSEEN else None
+    return Fit(s.x[place], s.design.terms[i].shape, joint[:k, :k], first.pieces[0].gear, first.ratio, joint, tau_c)
 
 
 def _spread(s: Solution, size: int, i: int, slopes: Sequence[tuple[int, int]]) -> Array:
