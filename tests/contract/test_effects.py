@@ -101,6 +101,20 @@ def test_parameters_have_a_name_a_unit_and_an_interval_around_the_value(effect: 
     assert isinstance(effect.plausible(fit), bool)
 
 
+@every_effect
+def test_what_an_effect_softens_the_gear_by_has_the_gradient_it_says(effect: Effect):
+    for shape in dict.fromkeys((x[0], x) if x else ((), ()) for x in effect.shapes(REACH)):
+        at = shape[1]
+        k = next(iter(effect.columns(motion(n=50), at).values())).shape[1]
+        scale = np.resize([0.05, 4e-6], k)  # as of an inertia and its 1/ω²
+        fit = Fit(scale, at, np.zeros((k + len(at), k + len(at))), KNOWN, N)
+        _, gradient = effect.softens(fit)
+        for j in range(k):
+            steps = [scale + sign * 1e-4 * scale[j] * (np.arange(k) == j) for sign in (1.0, -1.0)]
+            up, down = (effect.softens(dataclasses.replace(fit, coefficients=x))[0] for x in steps)
+            assert gradient[j] == pytest.approx((up - down) / (2e-4 * scale[j]), rel=1e-4, abs=1e-12)
+
+
 def named(effect: Effect) -> set[str]:
     """What the parameters of `effect` are called, whatever its shape, and what the detectors of each run's own say."""
     names = {"external_vibration": shaken(), "missed_counts": lost()}.get(effect.name, set())

@@ -105,6 +105,11 @@ class Effect(ABC):
         one that adds none, (2, 0)."""
         return np.zeros((2, 0))
 
+    def softens(self, fit: Fit) -> tuple[float, Array]:
+        """The compliance of its own that the baseline's 1/K holds as well, rad/(N·m), and its gradient by coefficients
+        (k,)."""
+        return 0.0, np.zeros(fit.coefficients.size)
+
     def expands(self, shape: Shape) -> bool:
         """True when the columns are an expansion about a shape that should equal the coefficients."""
         return False

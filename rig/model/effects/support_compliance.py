@@ -19,8 +19,9 @@ class SupportCompliance(Effect):
     """The housing turns back by T/K_s·H, H = ω²/(s² + 2ζωs + ω²): both angles read so much too much when the encoders
     ride on it; held on the ground they read right, and the gear seems so much softer.
 
-    Far below ω, and so in slow runs, it is just more or less compliance, which the baseline's K already has: of
-    encoders on the ground the column is (H − 1)·T, and what the torque sensor reads too much is wound up by all of it.
+    Far below ω, and so in slow runs, it is just more or less compliance, which the fitted K already has: of encoders on
+    the ground the column is (H − 1)·T, what the torque sensor reads too much is wound up by all of it, and the gear's
+    own K is told without it.
     """
 
     name: ClassVar[str] = "support_compliance"
@@ -87,6 +88,11 @@ class SupportCompliance(Effect):
     def plausible(self, fit: Fit) -> bool:
         """It gives way to a torque."""
         return bool(fit.coefficients[0] > 0)
+
+    def softens(self, fit: Fit) -> tuple[float, Array]:
+        """The support's, where encoders on the ground see it."""
+        seen = 1.0 if fit.shape and fit.shape[0] == ON_GROUND else 0.0
+        return seen * float(fit.coefficients[0]), np.array([seen])
 
 
 class StiffSupport(SupportCompliance):

@@ -200,11 +200,25 @@ class TorsionalMode(Effect):
         # K is that of gear and sensor in series, and the gear alone gives by J_2/K_gear: J_2 = share + K/ω²
         inertia, along = share + fit.known.K * max(square, 0.0), by[0] + fit.known.K * by[1]
         turned = (parameter("J_2", inertia, fit.half_width(along), "kg·m²"),)
-        if square <= fit.half_width(by[1]):
+        if self._is_stiff(fit):
             return turned
         frequency = 1.0 / (2.0 * np.pi * np.sqrt(square))
         half = fit.half_width(by[1] * frequency / (2.0 * square))
         return (*turned, parameter("hub_frequency", frequency, half, "Hz"))
+
+    def softens(self, fit: Fit) -> tuple[float, Array]:
+        """The torque sensor's spring behind a hub, 1/k = (1/ω²)/J_2, where it is told."""
+        by = np.zeros(fit.coefficients.size)
+        if fit.shape[0] != HUB or self._is_stiff(fit):
+            return 0.0, by
+        share, square = fit.coefficients[:2]
+        inertia = share + fit.known.K * square
+        by[:2] = -square / inertia**2, share / inertia**2
+        return float(square / inertia), by
+
+    def _is_stiff(self, fit: Fit) -> bool:
+        """Whether the 1/ω² of a hub may as well be nothing."""
+        return bool(fit.coefficients[1] <= fit.half_width(np.eye(len(fit.covariance))[1]))
 
     def plausible(self, fit: Fit) -> bool:
         """An inertia is positive, and so is a compliance; of a hub's and a coupling's none that is beyond all that is

@@ -180,6 +180,7 @@ def test_an_inertia_on_a_soft_sensor_is_told_whole() -> None:
         N,
     )
     assert TorsionalMode().parameters(fit)[0].value == pytest.approx(J_2, rel=1e-9)
+    assert TorsionalMode().softens(fit)[0] == pytest.approx(1 / k, rel=1e-9)
 
 
 @pytest.mark.parametrize(("square", "told"), [(2.8e-6, True), (-1.1e-6, False), (4e-7, False)])
@@ -190,6 +191,7 @@ def test_a_hub_on_a_spring_too_stiff_to_be_seen_has_an_inertia_and_no_frequency(
     law = TorsionalMode()
     assert law.plausible(fit)
     assert [p.name for p in law.parameters(fit)] == ["J_2", *(["hub_frequency"] if told else [])]
+    assert (law.softens(fit)[0] > 0) is told
     assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([0.06, -9e-6])))
     assert not law.plausible(dataclasses.replace(fit, coefficients=np.array([-0.06, square])))
 

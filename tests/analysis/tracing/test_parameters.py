@@ -10,11 +10,12 @@ import pytest
 
 from rig.analysis.tracing.fit import parameters
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
-from rig.analysis.tracing.fit.equations import Bare, Equations, Noise
+from rig.analysis.tracing.fit.equations import Bare, Equations, Noise, Term
 from rig.analysis.tracing.fit.model import Design, Part, fit, normal
 from rig.analysis.tracing.fit.parameters import Told, joined
 from rig.model.effect import Fit
 from rig.model.effects import CATALOGUE
+from rig.model.effects.support_compliance import ON_GROUND, SupportCompliance
 from rig.model.fourier import FourierSeries
 
 K, B_SP = 7160.0, 7.0
@@ -49,6 +50,39 @@ def test_damping_is_right_though_the_model_ends_with_the_second_derivative(monke
     assert fitted < 0.996 * B_SP  # what the coefficient alone says
     found = {p.name: p.value for p in parameters.baseline(s)}
     assert found["B_sp"] == pytest.approx(B_SP, rel=5e-4)
+
+
+class Swung(SupportCompliance):
+    """(H − 1)·T of a housing of 28 Hz without a damper, for a torque of waves."""
+
+    WITHIN = sum(
+        (h / (1 - h)) * np.cos(2 * np.pi * f * np.arange(0.0, 3.0, 4e-3) + 0.7)
+        for f, h in ((f, (f / 28.0) ** 2) for f in HZ)
+    )
+
+
+def test_a_housing_that_gives_way_is_not_in_the_stiffness_of_the_gear(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    names, support = ("compliance", "damping"), 1.2e-5  # rad/(N·m)
+    at, key, size = np.array([*(INDEX[n] for n in names), len(BASELINE)]), (0, "A"), len(BASELINE) + 1
+    rows: Any = {key: SimpleNamespace(keep=np.ones(waves(0).size, bool), own=np.zeros((waves(0).size, 0)))}
+    gear = SimpleNamespace(J_l=0.8, K=K)
+    run: Any = SimpleNamespace(**{**vars(RUN), "pieces": (SimpleNamespace(gear=gear),), "ratio": 50.0})
+    eq = Equations((run,), rows, Noise({"A": 1e-8}, {"A": 1.0}, {"A": np.inf}))
+    y = waves(0) / K - waves(1) * B_SP / K**2 + support * (waves(0) + Swung.WITHIN)
+    y = y + 1e-8 * rng.standard_normal(y.size)
+    parts = {key: (Part(Bare(np.stack([waves(0), waves(1), Swung.WITHIN], 1)), at, None),)}
+    terms = (Term(Swung(), (ON_GROUND, 28.0, 0.01)),)
+    empty = Design(eq, terms, (1,), {key: y}, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right, _ = normal(empty, {key: parts[key][0]})
+    monkeypatch.setattr(parameters, "third_rate", lambda run: 0.0 * waves(3))
+    s = fit(Design(eq, terms, (1,), empty.y, {}, parts, gram, right))
+    assert 1 / s.value("compliance") < 0.93 * K  # both
+    found = {p.name: p for p in parameters.baseline(s)}
+    half = (found["K"].ci95[1] - found["K"].ci95[0]) / 2
+    assert abs(found["K"].value - K) < 2 * half < 1e-3 * K
+    assert found["B_sp"].value == pytest.approx(B_SP, rel=1e-3)
 
 
 def test_a_sensor_that_would_be_early_has_no_delay_and_an_interval_as_wide_as_the_rows_leave_it(

@@ -38,13 +38,13 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
     """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured."""
     c, out = covariance(s), []
     seen = np.diag(s.gram) > UNSEEN
-    stiff = 1 / s.value("compliance") if s.value("compliance") > 0 else np.nan
+    compliance, by = _of_the_gear(s, c)
+    stiff = 1 / compliance if compliance > 0 else np.nan
     if seen[INDEX["compliance"]] and np.isfinite(stiff):
-        along = _unit(c, "compliance") * -(stiff**2)
-        out.append(_of("K", stiff, along, c, "N·m/rad"))
+        out.append(_of("K", stiff, by * -(stiff**2), c, "N·m/rad"))
         damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
         both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
-        both += _unit(c, "compliance") * (2 * s.value("damping") * stiff - lag) * stiff**2
+        both += by * (2 * s.value("damping") * stiff - lag) * stiff**2
         out.append(_of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad"))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
     if any(run.look.inertia for run in s.design.eq.runs):
@@ -54,6 +54,17 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
     if seen[INDEX["a1"]]:
         out += [_order(s, c, n) for n in range(1, ORDERS + 1)]
     return tuple(out)
+
+
+def _of_the_gear(s: Solution, c: Array) -> tuple[float, Array]:
+    """1/K of the gear alone, rad/(N·m), and its gradient by all that is fitted: without what effects in series with it
+    give way by, which the fitted one has too."""
+    compliance, by = s.value("compliance"), _unit(c, "compliance")
+    for i, term in enumerate(s.design.terms):
+        more, gradient = term.effect.softens(of_term(s, c, i))
+        compliance -= more
+        by[s.design.place(i)] -= gradient
+    return compliance, by
 
 
 def _at_its_bound(s: Solution, lag: Parameter) -> Parameter:
