@@ -7,6 +7,7 @@ from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effects import LIBRARY
 
 FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
@@ -24,6 +25,8 @@ def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") 
 def nothing(read: Sequence[str], after: float) -> str:
     """That nothing is missing in the channels that were `read`, by letter: of the others nothing is said."""
     leaves = f"the baseline leaves {after:.2f} times the floor on held-out runs."
+    if after > EXPLAINED:
+        leaves += " So few rows may leave as much by chance, or by friction that differs from run to run."
     unread = [CHANNEL[c].name for c in WHOLE if c not in read]
     if not read or not unread:
         return f"Nothing is missing: {leaves}"
