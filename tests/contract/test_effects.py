@@ -41,7 +41,7 @@ def motion(sign: float = 1.0, n: int = 4000) -> Signals:
     nothing = np.zeros(n)
     return Signals(
         t=t, dt=DT, ratio=N, theta_m=theta, theta_l=theta / N, omega_m=omega, alpha_m=alpha, omega_l=omega / N,
-        alpha_l=alpha / N, jerk_l=np.gradient(alpha, DT) / N, torque=torque, torque_rate=np.gradient(torque, DT),
+        alpha_l=alpha / N, torque=torque, torque_rate=np.gradient(torque, DT),
         tau_m=0.3 * np.sign(omega) + torque / N, tau_l=torque, tau_ext=nothing,
         way=np.sign(omega), temperature=25.0 + 4.0 * np.sin(0.7 * t), gear=KNOWN,
     )  # fmt: skip

@@ -27,7 +27,7 @@ def wound_up() -> tuple[Signals, np.ndarray]:
     torque = K * phi + B_SP * rate
     made = Signals(
         t=t, dt=DT, ratio=N, theta_m=theta_m, theta_l=theta_m / N - PURE.value(theta_m) - phi, omega_m=omega,
-        alpha_m=nothing, omega_l=omega_l, alpha_l=nothing, jerk_l=nothing, torque=torque,
+        alpha_m=nothing, omega_l=omega_l, alpha_l=nothing, torque=torque,
         torque_rate=np.gradient(torque, DT), tau_m=nothing, tau_l=torque, tau_ext=nothing, way=nothing + 1.0,
         temperature=nothing * np.nan, gear=Known(K, B_SP, 1e-3, 0.5, PURE),
     )  # fmt: skip

@@ -59,6 +59,10 @@ class Effect(ABC):
         """False when the coefficients have a sign or size no such effect can have."""
         return True
 
+    def plausible_together(self, fits: Sequence[Fit]) -> bool:
+        """False when several terms of it, each of which may be, make what no such effect is."""
+        return True
+
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Range of each shape parameter in a refit."""
         grid = np.array(self.shapes(reach), dtype=float)

@@ -25,6 +25,7 @@ class Reach:
     counts_l: float
     has: frozenset[str] = MEASURED  # channels that any run measured
     runs: int = 30
+    slowest_free: float = 1.0  # rad/s of the motor, while it turns and the output is free to; 0 where it never is
     backwards: float = 0.5  # of the rows that turn, share of those that go the way of fewer
     fast_backwards: float = 0.5  # of the squared motor speed, share of the way that has less
     turned_both_ways: float = 1.0  # most output turns in one run the way of which it is less

@@ -48,7 +48,6 @@ class Signals(Once):
     alpha_m: Array
     omega_l: Array
     alpha_l: Array
-    jerk_l: Array
     torque: Array  # N·m, T
     torque_rate: Array
     tau_m: Array

@@ -19,10 +19,10 @@ SOON = 1e-4  # s: a shift by less is its rate
 class ChannelTimeSkew(Effect):
     """An angle read at t belongs to t − δ: it reads θ(t − δ) − θ(t) too much.
 
-    From the reading θ: −[θ(t + δ) − θ(t)] = −δ·(ω + δ·α/2 + δ²·j/6) with speed, acceleration and jerk as read; the
-    motor's jerk is left out, most of it is noise. In A a late motor angle is an early load angle; what tells them apart
-    is which inertia's torque comes late. Where two clocks run apart, δ grows along the campaign, δ + δ'·t, or, where
-    they are set anew for every run, along each run.
+    From the reading θ: −[θ(t + δ) − θ(t)], of the load the way that its speed makes in δ, of the motor −δ·(ω + δ·α/2).
+    In A a late motor angle is an early load angle; what tells them apart is which inertia's torque comes late. Where
+    two clocks run apart, δ grows along the campaign, δ + δ'·t, or, where they are set anew for every run, along each
+    run.
     """
 
     name: ClassVar[str] = "channel_time_skew"
@@ -43,7 +43,7 @@ class ChannelTimeSkew(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("side", "about", "drifts")  # about: s, the skew the expansion is made at
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     LONG: Final = 1e3  # s, after which δ' is told
-    LARGEST: Final = 7e-3  # s, a quarter of a period at 36 Hz
+    LARGEST: Final = 30e-3  # s
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -68,15 +68,21 @@ class ChannelTimeSkew(Effect):
             return Port.READS_THETA_M, s.omega_m + delta / 2 * s.alpha_m
         if side == TORQUE:
             return Port.READS_TAU_L, self._rate(s, delta)
-        return Port.READS_THETA_L, s.omega_l + delta / 2 * s.alpha_l + delta**2 / 6 * s.jerk_l
+        return Port.READS_THETA_L, self._speed(s, delta)
+
+    def _speed(self, signals: Signals, delta: float) -> Array:
+        """[θ_l(t + δ) − θ_l(t)]/δ, rad/s: the mean of the smooth speed."""
+        if abs(delta) < SOON:
+            return signals.omega_l
+        omega = np.nan_to_num(signals.omega_l)
+        way = np.concatenate([[0.0], np.cumsum((omega[1:] + omega[:-1]) / 2)]) * signals.dt
+        return _change(way, signals.dt, delta)
 
     def _rate(self, signals: Signals, delta: float) -> Array:
         """[T(t + δ) − T(t)]/δ of the smooth reading, N·m/s."""
-        torque = np.nan_to_num(signals.torque)
         if abs(delta) < SOON:
             return np.nan_to_num(signals.torque_rate)
-        at = signals.dt * np.arange(torque.size)
-        return np.asarray((np.interp(at + delta, at, torque) - torque) / delta)
+        return _change(np.nan_to_num(signals.torque), signals.dt, delta)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """δ of the load angle, the motor angle or the shaft torque; where it drifts, δ at first and δ'."""
@@ -96,6 +102,14 @@ class ChannelTimeSkew(Effect):
         """The skew as found, within a quarter of a period of what the low-pass passes; one that drifts is small."""
         about = 0.0 if shape[2] else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
         return (shape[0], about, shape[2])
+
+
+def _change(x: Array, dt: float, delta: float) -> Array:
+    """[x(t + δ) − x(t)]/δ of rows `dt` apart; beyond either end x goes on as it did."""
+    at = dt * np.arange(x.size)
+    there, slopes = at + delta, (x[1] - x[0], x[-1] - x[-2])
+    beyond = np.minimum(there, 0.0) * slopes[0] + np.maximum(there - at[-1], 0.0) * slopes[1]
+    return np.asarray((np.interp(there, at, x) + beyond / dt - x) / delta)
 
 
 def _start(signals: Signals) -> float:

@@ -44,8 +44,9 @@ class EncoderInterpolationError(Effect):
 
     @staticmethod
     def highest(reach: Reach, of_load: bool) -> float:
-        """Most lines per turn of an encoder that the slowest run samples three times each."""
-        speed = reach.slowest / (reach.ratio if of_load else 1.0)
+        """Most lines per turn of an encoder that the slowest run samples three times each. A load that is locked passes
+        no line: there a wave of its angle is a straight line through the noise of that reading, and takes it away."""
+        speed = reach.slowest_free / reach.ratio if of_load else reach.slowest
         return reach.rate / 3.0 / (speed / (2.0 * np.pi)) if speed > 0 else 0.0
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:

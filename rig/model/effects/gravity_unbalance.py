@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Final
 
 import numpy as np
@@ -59,3 +59,9 @@ class GravityUnbalance(Effect):
             return True
         wave, overtone = np.hypot(*fit.coefficients[:2]), np.hypot(*fit.coefficients[2:])
         return bool(overtone < self.MOST * wave)
+
+    def plausible_together(self, fits: Sequence[Fit]) -> bool:
+        """What pulls twice a turn pulls less than the weight that pulls once: else it is a cable, or a stop, that holds
+        the load over some of its turn."""
+        sizes = {order: [float(np.hypot(*f.coefficients[:2])) for f in fits if f.shape[0] == order] for order in (1, 2)}
+        return not sizes[2] or sum(sizes[2]) < self.MOST * sum(sizes[1])

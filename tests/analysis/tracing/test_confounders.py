@@ -45,6 +45,15 @@ def test_a_sensor_that_feels_the_wave_generator_leaves_the_motor_an_nth_as_if_it
     np.testing.assert_allclose(shown["L"][:, 2:4], cogging, atol=1e-12)
 
 
+def test_what_acts_on_a_load_whose_torque_nobody_read_winds_up_a_spring_with_its_damper() -> None:
+    """c/(K + B_sp·d/dt) to the first order, of a torque of 5 Hz."""
+    s, omega = motion(), 2 * np.pi * 5.0
+    smooth = Smoother(36.0, s.dt, 1)
+    shown = footprint({Port.LOAD_TORQUE: np.sin(omega * s.t)[:, None]}, s, smooth, MEASURED - {"tau_l"})["A"]
+    behind = np.imag(np.exp(1j * omega * s.t) / (KNOWN.K + 1j * omega * KNOWN.B_sp))[:, None]
+    np.testing.assert_allclose(shown, smooth(behind), atol=2e-3 / KNOWN.K)
+
+
 def test_creep_follows_a_step_of_torque_as_slowly_as_its_lags() -> None:
     still = motion(n=4000)
     step = np.where(np.arange(4000) < 10, 0.0, 20.0)

@@ -17,6 +17,7 @@ from rig.model.effects.channel_time_skew import EACH_RUN, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
+from rig.model.effects.encoder_interpolation_error import EncoderInterpolationError
 from rig.model.effects.flexspline_frame_error import FlexsplineFrameError
 from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
@@ -335,6 +336,17 @@ def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None
     np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)
 
 
+@pytest.mark.parametrize("late", [5e-3, 0.02, -0.02])
+def test_a_late_load_angle_reads_what_was_however_late(late: float) -> None:
+    """By a quarter of a period of 13 Hz and more: no series in the lateness holds there."""
+    t, omega = motion(n=3000).dt * np.arange(3000), 2 * np.pi * 13.0
+    s = dataclasses.replace(motion(n=3000), t=t, theta_l=0.01 * t + 1e-4 * np.sin(omega * t))
+    s = dataclasses.replace(s, omega_l=0.01 + 1e-4 * omega * np.cos(omega * t))
+    column = ChannelTimeSkew().columns(s, (LOAD_LATE, late, 0.0))[Port.READS_THETA_L][:, 0]
+    now = 0.01 * (t + late) + 1e-4 * np.sin(omega * (t + late))
+    np.testing.assert_allclose(late * column[40:-40], (s.theta_l - now)[40:-40], atol=2e-6)
+
+
 def test_a_steeper_fall_goes_faster_beyond_its_torque_and_slower_below() -> None:
     s, effect = motion(), LoadDependentKinematicError()
     even, steep = (effect.columns(s, (TORQUE, 5.0, 1e-4, d))[Port.KINEMATIC_ERROR][:, 0] for d in (1.0, 2.0))
@@ -362,6 +374,25 @@ def test_a_flattened_weight_has_a_third_wave_smaller_than_half_of_the_first() ->
     assert effect.plausible(fit)
     assert {p.name for p in effect.parameters(fit)} >= {"unbalance_amplitude", "three_times_a_turn_amplitude"}
     assert not effect.plausible(dataclasses.replace(fit, coefficients=c[[2, 3, 0, 1]]))
+
+
+@pytest.mark.parametrize(("twice", "may"), [(0.05, True), (0.09, False)])
+def test_what_pulls_twice_a_turn_pulls_less_than_the_weight(twice: float, may: bool) -> None:
+    """0.15 N·m once a turn; more than half of it twice a turn is a cable that holds the load over some of its turn."""
+    sizes = ((1.0, 0.15), (2.0, twice))
+    fits = [Fit(np.array([0.0, size]), (order, 0.0), np.eye(4), KNOWN, N) for order, size in sizes]
+    assert GravityUnbalance().plausible_together(fits) is may
+    assert GravityUnbalance().plausible_together(fits[:1])
+
+
+def test_a_load_that_is_locked_passes_no_line_of_its_encoder() -> None:
+    effect = EncoderInterpolationError()
+    turning = {shape for shape in effect.shapes(REACH) if shape[0] == 1.0}
+    assert (1.0, 10125.0) in turning
+    locked = effect.shapes(dataclasses.replace(REACH, slowest=0.02, slowest_free=0.0))
+    assert {side for side, _ in locked} == {0.0}
+    # however slowly the motor turns in lock tests
+    assert {x for x in effect.shapes(dataclasses.replace(REACH, slowest=0.02)) if x[0] == 1.0} == turning
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ def turning(rpm: float, n: int = 1500, tau_ext: float = 0.0) -> Signals:
     theta = omega * t
     return Signals(
         t=t, dt=DT, ratio=N, theta_m=theta, theta_l=theta / N, omega_m=np.full(n, omega), alpha_m=nothing,
-        omega_l=np.full(n, omega / N), alpha_l=nothing, jerk_l=nothing, torque=nothing, torque_rate=nothing,
+        omega_l=np.full(n, omega / N), alpha_l=nothing, torque=nothing, torque_rate=nothing,
         tau_m=nothing, tau_l=nothing, tau_ext=np.full(n, tau_ext), way=np.ones(n), temperature=nothing, gear=KNOWN,
     )  # fmt: skip
 

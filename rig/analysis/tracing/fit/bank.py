@@ -46,7 +46,8 @@ class Bank:
 def reach(runs: Sequence[Recording]) -> Reach:
     """What the runs cover."""
     pieces = [p for run in runs for p in run.pieces]
-    speeds = np.concatenate([np.abs(p.omega_m[settled(p)]) for p in pieces]) if pieces else np.zeros(0)
+    speeds = _speeds(runs)
+    free = _speeds([run for run in runs if not run.locked])
     torque = np.concatenate([np.abs(p.torque) for p in pieces])
     way = np.concatenate([p.way for p in pieces]) if pieces else np.zeros(0)
     turns = [max(p.theta_l.max() for p in r.pieces) - min(p.theta_l.min() for p in r.pieces) for r in runs]
@@ -54,6 +55,7 @@ def reach(runs: Sequence[Recording]) -> Reach:
         ratio=runs[0].ratio,
         fastest=float(np.percentile(speeds, 99.9)) if speeds.size else 0.0,
         slowest=float(np.percentile(speeds, 1)) if speeds.size else 0.0,
+        slowest_free=float(np.percentile(free, 1)) if free.size else 0.0,
         torque=float(np.nanmax(torque)) if np.isfinite(torque).any() else 0.0,
         duration=max(float(p.t[-1]) for p in pieces) - min(float(p.t[0]) for p in pieces),
         rate=min(run.rate for run in runs),
@@ -69,6 +71,12 @@ def reach(runs: Sequence[Recording]) -> Reach:
         pulled=_lesser(np.concatenate([p.torque * np.abs(p.torque) for p in pieces])),
         weights=len({round(float(np.nanmean(p.tau_ext)), 2) for p in pieces}),
     )
+
+
+def _speeds(runs: Sequence[Recording]) -> Array:
+    """Of the motor where it turns, in all rows of `runs`, rad/s."""
+    speeds = [np.abs(p.omega_m[settled(p)]) for run in runs for p in run.pieces]
+    return np.concatenate(speeds) if speeds else np.zeros(0)
 
 
 def _compared_at(runs: Sequence[Recording]) -> float:

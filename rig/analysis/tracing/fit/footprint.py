@@ -110,4 +110,6 @@ def _passed_on(first: Mark, s: Signals, has: frozenset[str], is_wound: bool) -> 
             yield "M", s.gear.J_m * s.ratio * column, order + 2
     if channel == "L" and "tau_l" not in has:
         yield "A", column / s.gear.K, order
+        if order < HIGHEST:
+            yield "A", -s.gear.B_sp / s.gear.K**2 * column, order + 1
         yield "M", column * (1.0 / s.ratio - s.series_slope)[:, None], order

@@ -93,7 +93,6 @@ def follow(s: Signals, model: Model, led: Led, wind_up: Array, load: Array) -> S
         theta_l=theta[here],
         omega_l=omega[here],
         alpha_l=alpha[here],
-        jerk_l=np.gradient(alpha, h)[here],
         torque=read,
         tau_l=read,
         torque_rate=np.gradient(torque, h)[here],

@@ -56,7 +56,7 @@ def report(
     one_way = one_sided(fitted)
     ranked = tuple(name for name in ranked if not (one_way and name == COGGING))
     baseline = honest(parameters.baseline(empty), fitted_runs)
-    conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found))
+    conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found, fitted))
     conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
     final, curve = _with_a_curve(p, s, after, conclusion.home)
     confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)

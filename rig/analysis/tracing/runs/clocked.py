@@ -54,7 +54,7 @@ def slowed(piece: Signals) -> Signals:
     if usual <= SLOW:
         return piece
     by = SLOW / usual
-    scaled = {"omega_m": by, "omega_l": by, "torque_rate": by, "alpha_m": by**2, "alpha_l": by**2, "jerk_l": by**3}
+    scaled = {"omega_m": by, "omega_l": by, "torque_rate": by, "alpha_m": by**2, "alpha_l": by**2}
     return replace(piece, **{name: factor * getattr(piece, name) for name, factor in scaled.items()})
 
 

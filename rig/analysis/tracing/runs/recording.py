@@ -261,7 +261,6 @@ def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
         "alpha_m": flat_rate(c["theta_m"], dt, 2),
         "omega_l": flat_rate(c["theta_l"], dt, 1),
         "alpha_l": flat_rate(c["theta_l"], dt, 2),
-        "jerk_l": flat_rate(c["theta_l"], dt, 3),
         "torque": flat(c["tau_l"]),
         "torque_rate": flat_rate(c["tau_l"], dt, 1),
     }

@@ -13,14 +13,17 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.sizes import may_be_nothing
 from rig.analysis.tracing.thresholds import ALONE, MISSING
-from rig.model.effect import Array
+from rig.model.effect import Array, Parameter
+from rig.model.effects import LIBRARY
 
 
 @dataclass(frozen=True)
 class Asked:
     """The prepared campaign and its model, what is in it `ranked` by what it does, `scores` of what all runs share,
-    held-out residuals without and with the model, floors of the fitted blocks, and what the search found."""
+    held-out residuals without and with the model, floors of the fitted blocks, what the search found, and what the
+    parameters of the effects are."""
 
     p: Prepared
     s: Solution
@@ -30,11 +33,18 @@ class Asked:
     after: Mapping[Key, Array]
     floors: Mapping[Key, float]
     found: Found
+    words: Mapping[str, Sequence[Parameter]]
 
     @property
     def names(self) -> tuple[str, ...]:
         """Those that are effects of the library."""
         return tuple(name for name in self.ranked if name not in CONFOUNDERS)
+
+    @cached_property
+    def sized(self) -> tuple[str, ...]:
+        """Those of them of which a size at least is not nothing. Of several in the place of one law that has no name
+        none may be left out, and none be anything."""
+        return tuple(name for name in self.names if not may_be_nothing(LIBRARY[name], self.words.get(name, ())))
 
     @property
     def one(self) -> float:

@@ -74,6 +74,8 @@ def _can_be(s: Solution, name: str) -> bool:
     d = s.design
     found = [(t, s.x[d.place(i)]) for i, t in enumerate(d.terms) if t.name == name]
     sums = [p.value for t, c in found for p in t.effect.parameters(as_fit(s, t, c)) if p.name in t.effect.adds]
+    if len(found) > 1 and not found[0][0].effect.plausible_together([as_fit(s, t, c) for t, c in found]):
+        return False
     return sum(sums) > 0 if len(found) > 1 and sums else all(possible(s, t, c) for t, c in found)
 
 

@@ -72,7 +72,7 @@ def imagined(proposal: Proposal, like: Recording, s: Solution, start: float) -> 
     nothing, t = np.zeros(n), start + dt * np.arange(n, dtype=np.float64)
     bare = Signals(
         t=t, dt=dt, ratio=piece.ratio, theta_m=nothing, theta_l=nothing, omega_m=nothing, alpha_m=nothing,
-        omega_l=nothing, alpha_l=nothing, jerk_l=nothing, torque=nothing, torque_rate=nothing, tau_m=nothing,
+        omega_l=nothing, alpha_l=nothing, torque=nothing, torque_rate=nothing, tau_m=nothing,
         tau_l=nothing, tau_ext=np.full(n, proposal.tau_ext), way=nothing, temperature=nothing * np.nan, gear=model.gear,
     )  # fmt: skip
     if proposal.locked is not None:

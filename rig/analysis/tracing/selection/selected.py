@@ -32,6 +32,7 @@ from rig.analysis.tracing.selection.elimination import (
 from rig.analysis.tracing.selection.instead_of import instead_of_the_gear
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.sizes import may_be_nothing
 from rig.analysis.tracing.thresholds import (
     ALL,
     AS_WELL,
@@ -49,7 +50,7 @@ from rig.analysis.tracing.thresholds import (
     WORSE,
 )
 from rig.core.quantiles import Z95
-from rig.model.effect import Array, Effect, Parameter, Reach
+from rig.model.effect import Array, Parameter, Reach
 
 Words = dict[str, tuple[Parameter, ...]]
 """Parameters by effect."""
@@ -145,12 +146,12 @@ def _without_insignificant(selected: Selected, runs: Sequence[int], covered: Rea
         if (sizes := effect[score.name].sizes(selected.words.get(score.name, ())))
         and (
             score.name in vague
-            or _may_be_nothing(selected, effect[score.name], score.name)
+            or may_be_nothing(effect[score.name], selected.words.get(score.name, ()))
             or (score.overall < most and not _vouched_for(score, most) and all(_is_hardly_known(p) for p in sizes))
         )
     ]
     needless = {score.name for score in insignificant}
-    nothing = {score.name for score in insignificant if _may_be_nothing(selected, effect[score.name], score.name)}
+    nothing = {name for name in needless if may_be_nothing(effect[name], selected.words.get(name, ()))}
     few = _few_repeats(selected.p, runs)
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
@@ -171,10 +172,6 @@ def _says_nothing(selected: Selected, names: set[str]) -> bool:
 
 def _is_unknown(scale: Parameter) -> bool:
     return scale.ci95[1] - scale.ci95[0] > 2 * UNKNOWN * abs(scale.value)
-
-
-def _may_be_nothing(selected: Selected, effect: Effect, name: str) -> bool:
-    return all(size.holds_zero for size in effect.sizes(selected.words.get(name, ())))
 
 
 def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:

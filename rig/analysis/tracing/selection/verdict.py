@@ -58,7 +58,7 @@ def _by_a_law(asked: Asked) -> Conclusion | None:
     if not laws:
         return None
     own = () if asked.loud else p.own.made.keys()
-    stand = beside_a_law(laws[0].coordinate, names, scores, plain, own)
+    stand = beside_a_law(laws[0].coordinate, asked.sized, scores, plain, own)
     larger = () if asked.loud else larger_than(laws, names, scores, plain)
     if not larger:
         return confounded(laws[0], stand)
@@ -86,7 +86,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     line, best, (_, total) = p.own.line, where[0], asked.worst
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
-    shared = [name for name in asked.names if name not in p.own.made and name not in _of_the_same_order(asked.s, best)]
+    shared = [name for name in asked.sized if name not in p.own.made and name not in _of_the_same_order(asked.s, best)]
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
     stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()

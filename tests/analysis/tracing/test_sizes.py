@@ -1,0 +1,18 @@
+"""An effect of which every size may be nothing."""
+
+from __future__ import annotations
+
+import pytest
+
+from rig.analysis.tracing.selection.sizes import may_be_nothing
+from rig.model.effect import Parameter
+from rig.model.effects import LIBRARY
+
+
+@pytest.mark.parametrize(
+    ("loss", "there", "nothing"), [(0.4, 3.3, True), (0.4, 0.1, False), (-0.4, 0.1, False), (None, 0.0, False)]
+)
+def test_a_size_that_holds_zero_may_be_nothing(loss: float | None, there: float, nothing: bool) -> None:
+    """Drag of 0.4 ± 3.3 N·m; of an effect that is told with nothing nothing is said."""
+    words = () if loss is None else (Parameter("drag_at_10_rad_s", loss, (loss - there, loss + there), "N·m"),)
+    assert may_be_nothing(LIBRARY["quadratic_drag"], words) is nothing
