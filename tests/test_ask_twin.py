@@ -171,8 +171,8 @@ def test_faults_are_asked_for_by_their_keys(words: list[str], asked: dict[str, A
     [
         (b'{"do": "load", "tau_ext": NaN}', "tau_ext = nan: expected a finite number"),
         (b'{"do": "load", "tau_ext": 1e999}', "tau_ext = inf: expected a finite number"),
-        (b'{"do": "load", "tau_ext": "nan"}', "a weight of nan N"),
-        (b'{"do": "reassemble", "depth_mm": "nan"}', "a depth of nan mm"),
+        (b'{"do": "load", "tau_ext": "nan"}', "tau_ext = nan: expected a number"),
+        (b'{"do": "reassemble", "depth_mm": "nan"}', "depth_mm = nan: expected a number"),
     ],
 )
 def test_the_twin_judges_its_numbers_itself_and_lives_on(line: bytes, told: str) -> None:
@@ -191,6 +191,16 @@ def test_an_infinity_stays_where_it_is_the_usual_value() -> None:
 
     assert perform({"drop": drop}, b'{"do": "drop", "count": Infinity}') == {"ok": True}
     assert perform({"drop": drop}, b'{"do": "drop", "count": NaN}')["ok"] is False
+
+
+@pytest.mark.parametrize("said", ['"maybe"', "1", '"true"'])
+def test_what_is_true_or_false_is_nothing_else(said: str) -> None:
+    def sto(active: bool = True) -> None:
+        """Safe torque off"""
+
+    answer = perform({"sto": sto}, b'{"do": "sto", "active": %s}' % said.encode())
+    assert (answer["ok"], "expected true or false" in answer["error"]) == (False, True)
+    assert perform({"sto": sto}, b'{"do": "sto", "active": false}') == {"ok": True}
 
 
 def test_a_key_given_twice_is_refused() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from rig.config.sentence import sentence
 from rig.config.text_file import load_text
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
+from rig.core.toml import read_toml
 
 PLANS = Path(__file__).parents[1] / "plans"  # plans that ship with hdrig
 Moment = Literal["start", "middle", "end"]
@@ -97,10 +97,7 @@ def plan_of(procedure: str, parameters: Mapping[str, Any]) -> Plan:
 
 def parse_plan(text: str, source: str) -> Plan:
     """The plan in `text`; `source` is what errors call it. Raises UsageError."""
-    try:
-        raw = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"{source} is not valid TOML: {str(error).splitlines()[0]}") from None
+    raw = read_toml(text, source)
     try:
         return Plan(PlanFile.model_validate(raw), text, source)
     except ValidationError as error:

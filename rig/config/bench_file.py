@@ -7,7 +7,6 @@ Units are compared with the expected one, never converted.
 
 from __future__ import annotations
 
-import tomllib
 from typing import Literal
 
 from pydantic import Field, ValidationError
@@ -30,6 +29,7 @@ from rig.config.sections import (
 from rig.config.sentence import sentence
 from rig.config.twin import TwinSection
 from rig.core.errors import UsageError
+from rig.core.toml import read_toml
 
 
 class BenchFile(Strict):
@@ -54,10 +54,7 @@ class BenchFile(Strict):
 
 def read_bench(text: str, source: str) -> BenchFile:
     """The bench file in `text`; `source` is what errors call it. Raises UsageError, one sentence."""
-    try:
-        raw = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # also numbers of thousands of digits, and endless nesting
-        raise UsageError(f"{source} is not valid TOML: {str(error).splitlines()[0]}") from None
+    raw = read_toml(text, source)
     try:
         return BenchFile.model_validate(raw)
     except ValidationError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -117,6 +118,7 @@ OURS: Kinds = {  # what our own runs say besides, and somebody else may mean oth
     ("conditions", "feedforward_a"): LIST,
     ("conditions", "feedforward_b"): LIST,
 }
+ALIKE = 0.75  # of a key and one of the format: "tau_exr" of "tau_ext"
 OF_A_FILE: Mapping[str, Kind] = {"sha256": TEXT, "rows": COUNT, "bytes": COUNT}
 BARE = ("conditions", "encoders")  # tables whose numbers are read bare, as most write them
 
@@ -130,6 +132,18 @@ def misfits(about: Mapping[str, Any]) -> list[str]:
 def misfits_of_ours(about: Mapping[str, Any]) -> list[str]:
     """The same of keys the format does not name, that this program writes."""
     return [said for _, said in _wrong(about, {**OURS, **_of_files(about)})]
+
+
+def mistyped(about: Mapping[str, Any]) -> Iterator[str]:
+    """One clause for every key that nobody reads and that looks like one of the format's."""
+    known = {**FORMAT, **OURS}
+    for table in sorted({path[0] for path in FORMAT if len(path) > 1}):
+        keys = {path[1] for path in known if path[0] == table and len(path) > 1} | {"ratio"}
+        said = _at(about, (table,))
+        for key in (key for key in said if isinstance(key, str) and key not in keys):
+            whole = [name for name in keys if len(key) > 2 and f"_{key}_" in f"_{name}_" and name not in said]
+            if close := whole or difflib.get_close_matches(key, sorted(keys - said.keys()), n=1, cutoff=ALIKE):
+                yield f"{table}.{key} is no key that is read; did you mean '{close[0]}'?"
 
 
 def usable(about: Mapping[str, Any]) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from rig.core.numbers import number
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
-from rig.runfile.misfits import misfits, misfits_of_ours, usable
+from rig.runfile.misfits import misfits, misfits_of_ours, mistyped, usable
 from rig.runfile.samples import Samples, open_samples
 from rig.runfile.text_path import refuse_no_text
 
@@ -32,7 +32,7 @@ class Run:
         """`manifest` as it stands in the folder; what of it is of no use, by `misfits`, counts as not said."""
         self.path = path
         self.manifest = usable(manifest)
-        self.misfits = (*misfits(manifest), *misfits_of_ours(manifest))
+        self.misfits = (*misfits(manifest), *misfits_of_ours(manifest), *mistyped(manifest))
         self.samples = samples
         self.ratio = ratio_of(path, manifest)
         self.procedure = _procedure(path, manifest)

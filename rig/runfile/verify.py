@@ -18,7 +18,7 @@ from rig.runfile.columns import Array
 from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.finding import Finding
 from rig.runfile.journal import JournalReader
-from rig.runfile.misfits import misfits, misfits_of_ours
+from rig.runfile.misfits import misfits, misfits_of_ours, mistyped
 from rig.runfile.process import is_being_made
 from rig.runfile.promised import time_untold
 from rig.runfile.remains import advice, journal_files
@@ -39,7 +39,8 @@ def verify(folder: Path) -> list[Finding]:
     about = manifest.read(folder)
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
-    findings += [Finding("warning", "manifest", f"{manifest.NAME}: {said}") for said in misfits_of_ours(about)]
+    odd = (*misfits_of_ours(about), *mistyped(about))
+    findings += [Finding("warning", "manifest", f"{manifest.NAME}: {said}") for said in odd]
     findings += _ratio(about)
     try:
         run = Run.open(folder)
@@ -130,12 +131,16 @@ def _gaps(run: Run) -> Iterator[Finding]:
         late = ~told  # nothing is gone: the machine woke late, less than the one period that the loop flags
     late |= ~told & (dt[gaps] < LOST * period)
     stale = ~told & ~late & _read_late(run, gaps, dt, period)
-    unexplained = "warning" if _is_foreign(run.manifest) else "error"  # no loop of ours, no promise
+    unexplained, why_not = "error", "unexplained"
+    if _is_foreign(run.manifest):  # no loop of ours, no promise
+        unexplained = "warning"
+    elif run.manifest.get("status") == "interrupted" and "ticks" not in run.timing:
+        unexplained, why_not = "warning", "a late tick or a lost row: the loop died before it could say how many"
     for level, found, why in (
         ("warning", gaps[told], "flagged by the loop: it skipped ticks there, or had no new motor angle"),
         ("warning", gaps[late], "a tick came late, no row is gone"),
         ("warning", gaps[stale], "a stale reading and then a fresh one (their `age`), no row is gone"),
-        (unexplained, gaps[~told & ~late & ~stale], "unexplained"),
+        (unexplained, gaps[~told & ~late & ~stale], why_not),
     ):
         if found.size:
             worst = int(found[np.argmax(dt[found])])

@@ -54,6 +54,7 @@ def perform(verbs: Mapping[str, Verb], line: bytes) -> dict[str, Any]:
         refuse_other_keys(name, verbs[name], asked)
         known = inspect.signature(verbs[name]).parameters
         for key, value in asked.items():
+            refuse_other_kind(key, value, str(known[key].annotation))
             refuse_no_number(key, value, known[key].default)
         return {"ok": True, **(verbs[name](**asked) or {})}
     except UsageError as error:
@@ -73,6 +74,14 @@ def refuse_other_keys(name: str, verb: Verb, asked: Mapping[str, Any]) -> None:
     for key in asked:
         if key not in known:
             raise UsageError(f"{name} has no '{key}'; expected {_given(verb) or 'nothing more'}")
+
+
+def refuse_other_kind(key: str, value: object, kind: str) -> None:
+    """Raises UsageError for a word where a truth or a number is expected."""
+    if kind == "bool" and not isinstance(value, bool):
+        raise UsageError(f"{key} = {value}: expected true or false")
+    if kind in ("float", "int") and (isinstance(value, bool) or not isinstance(value, int | float)):
+        raise UsageError(f"{key} = {value}: expected a number")
 
 
 def refuse_no_number(key: str, value: object, usual: object) -> None:

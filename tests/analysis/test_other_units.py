@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis import analyse
 from rig.analysis.findings.result import Verdict
-from rig.analysis.motion.degrees import DEGREES, Turning
+from rig.analysis.motion.degrees import DEGREES, Turning, come_again_in_degrees
 from rig.runfile.run import Run
 from tests.analysis.synthetic import MadeRun
 
@@ -57,3 +57,24 @@ def test_the_unit_of_an_angle_is_told_by_its_step_by_the_declared_speed_and_by_w
     assert "57.3 times the declared speed_rpm" in (replace(coarse, rpm=300.0 * DEGREES).in_degrees or "")
     assert "expected below 15000 rpm" in (replace(coarse, said_rpm=0.0, rpm=22_918.0).in_degrees or "")
     assert replace(coarse, rpm=None).in_degrees is None
+
+
+def test_angles_in_degrees_are_told_by_their_waves_where_nobody_says_a_count(shared: Path) -> None:
+    run = Run.open(shared / "cases" / "open-1" / "slow_ke_1")
+    foreign = MadeRun(
+        {n: x * DEGREES for n in ("theta_m", "theta_l") if (x := run.column(n)) is not None} | {"t": run.column("t")},
+        {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}},
+    )
+    found = analyse(foreign)
+    assert found.verdict is Verdict.INCONCLUSIVE
+    assert "both angles seem to be in degrees" in found.sentence
+
+
+def test_an_eccentric_encoder_of_the_output_is_no_angle_in_degrees() -> None:
+    """Ten turns of the output, 3 mrad once in each of them and 40 µrad twice in each of the motor."""
+    theta_m = np.linspace(0.0, 2 * np.pi * 500, 100_000)
+    theta_l = theta_m / 50 - 4e-5 * np.cos(2 * theta_m)
+    assert come_again_in_degrees(theta_m, theta_l + 3e-3 * np.cos(theta_m / 50), 50.0) is None
+    assert come_again_in_degrees(theta_m * DEGREES, theta_l * DEGREES, 50.0)
+    few = slice(0, 1000)  # five turns of the motor
+    assert come_again_in_degrees(theta_m[few] * DEGREES, theta_l[few] * DEGREES, 50.0) is None

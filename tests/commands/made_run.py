@@ -59,7 +59,7 @@ def manifest() -> dict[str, Any]:
         "gear": {"serial": "A1", "ratio": 50.0, "output": "flexspline"},
         "declared": {"J_m": 1.1e-3, "J_l": 0.32, "K": 7160.0, "B_ml": 2.5e-3},
         "conditions": {"tau_ext": 0.0, "output_locked": False, "depth_mm": 0.0, "assembly": 1, "speed_rpm": 96.0},
-        "encoders": {"motor_counts_per_turn": 10000, "load_counts_per_turn": 900000},
+        "encoders": {"motor_counts_per_rev": 10000, "load_counts_per_rev": 900000},
         "software": {"version": "0.1.0", "commit": "0" * 40, "dirty": False},
         "loop": {"rate": RATE, "clock": "virtual", "ticks": 6000},
         "proof": {"ratio": 49.99, "breakaway": 0.54},

@@ -25,6 +25,11 @@ def refusal(text: str) -> str:
     return message
 
 
+def test_a_byte_order_mark_is_no_key() -> None:
+    """Editors of Windows leave one before the first character."""
+    assert read_bench("\ufeff" + TEXT, "twin.toml") == read_bench(TEXT, "twin.toml")
+
+
 def test_the_shipped_bench_is_valid() -> None:
     bench = read_bench(TEXT, "twin.toml")
     assert bench.gear.K == 7160.0

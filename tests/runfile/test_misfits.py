@@ -10,7 +10,7 @@ import pytest
 
 from rig.cli import main
 from rig.model.gear import SIGMA
-from rig.runfile.misfits import FORMAT, OURS, OUTPUTS, misfits, misfits_of_ours, notes, usable
+from rig.runfile.misfits import FORMAT, OURS, OUTPUTS, misfits, misfits_of_ours, mistyped, notes, usable
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run, manifest
 
@@ -110,3 +110,22 @@ def test_a_list_and_a_comparison_say_it_too(tmp_path: Path, capsys: pytest.Captu
     assert (
         'run  (manifest.json: gear.serial is ["A1"], expected a number or a name. It counts' in capsys.readouterr().out
     )
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "meant"),
+    [
+        ("conditions", "locked", "output_locked"),
+        ("conditions", "tau_exr", "tau_ext"),
+        ("encoders", "motor_counts_per_turn", "motor_counts_per_rev"),
+        ("conditions", "operator_mood", ""),
+        ("conditions", "settle_s", ""),
+    ],
+)
+def test_a_key_that_looks_like_one_of_the_format_is_pointed_out(table: str, key: str, meant: str) -> None:
+    said = list(mistyped({table: {key: 1.0}}))
+    assert [f"did you mean '{meant}'?" in clause for clause in said] == [True] * bool(meant)
+
+
+def test_a_key_beside_the_one_it_looks_like_is_another() -> None:
+    assert not list(mistyped({"conditions": {"locked": "by hand", "output_locked": True}}))

@@ -134,6 +134,17 @@ def test_a_gap_nobody_told_of_is_an_error(tmp_path: Path) -> None:
     ]
 
 
+def test_a_gap_of_a_run_whose_loop_died_is_a_warning(tmp_path: Path) -> None:
+    """Its ticks were never counted: a row that is gone and a late tick look alike."""
+    folder = closed(tmp_path)
+    with_column(folder, "t", late)
+    manifest.update(folder, status="interrupted")
+    assert found(folder) == []
+    ((check, sentence),) = found(folder, "warning")
+    assert check == "gaps"
+    assert "a late tick or a lost row: the loop died before it could say how many" in sentence
+
+
 @pytest.mark.parametrize(("row", "flag"), [(150, Flag.MISSED), (149, Flag.STALE_M)])
 def test_a_gap_the_loop_flagged_is_a_warning(tmp_path: Path, row: int, flag: Flag) -> None:
     folder = closed(tmp_path)

@@ -125,8 +125,9 @@ def _steps(rest: Array, apart: Array, least: float) -> list[tuple[int, float]]:
         left[max(at - 2 * WINDOW, 0) : at + 2 * WINDOW] = 0.0
         size, place = float(apart[at]), at + WINDOW
         before, after = rest[max(place - LASTING, 0) : place], rest[place : place + LASTING]
-        if float(np.median(after) - np.median(before)) / size > STAYS:
-            found.append((place, _sized(before, after)))
+        sized = _sized(before, after)
+        if float(np.median(after) - np.median(before)) / size > STAYS and abs(sized) > LEAST:
+            found.append((place, sized))
     return found
 
 

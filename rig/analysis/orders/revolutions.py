@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -54,8 +54,21 @@ def trend_degree(span: float, revolutions: int) -> int:
 def filled(total: Array, position: Array, rows: Array) -> Array:
     """Bin means moved from where the rows lay to the middle of each bin; empty bins from their neighbours."""
     here = rows > 0
-    grid = (np.arange(rows.size) + 0.5) / rows.size
-    return np.interp(grid, position[here] / rows[here], total[here] / rows[here], period=1.0)
+    return np.interp(_middles(rows.size), position[here] / rows[here], total[here] / rows[here], period=1.0)
+
+
+def _of_one(one: tuple[Array, Array, Array], beyond: Sequence[tuple[float, float]]) -> Array:
+    """The same of one revolution, whose end need not meet its beginning: between its outermost bins and the rows
+    `beyond` them (place in turns of this one, below 0 or above 1; value) it is a straight line."""
+    total, position, rows = one
+    here = rows > 0
+    points = [*zip(position[here] / rows[here], total[here] / rows[here], strict=True), *beyond]
+    place, value = np.array(sorted(points)).T
+    return np.asarray(np.interp(_middles(rows.size), place, value))
+
+
+def _middles(bins: int) -> Array:
+    return np.asarray((np.arange(bins) + 0.5) / bins)
 
 
 def _in_bins(theta: Array, y: Array) -> tuple[Array, Array, Array]:
@@ -75,9 +88,14 @@ def _curves(
     curves = np.empty((len(edges) - 1, GRID))
     total, position, rows = np.zeros(GRID), np.zeros(GRID), np.zeros(GRID)
     for r, (a, b) in enumerate(pairwise(edges)):
-        theta = motion.theta_m[a:b]
-        one = _in_bins(theta, cleaned(theta, motion.error_arcsec(a, b)))
-        curves[r] = filled(*one)
+        first, last = max(a - 1, 0), min(b + 1, motion.theta_m.size)
+        theta = motion.theta_m[first:last]
+        value = cleaned(theta, motion.error_arcsec(first, last))
+        inner = slice(a - first, b - first)
+        one = _in_bins(theta[inner], value[inner])
+        place = theta / TURN - np.floor(theta[theta.size // 2] / TURN)
+        ends = [(float(place[i]), float(value[i])) for i in (0, -1) if not 0.0 <= place[i] < 1.0]
+        curves[r] = _of_one(one, ends)
         total, position, rows = total + one[0], position + one[1], rows + one[2]
     return curves, (total, position, rows)
 

@@ -111,7 +111,9 @@ def keys_in(width: int) -> list[str]:
 
 
 def _width(stream: TextIO) -> int:
+    """Characters of a line; of a terminal that says 0 or 1, as a serial line does, those of the usual one."""
     try:
-        return os.get_terminal_size(stream.fileno()).columns - 1 or 79
+        columns = os.get_terminal_size(stream.fileno()).columns
     except (OSError, ValueError):
-        return 79
+        columns = 0
+    return columns - 1 if columns > 1 else 79

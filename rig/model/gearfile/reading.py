@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from rig.core.errors import DataError, UsageError
 from rig.core.regular import regular
+from rig.core.toml import read_toml
 from rig.model.fourier import FourierSeries
 from rig.model.gear import SIGMA
 from rig.model.gearfile.content import (
@@ -56,10 +56,7 @@ def read(path: Path) -> GearFile:
 
 def loads(text: str, source: str) -> GearFile:
     """The gear in `text`; `source` is what errors call it. Raises UsageError, one sentence."""
-    try:
-        raw = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"{source} is not valid TOML: {str(error).splitlines()[0]}") from None
+    raw = read_toml(text, source)
     try:
         return _gear(raw)
     except DataError as error:

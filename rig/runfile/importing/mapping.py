@@ -3,7 +3,6 @@ keys of `keys.KEYS`."""
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping as Dict
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 from rig.core.errors import UsageError
 from rig.core.kinds import KINDS
 from rig.core.regular import regular
+from rig.core.toml import read_toml
 from rig.runfile.importing.channel import ChannelMap, read_channel
 from rig.runfile.importing.strict import Section, nearest
 
@@ -78,10 +78,7 @@ def load_mapping(mapping: Path | str) -> Mapping:
 
 def read_mapping(text: str, source: str) -> Mapping:
     """The mapping in `text`; `source` is what errors call it. Raises UsageError: file, key and what was expected."""
-    try:
-        raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise UsageError(f"{source} is not valid TOML: {error}") from None
+    raw = read_toml(text, source)
     top = Section(source, "", raw)
     top.text("schema", choices=(SCHEMA,))
     tables = top.table("channels")

@@ -67,3 +67,25 @@ def test_a_gear_that_is_wound_up_while_its_load_gains_speed_has_not_slipped() ->
     (check,) = [c for c in analyse(ramped(8.0, 12.0)).checks if c.name == "slips"]
     assert "t = 6.0" in check.sentence
     assert check.sentence.count("arcsec at") == 1
+
+
+def eccentric(rpm: float, at_once: float) -> MadeRun:
+    """A minute at one speed: 300 µrad once a turn of the output, steep beside a slip, and 3 µrad of noise."""
+    t = np.arange(0.0, 60.0, 1e-3)
+    theta_m = rpm / 60 * TURN * t
+    theta_l = (
+        theta_m / 50 - 1e-4 * np.cos(2 * theta_m) + 3e-4 * np.cos(theta_m / 50 + 0.4) - ARCSEC * at_once * (t > 31)
+    )
+    theta_l = theta_l + 3e-6 * np.random.default_rng(1).standard_normal(t.size)
+    manifest = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
+    return MadeRun({"t": t, "theta_m": theta_m, "theta_l": theta_l}, manifest)
+
+
+@pytest.mark.parametrize("rpm", [400.0, 450.0, 600.0])
+def test_an_eccentric_encoder_slips_nowhere(rpm: float) -> None:
+    assert not [c for c in analyse(eccentric(rpm, 0.0)).checks if c.name == "slips"]
+
+
+def test_a_slip_beside_an_eccentric_encoder_is_told() -> None:
+    (check,) = [c for c in analyse(eccentric(600.0, 30.0)).checks if c.name == "slips"]
+    assert "t = 31.0" in check.sentence

@@ -12,7 +12,7 @@ from rig.commands.show import outlet as outlets
 from rig.commands.show.enrich import Enriched
 from rig.commands.show.lines import Lines
 from rig.commands.show.outlet import Apart, Here
-from rig.commands.show.terminal import KEYS, Terminal
+from rig.commands.show.terminal import KEYS, Terminal, keys_in
 
 BENCH = {"event": "bench", "bench": "twin", "simulated": True, "clock": "wall", "ratio": 50.0, "gear": "G1"}
 RUN = {"event": "run", "title": "kinematic-error", "duration_s": 100.0, "ring": "/nowhere", "folder": "f"}
@@ -165,3 +165,23 @@ def test_where_standard_error_is_no_file_it_is_drawn_at_once(monkeypatch: object
     stream = io.StringIO()
     Here("lines", stream).put({"event": "said", "text": "here"})
     assert stream.getvalue() == "here\n"
+
+
+@pytest.mark.parametrize("columns", [0, 1])
+def test_a_terminal_that_does_not_know_its_width_has_the_usual_one(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a serial line, or one that a program opened: nothing of the foot may be lost, nor the painter die of it."""
+    monkeypatch.setattr(os, "get_terminal_size", lambda fd: os.terminal_size((columns, 0)))
+    stream = Described()
+    screen = Terminal(stream)
+    for event in (RUN, {"event": "progress", **progress(1.0)}):
+        screen.take(event)
+    assert all(line in stream.getvalue() for line in keys_in(79))
+
+
+class Described(io.StringIO):
+    """Text with the number of a file."""
+
+    def fileno(self) -> int:
+        return 1

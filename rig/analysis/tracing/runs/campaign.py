@@ -173,7 +173,8 @@ def _unfit(made: Recording) -> str:
     """Why a run that can be read is none for a trace; "" where it is one."""
     if not made.pieces:
         return "it has no stretch without a gap that is long enough for the low-pass, some tenths of a second"
-    turned = max(float(np.ptp(p.theta_m)) for p in made.pieces) / (2 * np.pi)
+    angle = np.concatenate([p.theta_m for p in made.pieces])
+    turned = float(np.ptp(angle)) / (2 * np.pi)
     if made.locked and (why := _gave_way(made)):
         return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":

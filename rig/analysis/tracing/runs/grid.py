@@ -11,6 +11,7 @@ from rig.analysis.motion.gaps import LONG
 from rig.analysis.motion.source import Motion, Source, increases, not_seconds
 from rig.analysis.tracing.runs.declared import stated
 from rig.core.errors import UsageError
+from rig.core.units import TURN
 from rig.model.effect import Array
 
 UNTIMED = 1000.0  # Hz, taken for the rate of rows without a time: taken for less, ω̇ of a 16-bit encoder is all noise
@@ -19,6 +20,8 @@ DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the
 SPARSEST = (
     0.201  # s between rows, 5 Hz as a clock has them: order 15 of a slow run (9.6 rpm) still has two of them a period
 )
+BRIDGED = 10.0  # usual distances between rows
+HARDLY = TURN / 120  # rad of the motor: of order 15 an eighth of a period
 
 
 def grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
@@ -47,11 +50,14 @@ def refuse_sparse(rows: int, dt: float) -> None:
         raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:.1g} s")
 
 
-def joined(t: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tuple[int, int]]:
-    """Rows lo..hi without a gap or a new encoder reference between them."""
+def joined(t: Array, theta_m: Array, dt: float, breaks: Sequence[int], steady: bool) -> list[tuple[int, int]]:
+    """Rows lo..hi without a gap or a new encoder reference between them. A few rows in which the motor hardly turned
+    are no gap: a curve goes on across them."""
     cuts = set(breaks)
     if steady:
-        cuts |= {int(i) + 1 for i in np.flatnonzero(np.diff(t) > LONG * dt)}
+        long = np.flatnonzero(np.diff(t) > LONG * dt)
+        bridged = (t[long + 1] - t[long] < BRIDGED * dt) & (np.abs(theta_m[long + 1] - theta_m[long]) < HARDLY)
+        cuts |= {int(i) + 1 for i in long[~bridged]}
     edges = [0, *sorted(c for c in cuts if 0 < c < t.size), t.size]
     return [(lo, hi) for lo, hi in itertools.pairwise(edges) if hi - lo > 50]
 

@@ -161,7 +161,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
-        for lo, hi in joined(t, dt, breaks, steady)
+        for lo, hi in joined(t, whole["theta_m"], dt, breaks, steady)
     ]
     if hz is not None and "t" not in has and run.procedure == "kinematic_error":
         made = [piece if piece is None else slowed(piece) for piece in made]

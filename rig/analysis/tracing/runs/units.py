@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.motion.angle import is_another_ratio
-from rig.analysis.motion.degrees import DEGREES, STEP, Turning
+from rig.analysis.motion.degrees import DEGREES, STEP, Turning, come_again_in_degrees
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.units import RPM
@@ -105,4 +105,12 @@ def _degrees(run: Recording) -> str | None:
         return None
     count = 2 * np.pi / run.counts_m if run.counts_m else 0.0
     turning = run.turning / RPM if "t" in run.has else None
-    return Turning(run.step_m, count, turning, run.speed_rpm, run.ratio).in_degrees
+    return Turning(run.step_m, count, turning, run.speed_rpm, run.ratio, _waves(run)).in_degrees
+
+
+def _waves(run: Recording) -> str | None:
+    """What the waves of both angles say, where no count is declared that would."""
+    if run.counts_m or "theta_l" not in run.has:
+        return None
+    theta_m, theta_l = (np.concatenate([getattr(p, name) for p in run.pieces]) for name in ("theta_m", "theta_l"))
+    return come_again_in_degrees(theta_m, theta_l, run.ratio)
