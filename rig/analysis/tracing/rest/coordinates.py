@@ -14,6 +14,7 @@ from rig.model.effect import Array
 BINS = 60  # of a turn: 6°, a few teeth
 LEVELS = 24  # of a range
 FINER = 4  # times as many: a tooth and a half; 2 % of a range
+WAYS = np.geomspace(0.3, 3000.0, 32)  # rad of the motor, a third more each
 PERIODS = 8  # of a campaign: more would tell single runs apart, and with them speed, load and direction
 
 
@@ -69,13 +70,18 @@ def _leaks(name: str) -> tuple[Callable[[Rest], Index], ...]:
 def _since_turned(r: Rest) -> Index:
     """Way since the motor last turned back, forth and back apart."""
     way = since_turned(r.at["motor_angle"], r.at["direction"], r.run)
-    return both(_levels(way), (r.at["direction"] + 1).astype(int))
+    return both(_ways(way), (r.at["direction"] + 1).astype(int))
 
 
 def _slid(r: Rest) -> Index:
     """Way since the motor last rested, forth and back apart."""
     way = slid(r.at["motor_angle"], r.at["time"], r.run)
-    return both(_levels(way), (r.at["direction"] + 1).astype(int))
+    return both(_ways(way), (r.at["direction"] + 1).astype(int))
+
+
+def _ways(way: Array) -> Index:
+    """Levels of a way [rad], by its logarithm: what wears off does so within some turns of thousands."""
+    return np.where(np.isfinite(way), np.digitize(np.abs(way), WAYS), -1)
 
 
 INDICES: Mapping[str, Callable[[Rest], Index]] = {

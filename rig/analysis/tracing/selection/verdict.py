@@ -54,7 +54,8 @@ def decide(asked: Asked) -> Conclusion:
 def _by_a_law(asked: Asked) -> Conclusion | None:
     """A law without a name is in the model, beside names or alone; None where there is none."""
     p, names, scores, plain = asked.p, asked.names, asked.scores, asked.plain
-    laws = [law for law in confounders_in(asked.s) if not asked.loud or law.effect.name in plain]
+    stands = not asked.loud or (not names and _done(asked) > MOSTLY)  # what it leaves is what it has wrong of its form
+    laws = [law for law in confounders_in(asked.s) if stands or law.effect.name in plain]
     if not laws:
         return None
     own = () if asked.loud else p.own.made.keys()
@@ -69,15 +70,20 @@ def _by_a_law(asked: Asked) -> Conclusion | None:
 def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
     """Names explain nearly all there was, and what is left beside them is little; None where they do not."""
     first, total = asked.worst
-    done = 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
     left = max((score.left for score in asked.scores), default=0.0)
-    mostly = done > MOSTLY and total < 2 * EXPLAINED and left < AMISS
+    mostly = _done(asked) > MOSTLY and total < 2 * EXPLAINED and left < AMISS
     all_plain = bool(asked.plain) and all(score.name in asked.plain for score in asked.scores)
     sure = asked.has_repeats or all_plain
     if asked.p.own.line is not None or not (asked.names and sure and mostly):
         return None
     conclusion = _settled(asked.p, asked.names, asked.found, first, total)
     return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
+
+
+def _done(asked: Asked) -> float:
+    """Share of the excess of the worst channel that is gone with the model."""
+    first, total = asked.worst
+    return 1 - max(0.0, total**2 - 1) / max(first**2 - 1, 1e-9)
 
 
 def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
