@@ -35,7 +35,7 @@ class ThermalFrictionDrift(Effect):
     glosses: ClassVar[Mapping[str, str]] = {
         "tau_cold": "τ_1, constant friction of the cold drive that warming takes away",
         "B_cold": "B_1, viscous friction of the cold drive that warming takes away",
-        "t_w": "time constant of the warm-up, or of the heat that leaks; the interval holds for both laws of an oil",
+        "t_w": "time constant of the warm-up, longer where an oil thins exponentially, or of the heat that leaks",
         "beta": "β, by how much a joule of frictional heat takes it away",
         "gone_in_10_min": "friction at 10 rad/s that the first ten minutes take away",
         "gone_with_1_kJ": "friction at 10 rad/s that the first kilojoule of frictional heat takes away",

@@ -15,6 +15,7 @@ from rig.analysis.tracing.rest.past import since_turned
 from rig.analysis.tracing.rest.shares import rising
 from rig.analysis.tracing.rest.sudden import turned_since
 from rig.analysis.tracing.rest.unknown import _of_the_output, homes
+from rig.analysis.tracing.rest.worn import worn_off
 from rig.model.memory import play
 
 DT = 1 / 125
@@ -154,6 +155,30 @@ def test_a_torque_of_the_motor_that_is_alike_both_ways_at_a_speed_is_what_one_wa
     assert said(at, at["direction"] * hump + noise, "M") == "speed"
     forth = {**at, "direction": np.ones(RUNS * ROWS)}
     assert said(forth, hump + noise, "M") == "speed"
+
+
+def test_a_drive_whose_gain_comes_and_goes_is_told_by_its_period() -> None:
+    """Within 23 s, as much of its torque as that is."""
+    rng = np.random.default_rng(8)
+    at = coordinates(rng)
+    at["time"] = at["time"] + 100.0 * np.repeat(np.arange(RUNS), ROWS)  # long enough for what is slow to be no trend
+    e = 30.0 * at["motor_torque"] * np.sin(2 * np.pi * at["time"] / 23.0) + rng.normal(0, 1, RUNS * ROWS)
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE, own_zeros=False), "M"))
+    assert found[0].coordinate == "time_periodic"
+    assert found[0].frequency_hz == pytest.approx(1 / 23.0, rel=0.01)
+
+
+def test_friction_that_wears_off_after_a_start_is_memory_though_runs_begin_at_one_angle() -> None:
+    """Within 12 rad; the angle of the output tells as much, with a number for every place of it."""
+    rng = np.random.default_rng(7)
+    at = coordinates(rng)
+    gone = np.concatenate([np.abs(x - x[0]) for x in np.split(at["motor_angle"], RUNS)])
+    e = 12.0 * at["direction"] * np.exp(-gone / 12.0) + rng.normal(0, 1, RUNS * ROWS)
+    found = plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE, own_zeros=False), "M"))
+    assert (found[0].coordinate, found[0].first) == ("memory", True)
+    unread = at | {"motor_angle": np.full(RUNS * ROWS, np.nan)}
+    blind = Rest(e, np.repeat(np.arange(RUNS), ROWS), unread, DT, *NO_BASELINE, own_zeros=False)
+    assert not worn_off(Halves(blind, folds(blind)), "M")
 
 
 @pytest.mark.slow

@@ -114,9 +114,15 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     """`seen`: a line in runs of differing speed."""
     if not h.rest.timed:
         return []
-    slow = [by_the_day(h, channel, sense) for sense in SENSES]
+    senses = (*SENSES, _drive) if channel == "M" else SENSES
+    slow = [by_the_day(h, channel, sense) for sense in senses]
     beating = [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
     return [home for home in (seen, *slow, *beating) if home is not None]
+
+
+def _drive(r: Rest) -> Array:
+    """What a drive makes too much of as its gain comes and goes is a part of its torque."""
+    return np.nan_to_num(r.at["motor_torque"])
 
 
 def _of_the_output(found: Home, r: Rest) -> Home:

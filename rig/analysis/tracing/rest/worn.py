@@ -24,9 +24,10 @@ def worn_off(h: Halves, channel: str) -> list[Home]:
     """Friction more by one number at first, which is gone exponentially on the way since the motor rested, and since it
     last turned back: the reach that foretells most. Where runs begin at one angle that angle tells it as well, with a
     number for every place: the one that does nearly as well with one number is said first."""
-    if channel != "M":
+    if channel != "M" or not np.isfinite(h.rest.at["motor_angle"]).all():
         return []
-    ways = [lambda r, lead=lead: _since_rest(r, lead) for lead in LEADS]
+    leads = LEADS if h.rest.timed else LEADS[:1]
+    ways = [lambda r, lead=lead: _since_rest(r, lead) for lead in leads]
     homes = [_within(h, way, reach) for way in (*ways, _since_turned) for reach in REACHES]
     return [max(homes, key=lambda home: home.share)]
 
@@ -40,6 +41,8 @@ def _within(h: Halves, way: Callable[[Rest], Array], reach: float) -> Home:
 def _since_rest(r: Rest, lead: float) -> Array:
     """With what the motor went in `lead` s before the first row, at the speed it had there."""
     gone = slid(r.at["motor_angle"], r.at["time"], r.run)
+    if not lead:
+        return gone
     speeds = np.abs(r.at["speed"])
     for run in np.unique(r.run):
         mine = np.flatnonzero(r.run == run)
