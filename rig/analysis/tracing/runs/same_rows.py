@@ -1,7 +1,7 @@
 """A run that lies in a campaign twice under two names, as a copied folder does, is no repeat of itself.
 
-Manifests of other loggers give no uid; rows that are the same to the last bit, begun at the same time or none knows
-when, do as well. As a repeat it would make a floor of nothing, and a held-out run that was fitted.
+Manifests of other loggers give no uid; rows that are the same to the last bit, begun at the same time, do as well. As a
+repeat it would make a floor of nothing, and a held-out run that was fitted.
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ from rig.analysis.tracing.runs.recording import Recording
 
 
 def same_rows(runs: Sequence[Recording]) -> dict[str, str]:
-    """Why a run is left out, by its name: the first of those with the same rows stays."""
+    """Why a run is left out, by its name: the first of those with the same rows stays. None where nobody says when any
+    run began: what a plant without noise does twice has the same rows."""
     first: dict[bytes, str] = {}
     out: dict[str, str] = {}
+    if not any(run.start for run in runs):
+        return out
     for run in runs:
         seen = first.setdefault(_rows(run), run.name)
         if seen != run.name:
-            out[run.name] = f"it holds the same rows as {seen}" + (", begun at the same time" if run.start else "")
+            out[run.name] = f"it holds the same rows as {seen}, begun at the same time"
     return out
 
 

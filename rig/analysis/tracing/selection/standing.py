@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import Final
 
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import MISSING
 from rig.model.effects import LIBRARY
-
-AT_THE_START: Final = frozenset({"stribeck_friction"})
-"""What is more where a motor is slow: so is what wears off after a start, which is a slow one."""
 
 
 def standing(
@@ -19,7 +15,6 @@ def standing(
     """Names that stand beside a rest: those `plain` to see; and where it can be `told` what much is, those beside which
     nothing is left in any channel they act in, nor in the runs they act in most; else those that stand whatever the
     floor is."""
-    names = [name for name in names if not (coordinate == "memory" and name in AT_THE_START)]
     amiss = {score.name for score in scores if max(score.anywhere, score.left) > MISSING}
     sure = {score.name for score in scores if score.whatever_the_floor}
     clean = _beside(coordinate, [name for name in names if (name not in amiss if told else name in sure)])

@@ -35,6 +35,7 @@ from rig.model.effect import Array
 DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
 SAME_ORDER: Final = 0.05  # of a turn
 HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
+AT_THE_START: Final = {"stribeck_friction"}  # more where a motor is slow, and so is what wears off after a start
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
@@ -92,7 +93,8 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     line, best, (_, total) = p.own.line, where[0], asked.worst
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
-    shared = [name for name in asked.sized if name not in p.own.made and name not in _of_the_same_order(asked.s, best)]
+    other = _of_the_same_order(asked.s, best) | (AT_THE_START if best.coordinate == "memory" and best.first else set())
+    shared = [name for name in asked.sized if name not in p.own.made and name not in other]
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
     stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()
