@@ -190,8 +190,6 @@ def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Re
         elif motion is not None:
             rows = f"{motion.theta_m.size} usable row{'s' * (motion.theta_m.size != 1)}"
             why = f"The run has {rows}: nothing can be said about the gear."
-        elif (column := run.column("theta_m")) is not None and column.size == 0:
-            why = "The run has no rows: nothing can be said about the gear."
         return _nothing(run, why)
     turns = float(np.ptp(motion.theta_m)) / TURN
     if turns > motion.theta_m.size:

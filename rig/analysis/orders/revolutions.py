@@ -62,8 +62,9 @@ def _of_one(one: tuple[Array, Array, Array], beyond: Sequence[tuple[float, float
     `beyond` them (place in turns of this one, below 0 or above 1; value) it is a straight line."""
     total, position, rows = one
     here = rows > 0
-    points = [*zip(position[here] / rows[here], total[here] / rows[here], strict=True), *beyond]
-    place, value = np.array(sorted(points)).T
+    before, after = ([end for end in beyond if (end[0] < 0.0) is is_before] for is_before in (True, False))
+    inner = np.stack([position[here] / rows[here], total[here] / rows[here]], 1)
+    place, value = np.concatenate([np.array(before).reshape(-1, 2), inner, np.array(after).reshape(-1, 2)]).T
     return np.asarray(np.interp(_middles(rows.size), place, value))
 
 

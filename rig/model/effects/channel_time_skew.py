@@ -43,7 +43,7 @@ class ChannelTimeSkew(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("side", "about", "drifts")  # about: s, the skew the expansion is made at
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     LONG: Final = 1e3  # s, after which δ' is told
-    LARGEST: Final = 30e-3  # s
+    LARGEST: Final = 30e-3  # s; a sensor that is polled over a serial line is some ten milliseconds late
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
