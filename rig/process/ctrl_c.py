@@ -40,6 +40,7 @@ class Ears:
         self._act = getattr(act, "__code__", None)
         self._came: list[int] = []
         self._raised = False
+        self._over = False
         self._told: Callable[[sys.UnraisableHookArgs], Any] = sys.unraisablehook
 
     def hear(self, signum: int, frame: FrameType | None) -> None:
@@ -51,8 +52,14 @@ class Ears:
         raise KeyboardInterrupt
 
     def again(self, signum: int, frame: FrameType | None) -> None:
-        """What SIGALRM calls: to whoever handles it by now, for a session counts it."""
-        signal.raise_signal(self._came.pop())
+        """What SIGALRM calls: to whoever handles it by now, for a session counts it. Once `act` is over to nobody."""
+        came = self._came.pop()
+        if not self._over:
+            signal.raise_signal(came)
+
+    def let_go(self) -> None:
+        """Nothing that waits is raised from here on: it came before the handlers change, and is not for the next one."""
+        self._over = True
 
     def let_out(self, lost: sys.UnraisableHookArgs) -> None:
         """What Python calls with an error that it lets nowhere."""
@@ -101,6 +108,7 @@ def after_imports(
         with ears.kept():
             yield ears
     finally:
+        ears.let_go()
         for number in mine:
             signal.signal(number, then if number is signal.SIGINT else USUAL[number])
         signal.setitimer(signal.ITIMER_REAL, 0.0)  # from here nobody sets it: the alarm may be given back
