@@ -10,6 +10,7 @@ from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
+from rig.analysis.tracing.floor.once_under_load import OnceUnderLoad, once_under_load
 from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
@@ -24,17 +25,19 @@ from rig.model.effect import Array, Parameter
 @dataclass(frozen=True)
 class Own:
     """Columns (n, q) by effect and block, the effects' parameters, a line beside the motion that is no effect of the
-    library, notes on effects in a sentence each, and columns of what is no effect but how a run began."""
+    library, notes on effects in a sentence each, columns of what is no effect but how a run began or that it jumped
+    under load, and that jump."""
 
     made: dict[str, dict[Key, Array]]
     parameters: dict[str, tuple[Parameter, ...]]
     line: Interference | None
     notes: Mapping[str, str] = field(default_factory=dict)
-    began: Mapping[Key, Array] = field(default_factory=dict)
+    nameless: Mapping[Key, Array] = field(default_factory=dict)
+    jumped: OnceUnderLoad | None = None
 
     def columns(self) -> dict[Key, Array]:
-        """Of all effects together, of the line and of how runs began."""
-        return joined([*self.made.values(), *([self.line.columns] if self.line else []), self.began])
+        """Of all effects together, of the line and of what has no name."""
+        return joined([*self.made.values(), *([self.line.columns] if self.line else []), self.nameless])
 
     def without(self, names: Sequence[str]) -> Own:
         """The others."""
@@ -72,6 +75,8 @@ def find(s: Solution, parts: Split) -> Own:
     if lost_counts(eq, steps, repeats(eq.runs, whole)):
         columns = step_columns(eq, steps)
         if explained(eq, everywhere, columns) > OWN:
+            if jumped := once_under_load(eq, steps):
+                return Own(made, words, line, notes, joined([began, columns]), jumped)
             made[LOST.name] = columns
             words[LOST.name] = steps.parameters()
     elif not steps.rows and (between := find_between(s, whole)):

@@ -46,8 +46,8 @@ def decide(asked: Asked) -> Conclusion:
         return said
     if not asked.loud:
         inside = None if names else hidden(p, s, asked.after, asked.floors)
-        in_the_zeros = inside or _drifting(p, s, names, asked.floors) or _uneven(p, names, asked.floors)
-        return in_the_zeros or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+        elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, names, asked.floors)
+        return elsewhere or _jumped(p, names) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     where = _where(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
 
@@ -155,6 +155,14 @@ def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[
     return Conclusion(
         Verdict(Status.UNKNOWN, names, (), "time", None, None, drift.sentence()), None, ("time",), along("time")
     )
+
+
+def _jumped(p: Prepared, names: tuple[str, ...]) -> Conclusion | None:
+    """Nothing is above the floor beside a jump under load that may be of three kinds; None where there is none."""
+    if p.own.jumped is None:
+        return None
+    verdict = Verdict(Status.UNKNOWN, names, (), "time", None, None, p.own.jumped.sentence())
+    return Conclusion(verdict, None, ("time",), along("time"))
 
 
 def _uneven(p: Prepared, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:

@@ -1,0 +1,50 @@
+"""The only jump of a campaign has a name only where nothing could have given way there."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.floor import once_under_load as asked
+from rig.analysis.tracing.floor.once_under_load import once_under_load
+from rig.analysis.tracing.floor.steps import Steps
+from rig.model.effects.missed_counts import LOAD
+
+JUMP = 1.3e-4  # rad
+
+
+@pytest.fixture
+def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A run without a weight, one that drives 40 N·m, and one whose torque nobody measured; 10 ms between rows."""
+    monkeypatch.setattr(asked, "clock", lambda eq, key: 900.0 + 0.01 * np.arange(1000))
+    torques = {"slow_ke_1": 0.4, "load_40nm_1": 40.0, "unread": 0.0}
+    return SimpleNamespace(runs=[SimpleNamespace(name=name, mean_torque=torque) for name, torque in torques.items()])
+
+
+def jumps(*found: tuple[int, float]) -> Steps:
+    """One in each of these runs, at row 500, by so much."""
+    rows = {run: (500,) for run, _ in found}
+    sizes = {run: (size,) for run, size in found}
+    return Steps(rows, sizes, dict.fromkeys(rows, (LOAD,)), dict.fromkeys(rows, (1e-7,)))
+
+
+def test_under_load_and_the_way_it_pulls_it_may_be_the_gear(eq: Any) -> None:
+    found = once_under_load(eq, jumps((1, JUMP)))
+    assert found is not None
+    assert (found.run, found.at, found.size, found.torque) == ("load_40nm_1", 905.0, JUMP, 40.0)
+    assert "26.8 arcsec at 905 s in load_40nm_1, under 40 N·m" in found.sentence()
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        jumps((1, -JUMP)),  # nothing gives way against the torque
+        jumps((0, JUMP)),  # nor without one
+        jumps((2, JUMP)),  # of what nobody measured nothing is said
+        jumps((0, -JUMP), (1, JUMP)),  # and counts are lost again, elsewhere
+        jumps(),
+    ],
+)
+def test_else_it_is_lost_counts(eq: Any, steps: Steps) -> None:
+    assert once_under_load(eq, steps) is None
