@@ -58,7 +58,7 @@ class Ears:
             signal.raise_signal(came)
 
     def let_go(self) -> None:
-        """Nothing that waits is raised from here on: it came before the handlers change, and is not for the next one."""
+        """Nothing that waits is raised from here on: it came before handlers change, and is not for the next ones."""
         self._over = True
 
     def let_out(self, lost: sys.UnraisableHookArgs) -> None:

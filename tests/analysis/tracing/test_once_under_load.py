@@ -24,8 +24,8 @@ def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 def jumps(*found: tuple[int, float]) -> Steps:
     """One in each of these runs, at row 500, by so much."""
-    rows = {run: (500,) for run, _ in found}
-    sizes = {run: (size,) for run, size in found}
+    rows: dict[int, tuple[int, ...]] = {run: (500,) for run, _ in found}
+    sizes: dict[int, tuple[float, ...]] = {run: (size,) for run, size in found}
     return Steps(rows, sizes, dict.fromkeys(rows, (LOAD,)), dict.fromkeys(rows, (1e-7,)))
 
 
