@@ -22,11 +22,11 @@ pytest: .venv/ready-dev
 inner: .venv/ready-dev  ## the fast part of the tests: a minute on an idle machine
 	$(BIN)/python -m pytest -n 2 -m "not slow and not long"
 
-blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to tests/blind/TABLE.md
+blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plant; the table goes to build/blind/TABLE.md
 	rm -rf build/blind
 	$(BIN)/python -m tests.blind.generate --suite 30 --seed $(or $(SEED),1) --jobs 2 --out build/blind
-	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table tests/blind/TABLE.md
-	$(BIN)/python -m tests.blind.peers.compare build/blind --table tests/blind/TABLE.md
+	$(BIN)/python -m tests.blind.score build/blind --jobs 2 --table build/blind/TABLE.md
+	$(BIN)/python -m tests.blind.peers.compare build/blind --table build/blind/TABLE.md
 
 bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built and installed in build/bench): twenty minutes
 	$(BIN)/python -m tests.bench --table tests/bench/TABLE.md

@@ -25,6 +25,7 @@ EPILOG = (
     "5 tripped, 6 incomplete or damaged samples, inconclusive, ambiguous, unknown, or a parameter left open,\n"
     "70 internal error, 130 halted"
 )
+MEANT = 0.75  # of the letters of an option, in their order: with less, --format was taken for --sort
 
 
 class Parser(argparse.ArgumentParser):
@@ -56,7 +57,7 @@ class Parser(argparse.ArgumentParser):
             return ""
         import difflib
 
-        close = difflib.get_close_matches(unknown, list(self._option_string_actions), n=1)
+        close = difflib.get_close_matches(unknown, list(self._option_string_actions), n=1, cutoff=MEANT)
         return f"; did you mean {close[0]}?" if close else ""
 
 

@@ -117,6 +117,11 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
         (["run", "jog", "--dryrun"], ["arguments: --dryrun; did you mean --dry-run? See hdrig run --help"]),
         (["run", "jog", "--dryrun=1"], ["did you mean --dry-run? See"]),
         (["run", "jog", "--qqqqq"], ["unrecognized arguments: --qqqqq; see hdrig run --help"]),
+        (["list", "--format", "json"], ["unrecognized arguments: --format", "; see hdrig list --help"]),
+        (
+            ["run", "stiffness-lock", "--with", "cycles=1,hold=2"],
+            ["cycles = 1,hold=2: expected one parameter at a time, cycles=1 and then hold=2 by itself"],
+        ),
         (["tune", "--write", "nowhere/x.toml"], ["nowhere is no folder"]),
         (["analyse", "nowhere"], ["nowhere", "does not exist"]),
         (["recover", "nowhere"], ["nowhere", "does not exist"]),

@@ -24,6 +24,7 @@ WORDS = {
 
 
 DECIMAL_COMMA: Final = re.compile(r"[-+]?\d+,\d+")
+ANOTHER: Final = re.compile(r",\s*(\w+)\s*=")
 WITH_MORE: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
 
@@ -38,6 +39,7 @@ def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
         if name not in known:
             raise UsageError(f"{title} has no parameter '{name}'; {nearest(name, known)}")
     for name, raw in given.items():
+        _refuse_several(name, raw, known)
         _refuse_unit(kind, known[name], raw)
     values = {name: _value(known[name], raw) for name, raw in given.items()}
     try:
@@ -45,6 +47,15 @@ def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
     except (OverflowError, ZeroDivisionError):
         shown = ", ".join(f"{name} = {raw}" for name, raw in given.items())
         raise UsageError(f"{title}: the parameters {shown} cannot be meant") from None
+
+
+def _refuse_several(name: str, raw: Any, known: Mapping[str, Any]) -> None:
+    """Raises UsageError where another parameter stands behind a comma: a list has no names in it."""
+    if isinstance(raw, str) and (found := ANOTHER.search(raw)) and found[1] in known:
+        first, more = raw[: found.start()].strip(), raw[found.start() + 1 :].strip()
+        raise UsageError(
+            f"{name} = {raw[:60]}: expected one parameter at a time, {name}={first[:30]} and then {more[:30]} by itself"
+        )
 
 
 def _refuse_unit(kind: type[Any], field: Field[Any], raw: Any) -> None:
