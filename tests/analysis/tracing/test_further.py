@@ -188,3 +188,23 @@ def test_what_is_found_without_one_of_several_names_counts_where_it_is_better(
     nothing: Any = None
     kept = further.try_without_each(standing({"lines", "mode"}, 3.9, True), found, nothing, (), nothing)
     assert kept.names == expected
+
+
+@pytest.mark.parametrize(
+    ("then", "left", "plain", "known", "counts"),
+    [
+        (2.13, 0.98, True, True, True),
+        (2.13, 1.35, True, True, False),  # a fifth of the excess is left
+        (1.2, 0.98, True, True, False),  # there was little to take
+        (2.13, 0.98, False, True, False),  # a size of its own in each run
+        (2.13, 0.98, True, False, False),  # a scale that may be any
+    ],
+)
+def test_a_second_choice_that_takes_most_plainly_counts_though_something_is_asked_for_it(
+    monkeypatch: pytest.MonkeyPatch, then: float, left: float, plain: bool, known: bool, counts: bool
+) -> None:
+    """Cogging stands; a drag of exponent 1.7 beside it, fitted as of 2, leaves a mean at each speed."""
+    monkeypatch.setattr(further, "confounders_in", lambda solution: ())
+    monkeypatch.setattr(further, "_known", lambda other, stay: known)
+    stands, drag = selected("cogging_torque", 0.1, then), selected("quadratic_drag", 0.1 if plain else 0.9, left)
+    assert further._takes_most(drag, stands) is counts

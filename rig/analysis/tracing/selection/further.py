@@ -22,7 +22,7 @@ from rig.analysis.tracing.selection.candidates import tried
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.selected import Selected, select
-from rig.analysis.tracing.thresholds import ALIKE, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
+from rig.analysis.tracing.thresholds import ALIKE, EXPLAINED, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach
 
 
@@ -127,7 +127,7 @@ def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[
         s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
-        if more and (_settles(other, stay) or _stands_alone(other, stay)):
+        if more and (_settles(other, stay) or _stands_alone(other, stay) or _takes_most(other, selected)):
             return other
     return selected
 
@@ -198,6 +198,17 @@ def _stands_alone(other: Selected, stay: Collection[str]) -> bool:
     apart = all(c not in theirs for score in new for _, c in score.ground)
     plain = all(score.share > MOSTLY and score.fairly and score.left < MISSING for score in new)
     return apart and bool(new) and plain and not confounders_in(other.solution) and _known(other, stay)
+
+
+def _takes_most(other: Selected, selected: Selected) -> bool:
+    """Whether a second choice takes nearly all of what is left plainly, by names that are plain themselves: a law of a
+    speed whose exponent is a little off leaves a mean at each speed, as loud to who asks for it as little beside it."""
+    stay = {term.name for term in selected.solution.design.terms}
+    new = [score for score in other.scores if score.name not in stay]
+    over, then = other.left**2 - 1, selected.left**2 - 1
+    most = selected.left > MISSING and other.left < EXPLAINED and over < (1 - MOSTLY) * then
+    plain = bool(new) and all(score.named and score.plain for score in new)
+    return most and plain and not confounders_in(other.solution) and _known(other, stay)
 
 
 def _steadier(one: Selected, other: Selected) -> bool:
