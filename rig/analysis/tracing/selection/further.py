@@ -21,6 +21,7 @@ from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.selection.candidates import tried
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.elimination import scales
+from rig.analysis.tracing.selection.instead_of import FRICTIONS, below_zero
 from rig.analysis.tracing.selection.selected import Selected, select
 from rig.analysis.tracing.thresholds import ALIKE, EXPLAINED, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach
@@ -92,9 +93,16 @@ def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequenc
         other = select(selected.p, others, runs, covered)
         same = replace(other, p=selected.p)  # by the same floors: without repeats they are measured beside the effects
         fewer = other.names <= names - without and same.left < selected.left
-        if fewer or (names - without <= other.names and _settles(same, names)):
+        settles = names - without <= other.names and _settles(same, names) and _is_of_a_gear(other, selected)
+        if fewer or settles:
             return other
     return selected
+
+
+def _is_of_a_gear(other: Selected, selected: Selected) -> bool:
+    """Whether no friction of the motor is below zero that was above: a drag that takes its place may take any other
+    effect's as well."""
+    return below_zero(other.solution, FRICTIONS) <= below_zero(selected.solution, FRICTIONS)
 
 
 def _stands_in(

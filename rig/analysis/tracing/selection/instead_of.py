@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from rig.analysis.tracing.fit.search import reduced
 from rig.analysis.tracing.thresholds import KNOWN
 from rig.core.quantiles import Z95
 from rig.model.effect import Port
+
+INERTIAS: Final = ("J_m", "J_l")
+FRICTIONS: Final = ("tau_c", "B_m")
 
 
 def instead_of_the_gear(s: Solution) -> list[str]:
@@ -44,17 +48,16 @@ def instead_of_an_inertia(s: Solution) -> list[str]:
     """Effects beside which an inertia is surely below zero, as in no gear, and without them is not: what the inertia
     was is in them. Where neither the load's angle nor its torque was read an inertia shows little, and a lever that
     goes with the load may be it."""
-    if not s.design.terms or not (below := _below_zero(s)):
+    if not s.design.terms or not (below := below_zero(s)):
         return []
-    return [name for name, mine in _by_name(s).items() if not below <= _below_zero(_without(s, mine))]
+    return [name for name, mine in _by_name(s).items() if not below <= below_zero(_without(s, mine))]
 
 
-def _below_zero(s: Solution) -> frozenset[str]:
+def below_zero(s: Solution, of: Sequence[str] = INERTIAS) -> frozenset[str]:
+    """Those of the gear's numbers that are surely below zero."""
     known = covariance(s)
     return frozenset(
-        name
-        for name in ("J_m", "J_l")
-        if s.value(name) < -Z95 * float(np.sqrt(max(0.0, known[INDEX[name], INDEX[name]])))
+        name for name in of if s.value(name) < -Z95 * float(np.sqrt(max(0.0, known[INDEX[name], INDEX[name]])))
     )
 
 
