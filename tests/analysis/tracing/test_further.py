@@ -151,15 +151,16 @@ def test_an_effect_is_asked_in_all_its_laws_before_the_next_one_is() -> None:
     assert further._in_all_laws(terms, ranking) == [mode, driven, support]
 
 
-@pytest.mark.parametrize(("found_without", "left", "loud", "expected"), [
-    ({"lines"}, 1.0, True, {"lines"}),  # fewer names leave less
-    ({"lines"}, 4.5, True, {"lines", "mode"}),  # fewer names leave more
-    ({"lines", "play"}, 1.0, False, {"lines", "play"}),  # the others stand, and with a new one explain everything
-    ({"lines", "play"}, 1.0, True, {"lines", "mode"}),
-    ({"play"}, 1.0, False, {"lines", "mode"}),  # of the others one is lost
+@pytest.mark.parametrize(("found_without", "left", "loud", "below", "expected"), [
+    ({"lines"}, 1.0, True, "", {"lines"}),  # fewer names leave less
+    ({"lines"}, 4.5, True, "", {"lines", "mode"}),  # fewer names leave more
+    ({"lines", "play"}, 1.0, False, "", {"lines", "play"}),  # the others stand, and with a new one explain everything
+    ({"lines", "play"}, 1.0, False, "tau_c", {"lines", "mode"}),  # of a motor that no gear has
+    ({"lines", "play"}, 1.0, True, "", {"lines", "mode"}),
+    ({"play"}, 1.0, False, "", {"lines", "mode"}),  # of the others one is lost
 ])  # fmt: skip
 def test_what_is_found_without_one_of_several_names_counts_where_it_is_better(
-    monkeypatch: pytest.MonkeyPatch, found_without: set[str], left: float, loud: bool, expected: set[str]
+    monkeypatch: pytest.MonkeyPatch, found_without: set[str], left: float, loud: bool, below: str, expected: set[str]
 ) -> None:
     """A mode in the place of an encoder's lines made another motor of this one. Without the lines nothing is found."""
 
@@ -184,6 +185,11 @@ def test_what_is_found_without_one_of_several_names_counts_where_it_is_better(
     )
     monkeypatch.setattr(further, "replace", lambda other, p: other)
     monkeypatch.setattr(further, "_known", lambda other, stay: True)
+
+    def below_zero(s: Any, of: object) -> set[str]:
+        return {below} if below and {term.name for term in s.design.terms} != {"lines", "mode"} else set()
+
+    monkeypatch.setattr(further, "below_zero", below_zero)
     found: Any = SimpleNamespace(ranking=())
     nothing: Any = None
     kept = further.try_without_each(standing({"lines", "mode"}, 3.9, True), found, nothing, (), nothing)
