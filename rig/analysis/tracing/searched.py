@@ -85,8 +85,13 @@ def _selected(
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
         other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
-        return (selected, found, covered) if other[0].loud else other
+        return other if _is_better(other[0], selected) else (selected, found, covered)
     return selected, found, covered
+
+
+def _is_better(other: Selected, selected: Selected) -> bool:
+    """Whether another selection leaves nothing loud, or less, with all the names of this one and more."""
+    return not other.loud or (selected.names < other.names and other.left < selected.left)
 
 
 def _at_the_floor_alone(
