@@ -10,8 +10,14 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.selection import instead_of as module
-from rig.analysis.tracing.selection.instead_of import instead_of_an_inertia, of_a_spring_unseen
-from rig.model.effect import Port
+from rig.analysis.tracing.selection.instead_of import (
+    FRICTIONS,
+    at_a_vibration,
+    below_zero,
+    instead_of_an_inertia,
+    of_a_spring_unseen,
+)
+from rig.model.effect import Port, parameter
 
 
 def solution(*names: str, J_m: float = 1e-3, has: frozenset[str] = frozenset({"theta_l", "tau_m"})) -> Any:
@@ -47,3 +53,26 @@ def test_a_law_of_the_spring_does_not_stand_where_neither_wind_up_nor_spring_was
     monkeypatch.setattr(module, "acting", lambda run, term: [{ports[term.name]: None}])
     assert of_a_spring_unseen(solution(*ports)) == ["nonlinear_stiffness"]
     assert of_a_spring_unseen(solution(*ports, has=frozenset({"theta_m", "theta_l"}))) == []
+
+
+def test_a_resonance_where_the_rig_is_shaken_is_the_vibration() -> None:
+    """Two lines at 18 and 36 Hz; a mode at 35.98 Hz, a support at 25."""
+    shaken = (parameter("frequency", 18.1, 1e-3, "Hz"), parameter("frequency_2", 36.2, 1e-3, "Hz"))
+    words = {
+        "torsional_mode": (parameter("J_2", 2e-5, 1e-6, "kg·m²"), parameter("frequency", 35.98, 0.03, "Hz")),
+        "support_compliance": (parameter("frequency", 25.0, 0.1, "Hz"),),
+        "cogging_torque": (parameter("order_18_amplitude", 18.1, 0.1, "N·m"),),
+    }
+    own: Any = SimpleNamespace(parameters={"external_vibration": shaken})
+    assert at_a_vibration(own, words) == ["torsional_mode"]
+    assert at_a_vibration(SimpleNamespace(parameters={}), words) == []  # type: ignore[arg-type]
+
+
+def test_a_friction_below_zero_is_told_only_where_it_is_surely_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = np.zeros((len(BASELINE), len(BASELINE)))
+    for name in FRICTIONS:
+        known[INDEX[name], INDEX[name]] = 1e-3**2
+    monkeypatch.setattr(module, "covariance", lambda s: known)
+    values = dict.fromkeys(BASELINE, 1e-6) | {"tau_c": -0.35, "B_m": -1e-3}
+    s: Any = SimpleNamespace(value=values.__getitem__)
+    assert below_zero(s, FRICTIONS) == {"tau_c"}

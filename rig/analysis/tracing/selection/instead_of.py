@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -12,12 +12,16 @@ from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.equations import acting
 from rig.analysis.tracing.fit.model import Design, Solution, fit
 from rig.analysis.tracing.fit.search import reduced
+from rig.analysis.tracing.floor.own import Own
+from rig.analysis.tracing.floor.vibration import VIBRATION
 from rig.analysis.tracing.thresholds import KNOWN
 from rig.core.quantiles import Z95
-from rig.model.effect import Port
+from rig.model.effect import Parameter, Port
 
 INERTIAS: Final = ("J_m", "J_l")
 FRICTIONS: Final = ("tau_c", "B_m")
+FREQUENCY: Final = "frequency"
+SAME: Final = 0.02  # relative, of two frequencies: a resonance damped by a tenth is known to less than that
 
 
 def instead_of_the_gear(s: Solution) -> list[str]:
@@ -51,6 +55,14 @@ def instead_of_an_inertia(s: Solution) -> list[str]:
     if not s.design.terms or not (below := below_zero(s)):
         return []
     return [name for name, mine in _by_name(s).items() if not below <= below_zero(_without(s, mine))]
+
+
+def at_a_vibration(own: Own, words: Mapping[str, Sequence[Parameter]]) -> list[str]:
+    """Effects that resonate where the rig is shaken, so that a vibration that is not quite the one of the model, in
+    its phase or with its speed, is a resonance to them."""
+    lines = [p.value for p in own.parameters.get(VIBRATION.name, ()) if p.name.startswith(FREQUENCY)]
+    tones = {name: [p.value for p in found if p.name.startswith(FREQUENCY)] for name, found in words.items()}
+    return [name for name, found in tones.items() if any(abs(f / line - 1) < SAME for f in found for line in lines)]
 
 
 def below_zero(s: Solution, of: Sequence[str] = INERTIAS) -> frozenset[str]:

@@ -29,7 +29,7 @@ from rig.analysis.tracing.selection.elimination import (
     unresolved,
     unscaled,
 )
-from rig.analysis.tracing.selection.instead_of import instead_of_the_gear
+from rig.analysis.tracing.selection.instead_of import at_a_vibration, instead_of_the_gear
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.sizes import may_be_nothing
@@ -127,7 +127,8 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
 def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
     """Effects of whose law, or of which beside the spring, the data say nothing; beside an unknown rest those too that
     a law at the end of its range was needed for."""
-    vague = unresolved(s, _in_words(s, runs, scatter), covered) or instead_of_the_gear(s)
+    words = _in_words(s, runs, scatter)
+    vague = unresolved(s, words, covered) or instead_of_the_gear(s) or at_a_vibration(p.own, words)
     ended = run_to_the_end(s, covered)
     return vague or (ended if ended and is_loud(p.held_out, s, held) else [])
 

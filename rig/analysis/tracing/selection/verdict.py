@@ -59,7 +59,7 @@ def _by_a_law(asked: Asked) -> Conclusion | None:
     laws = [law for law in confounders_in(asked.s) if stands or law.effect.name in plain]
     if not laws:
         return None
-    own = () if asked.loud else p.own.made.keys()
+    own = p.own.made.keys() if not asked.loud or _done(asked) > MOSTLY else ()
     stand = beside_a_law(laws[0].coordinate, asked.sized, scores, plain, own)
     larger = () if asked.loud else larger_than(laws, names, scores, plain)
     if not larger:
