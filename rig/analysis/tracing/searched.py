@@ -90,8 +90,10 @@ def _selected(
 
 
 def _is_better(other: Selected, selected: Selected) -> bool:
-    """Whether another selection leaves nothing loud, or less, with all the names of this one and more."""
-    return not other.loud or (selected.names < other.names and other.left < selected.left)
+    """Whether another selection leaves nothing loud where this one does; of two alike, less, or has all its names."""
+    if other.loud:
+        return selected.loud and selected.names < other.names and other.left < selected.left
+    return selected.loud or selected.names <= other.names or other.left < selected.left
 
 
 def _at_the_floor_alone(

@@ -83,8 +83,8 @@ class Effect(ABC):
         """Whether a term of that shape leaves nothing to a second one of the effect but what its law has wrong."""
         return False
 
-    def moved_by_noise(self) -> bool:
-        """True when noise of a reading moves a state of its own, and does not add to its columns."""
+    def moved_by_noise(self, shape: Shape) -> bool:
+        """True when in this shape noise of a reading moves a state of its own, and does not add to its columns."""
         return False
 
     def sizes(self, parameters: Sequence[Parameter]) -> Sequence[Parameter]:

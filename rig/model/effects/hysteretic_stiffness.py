@@ -60,6 +60,10 @@ class HystereticStiffness(Effect):
         """A loop."""
         return True
 
+    def moved_by_noise(self, shape: Shape) -> bool:
+        """Friction is led by the wind-up of the encoders, and a count of theirs may be half of its reach."""
+        return shape[1] in (self.FRICTION, self.WEDGE)
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """What one operator a half width stays behind by, each once more by the load where it swells; or the friction's
         state. With the operators themselves, 1/K would be what is left of the wind-up once the narrowest has gone."""

@@ -52,7 +52,7 @@ class PreslidingFriction(Effect):
         several = tuple((MOTOR, x, BRISTLES) for x in ways[1::2])
         return (*bristles, *((MOTOR, x, ELEMENTS) for x in ways[::2]), *several)
 
-    def moved_by_noise(self) -> bool:
+    def moved_by_noise(self, shape: Shape) -> bool:
         """The friction of a motor that rests builds up with the way its encoder seems to go."""
         return True
 

@@ -155,7 +155,7 @@ def _filled(eq: Equations, run: int, terms: Sequence[Term]) -> tuple[Blocks, Blo
             sheet.add(made.get(c))
         if run not in eq.noisy:
             continue
-        if term.effect.moved_by_noise():  # see `Equations.spoilt_term`
+        if term.effect.moved_by_noise(term.shape):  # see `Equations.spoilt_term`
             for c, sheet in noise.items():
                 sheet.add_zeros(clean[c].widths[-1])
             continue

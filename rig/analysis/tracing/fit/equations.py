@@ -181,7 +181,7 @@ class Equations:
         Nothing where it moves a state: taken off as if it added to them, it would outweigh the columns of a motor that
         hardly moves.
         """
-        if term.effect.moved_by_noise():
+        if term.effect.moved_by_noise(term.shape):
             return {c: np.zeros_like(z) for c, z in clean.items()}
         noisy = columns(self.noisy[run], term, self.kept(run))
         return {c: self.bare((run, c), noisy[c] - clean[c]) for c in clean}

@@ -29,9 +29,9 @@ class Slope(Effect):
         """None of its own."""
         return ()
 
-    def moved_by_noise(self) -> bool:
+    def moved_by_noise(self, shape: Shape) -> bool:
         """As the effect, or no noise of it is to be taken off."""
-        return self.noise_kept or self.of.moved_by_noise()
+        return self.noise_kept or self.of.moved_by_noise(shape)
 
     def has_state(self) -> bool:
         """As the effect."""
