@@ -91,3 +91,11 @@ def test_repeats_on_either_side_of_a_step_do_not_tell_how_zeros_wander() -> None
     assert own_angle(s, pairs, 1e-9) == pytest.approx(1e-6 / np.sqrt(2))
     eq.own = {}
     assert own_angle(s, pairs, 1e-9) > 1e-5
+
+
+def test_a_step_of_ten_times_what_zeros_wander_by_is_found_and_one_beside_a_quick_start_is_not(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    assert all(found(monkeypatch, stepped(rng, 10 * WANDER)) for _ in range(20))
+    quick = STEP * np.exp(-np.arange(40) / 1.5)  # forty runs, of which the first three stand apart
+    assert not any(found(monkeypatch, quick + 0.2 * WANDER * rng.standard_normal(40)) for _ in range(20))

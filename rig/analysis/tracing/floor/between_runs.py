@@ -16,7 +16,9 @@ from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 
 FEWEST: Final = 3  # runs on either side
-CLEAR: Final = 8.0  # times the scatter of the zeros about the two levels; of what drifts, half a level is left
+CLEAR: Final = 7.0  # times the scatter of the zeros about the two levels: of 18 that walk one set in 3000 has so much
+PLAINER: Final = 0.5  # of what a drift with any time constant leaves of them
+CONSTANTS: Final = np.geomspace(0.03, 3.0, 20)  # of the whole time: with a longer one a drift is a straight line
 AS_EVER: Final = 3.0  # usual gaps between runs: in a longer one somebody may have homed the encoders anew
 
 
@@ -57,6 +59,8 @@ def find_between(s: Solution, whole: Sequence[int]) -> Between | None:
     zeros = np.array([offset(s, i, "A") for i in runs])
     at = min(range(FEWEST, len(runs) - FEWEST + 1), key=lambda k: _scatter(zeros, k))
     size, scatter = float(zeros[at:].mean() - zeros[:at].mean()), _scatter(zeros, at)
+    if scatter > PLAINER * _beside_a_drift(np.array([eq.runs[i].start for i in runs]), zeros):
+        return None
     if abs(size) < CLEAR * scatter or not _gap_as_ever(eq, runs, at) or not _repeated(eq, runs, at):
         return None
     return Between(runs[at - 1], tuple(runs[at:]), size, Z95 * scatter * float(np.sqrt(1 / at + 1 / (len(runs) - at))))
@@ -66,6 +70,17 @@ def _scatter(zeros: Array, at: int) -> float:
     """Of zeros (n,) about their means before and from `at` on."""
     left = np.concatenate([zeros[:at] - zeros[:at].mean(), zeros[at:] - zeros[at:].mean()])
     return float(np.sqrt(left @ left / (zeros.size - 2)))
+
+
+def _beside_a_drift(times: Array, zeros: Array) -> float:
+    """RMS of what the best drift leaves of zeros (n,) at those times (n,) [s]."""
+    share = (times - times[0]) / max(float(np.ptp(times)), 1e-9)
+    left = []
+    for constant in CONSTANTS:
+        z = np.stack([np.ones(share.size), np.exp(-share / constant)], 1)
+        e = zeros - z @ np.linalg.lstsq(z, zeros, rcond=None)[0]
+        left.append(float(np.sqrt(e @ e / (zeros.size - 2))))
+    return min(left)
 
 
 def _gap_as_ever(eq: Equations, runs: Sequence[int], at: int) -> bool:
