@@ -61,7 +61,7 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     shifts them was not measured. The zero of every torque sensor drifts: that shifts θ̃ less its wind-up, and as much
     the balance of the load, is no drift of the angles, and told only where it is much."""
     eq = s.design.eq
-    mine, others = (_free(eq, runs) for runs in (fitted, unseen))
+    mine, others = (free(eq, runs) for runs in (fitted, unseen))
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
 
@@ -89,47 +89,49 @@ def _largest(eq: Equations) -> float:
 def _drift(eq: Equations, mine: Sequence[int], others: Sequence[int], found: Sequence[Array]) -> DriftingZeros | None:
     """Of the zeros `found` of the fitted runs and of the unseen ones."""
     zeros, wanted = found
-    times, later = (_times(eq, runs) for runs in (mine, others))
-    span = float(np.ptp(np.concatenate([times, later])))
+    since, later = (times(eq, runs) for runs in (mine, others))
+    span = float(np.ptp(np.concatenate([since, later])))
     spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
     if span <= 0 or spread == 0:
         return None
-    curves = [(tau, _foretold(_falling(times, tau), _falling(later, tau), zeros)) for tau in _constants(span)]
+    curves = [(tau, foretold(falling(since, tau), falling(later, tau), zeros)) for tau in constants(span)]
     tau, (guess, fit, own) = min(curves, key=lambda c: c[1][2])
     left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
-    rival = min(_rivals(eq, mine, zeros), default=np.inf)
+    rival = min(rivals(eq, mine, zeros), default=np.inf)
     if left > LEFT * spread or own > PLAINER * rival:
         return None
-    size = float(fit[1]) * float(np.ptp(_falling(np.concatenate([times, later]), tau)[:, 1]))
+    size = float(fit[1]) * float(np.ptp(falling(np.concatenate([since, later]), tau)[:, 1]))
     return DriftingZeros(size, tau, 1 - (left / spread) ** 2)
 
 
-def _free(eq: Equations, runs: Sequence[int]) -> list[int]:
+def free(eq: Equations, runs: Sequence[int]) -> list[int]:
+    """Those in which the output turned and θ̃ was read."""
     return [i for i in runs if (i, "A") in eq.rows and not eq.runs[i].locked]
 
 
-def _times(eq: Equations, runs: Sequence[int]) -> Array:
+def times(eq: Equations, runs: Sequence[int]) -> Array:
     """When each was taken, s."""
     return np.array([np.mean([p.t[0] + p.t[-1] for p in eq.runs[i].pieces]) / 2 for i in runs])
 
 
-def _constants(span: float) -> Array:
+def constants(span: float) -> Array:
+    """Time constants to try, s."""
     return np.geomspace(SHORTEST * span, LONGEST * span, TRIED)
 
 
-def _falling(t: Array, tau: float) -> Array:
+def falling(t: Array, tau: float) -> Array:
     """A constant and what falls with that time constant, (n, 2)."""
     return np.stack([np.ones(t.size), np.exp(-t / tau)], 1)
 
 
-def _foretold(z: Array, there: Array, zeros: Array) -> tuple[Array, Array, float]:
+def foretold(z: Array, there: Array, zeros: Array) -> tuple[Array, Array, float]:
     """By columns `z` (n, k) of the fitted zeros what those of `there` (m, k) should be, the coefficients, and RMS of
     what is left."""
     x = np.asarray(np.linalg.lstsq(z, zeros, rcond=None)[0], dtype=np.float64)
     return there @ x, x, float(np.sqrt(np.mean((zeros - z @ x) ** 2)))
 
 
-def _rivals(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
+def rivals(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
     """RMS left of the zeros by their other reasons: speed and torque with their sizes, and a step at any time."""
     speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs])
     torque = np.array([eq.runs[i].mean_torque for i in runs])
@@ -137,9 +139,9 @@ def _rivals(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
     for x in (speed, torque):
         if np.std(x) > WAY * np.mean(np.abs(x)):
             z = np.stack([np.ones(x.size), x, np.abs(x)], 1)
-            found.append(_foretold(z, z, zeros)[2])
-    begun = np.argsort(_times(eq, runs))
+            found.append(foretold(z, z, zeros)[2])
+    begun = np.argsort(times(eq, runs))
     for at in range(1, zeros.size):
         z = np.stack([np.ones(zeros.size), np.arange(zeros.size) >= at], 1)
-        found.append(_foretold(z, z, zeros[begun])[2])
+        found.append(foretold(z, z, zeros[begun])[2])
     return found

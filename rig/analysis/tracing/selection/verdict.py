@@ -19,6 +19,7 @@ from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.uneven_friction import uneven_friction
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.rest.warm_zeros import warm_zeros
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.conclusion import Conclusion
@@ -147,14 +148,15 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
 
 
 def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
-    """Nothing is above the floor, but the zeros of the runs drift, by more than it; None where they do not. Names stand
-    beside it."""
-    drift = drifting_zeros(s, p.split.fitted, p.split.held_out)
+    """Nothing is above the floor, but the zeros of the runs follow the temperature or drift, by more than it; None
+    where they do not. Names stand beside it."""
+    warm = warm_zeros(s, p.split.fitted, p.split.held_out)
+    drift = warm or drifting_zeros(s, p.split.fitted, p.split.held_out)
     if drift is None or abs(drift.size) < DRIFTS * np.median([x for (_, c), x in floors.items() if c == "A"]):
         return None
-    return Conclusion(
-        Verdict(Status.UNKNOWN, names, (), "time", None, None, drift.sentence()), None, ("time",), along("time")
-    )
+    where = "temperature" if warm else "time"
+    verdict = Verdict(Status.UNKNOWN, names, (), where, None, None, drift.sentence())
+    return Conclusion(verdict, None, (where,), along(where))
 
 
 def _jumped(p: Prepared, names: tuple[str, ...]) -> Conclusion | None:

@@ -1,0 +1,77 @@
+"""Zeros that follow a thermometer are told from those that wander, and from those that follow the time alone."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest import warm_zeros as module
+from rig.analysis.tracing.rest.warm_zeros import WarmZeros, warm_zeros
+from rig.core.units import ARCSEC
+from rig.model.effect import MEASURED, Array
+
+RUNS, EVERY = 30, 80.0  # s
+TIMES = EVERY * np.arange(RUNS)
+ROOM = 22.0 + 3.0 * np.sin(TIMES / 300.0)  # °C, a room that is aired
+SLOPE, WANDER, SOFT = ARCSEC, 0.4 * ARCSEC, 1.33e-4  # rad/K, rad, rad/(N·m)
+
+
+def found(
+    monkeypatch: pytest.MonkeyPatch, zeros: Array, warmth: Array = ROOM, of_the_torque: Array | None = None
+) -> WarmZeros | None:
+    """Of runs with those zeros [rad] and temperatures [°C], every third of them unseen."""
+    runs = [
+        SimpleNamespace(
+            locked=False,
+            has=MEASURED,
+            mean_torque=0.5 * (-1) ** i,
+            pieces=[
+                SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, speed), temperature=np.full(2, warm))
+            ],
+        )
+        for i, (t, speed, warm) in enumerate(zip(TIMES, np.tile([10.0, 30.0, -20.0], 10), warmth, strict=True))
+    ]
+    rows = {(i, c) for i in range(RUNS) for c in ("A" if of_the_torque is None else "AL")}
+    eq = SimpleNamespace(runs=runs, rows=rows)
+    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
+    known = {"A": zeros, "L": of_the_torque}
+    monkeypatch.setattr(module, "offset", lambda _, run, channel: known[channel][run])
+    unseen = range(1, RUNS, 3)
+    return warm_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
+
+
+def test_zeros_that_follow_the_temperature_are_told_with_their_slope(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    warm = found(monkeypatch, SLOPE * (ROOM - 22.0) + WANDER * rng.standard_normal(RUNS))
+    assert warm
+    assert warm.slope == pytest.approx(SLOPE, rel=0.15)
+    assert warm.size == pytest.approx(6.0 * ARCSEC, rel=0.15)
+    assert "arcsec a kelvin over 6.0 K" in warm.sentence()
+
+
+def test_zeros_that_wander_and_zeros_that_follow_the_time_are_not(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    assert not any(found(monkeypatch, WANDER * rng.standard_normal(RUNS)) for _ in range(20))
+    drift = 6.0 * ARCSEC * (1 - np.exp(-TIMES / 700.0)) + 0.2 * WANDER * rng.standard_normal(RUNS)
+    assert found(monkeypatch, drift) is None
+    assert found(monkeypatch, drift, warmth=20.0 + TIMES / 800.0) is None  # warmer all the time, but not as they go
+
+
+def test_without_a_thermometer_or_at_one_temperature_nothing_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    zeros = SLOPE * (ROOM - 22.0)
+    assert found(monkeypatch, zeros, warmth=np.full(RUNS, np.nan)) is None
+    assert found(monkeypatch, zeros, warmth=22.0 + (ROOM - 22.0) / 20.0) is None
+
+
+def test_a_torque_sensor_whose_zero_follows_the_temperature_is_no_shift_of_the_angles(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    torque = 0.05 * (ROOM - 22.0)  # N·m
+    noise = 0.1 * WANDER * rng.standard_normal(RUNS)
+    assert found(monkeypatch, noise - SOFT * torque, of_the_torque=torque) is None
+    assert found(monkeypatch, noise - SOFT * torque + SLOPE * (ROOM - 22.0), of_the_torque=torque)
