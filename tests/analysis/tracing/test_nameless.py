@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag
+from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.law import LONG
 from rig.analysis.tracing.nameless.readings import TwoConstants, TwoGains
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
-from rig.model.effect import Effect, Port
+from rig.model.effect import Effect, Fit, Port
 from tests.analysis.tracing.spiked import Columns, spiked
 from tests.analysis.tracing.test_gains import SOME
 from tests.blind.cases import Request
@@ -51,6 +51,17 @@ def test_friction_of_a_sector_takes_both_ways_and_a_pulley_gives_as_it_takes() -
     )
     np.testing.assert_allclose(drag, -back)
     np.testing.assert_array_equal(pulls, again)
+
+
+def test_a_cable_gives_back_what_it_took_and_pulls_towards_where_it_was_not_wound() -> None:
+    s, cable = motion(), WoundCable()
+    made = cable.columns(s, ())[Port.LOAD_TORQUE][:, 0]
+    np.testing.assert_array_equal(made, cable.columns(replace(s, way=-s.way), ())[Port.LOAD_TORQUE][:, 0])
+    work = np.trapezoid(made, s.theta_l)
+    assert work == pytest.approx(0.5 * (s.theta_l[-1] ** 2 - s.theta_l[0] ** 2), rel=1e-6)
+    fits = [Fit(np.array([k]), (), np.eye(1) * 1e-4, s.gear, s.ratio) for k in (0.2, -0.2)]
+    assert [cable.plausible(fit) for fit in fits] == [True, False]
+    assert cable.amount(fits[0]).value == pytest.approx(0.4 * np.pi)
 
 
 @pytest.mark.parametrize(("law", "shape"), [(ErrorDrift(), ()), (ErrorBySpeed(), (1.0,))], ids=["time", "speed"])
@@ -89,7 +100,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
     assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
     assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
-    assert everything - laws(load_turns=0.1) == {"uneven_inertia"}
+    assert everything - laws(load_turns=0.1) == {"uneven_inertia", "wound_cable"}
 
 
 def two_gains(c: Columns, began: float) -> Columns:

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.analysis.tracing.nameless.law import FAST, SOME, WIDE, Amount, Nameless, sum_of, wave_of, when
+from rig.core.units import TURN
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
 
@@ -118,3 +119,29 @@ class OvalPulley(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Relative, of the first order."""
         return wave_of(fit, "once a turn of the output by a wave of", 100, "%")
+
+
+class WoundCable(Nameless):
+    """What is wound up by the output pulls it back, as a loom of cables about it does: k·θ_l      [tuttle1992]"""
+
+    name: ClassVar[str] = "wound_cable"
+    in_short: ClassVar[str] = "a torque in proportion to the output's angle"
+    source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
+    FAR: Final = 0.5  # turns of the output: within less a weight pulls alike
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where the output goes far."""
+        return when(reach.load_turns > self.FAR)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        return {Port.LOAD_TORQUE: np.nan_to_num(signals.theta_l)[:, None]}
+
+    def plausible(self, fit: Fit) -> bool:
+        """It pulls back."""
+        return bool(fit.coefficients[0] > 0)
+
+    def amount(self, fit: Fit) -> Amount:
+        """Of a turn."""
+        return sum_of(fit, "after a turn of the output it is more by", TURN, "N·m")

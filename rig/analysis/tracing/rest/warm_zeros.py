@@ -52,8 +52,8 @@ class WarmZeros:
         return (
             f"The zeros of the angles follow the temperature, by {self.slope / ARCSEC:.3g} arcsec a kelvin over "
             f"{self.span:.1f} K: a line through those of the fitted runs foretells {self.foretold:.0%} of how far "
-            "apart those of unseen runs lie. Every run has a zero of its own, so that no error shows it, and no effect of "
-            "the library explains it."
+            "apart those of unseen runs lie. Every run has a zero of its own, so that no error shows it, and no effect "
+            "of the library explains it."
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
-from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag
+from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
@@ -188,6 +188,12 @@ CONFOUNDERS: Final = {
         "load_angle",
         "The external torque changes along the output's turn, in proportion to itself. No effect of the library does "
         "so.",
+    ),
+    "wound_cable": Confounder(
+        WoundCable(),
+        "load_angle",
+        "The load is pulled back the further the output has turned, as by a loom of cables that is wound about it. No "
+        "effect of the library does so.",
     ),
     "uneven_inertia": Confounder(
         UnevenInertia(),
