@@ -12,6 +12,7 @@ from rig.analysis.tracing.floor.interference import Interference, find_interfere
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.once_under_load import OnceUnderLoad, once_under_load
 from rig.analysis.tracing.floor.ringing import ringing
+from rig.analysis.tracing.floor.shaken_load import shaken_load
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
 from rig.analysis.tracing.floor.steps import LOST, explained, find_steps, lost_counts, step_columns
@@ -64,9 +65,9 @@ def find(s: Solution, parts: Split) -> Own:
         words[VIBRATION.name] = shaken.parameters()
     elif timed:
         line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
-        if line is not None and (motor := shaken_motor(s, line)) is not None:
-            made[VIBRATION.name], words[VIBRATION.name] = line.columns, motor.parameters()
-            notes[VIBRATION.name], line = motor.sentence(), None
+        if line is not None and (found := shaken_motor(s, line) or shaken_load(s, line)) is not None:
+            made[VIBRATION.name], words[VIBRATION.name] = line.columns, found.parameters()
+            notes[VIBRATION.name], line = found.sentence(), None
     began = ringing(eq, s.design.terms, sorted({i for i, _ in everywhere}))
     if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
         return Own(made, words, line, notes, began)
