@@ -20,14 +20,15 @@ LEFT: Final = 0.35  # of their scatter, beside the line: what goes with the way 
 
 
 def about_a_line(s: Solution) -> float | None:
-    """Scatter [rad] of the zeros of fitted runs about a line over the speed of the output; None where they lie on none,
-    where runs are too few, or where the torque, which winds the gear up with the speed, was not measured."""
+    """Scatter [rad] of the zeros of fitted runs about a line over the speed of the output, what the zero of the torque
+    sensor shifts them by taken off; None where they lie on none, where runs are too few, or where the torque, which
+    winds the gear up with the speed, was not measured."""
     eq = s.design.eq
     runs = [i for i in sorted({i for i, c in s.keys if c == "A"}) if not eq.runs[i].locked]
     if len(runs) < RUNS or any(not eq.runs[i].has >= MEASURED for i in runs):
         return None
     speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs]) / eq.runs[0].ratio
-    zeros = np.array([offset(s, i, "A") for i in runs])
+    zeros = np.array([offset(s, i, "A") + s.value("compliance") * torque_zero(s, i) for i in runs])
     z = np.stack([np.ones(speed.size), speed], 1)
     gram = z.T @ z
     if np.linalg.cond(gram) > 1e12:
@@ -37,3 +38,8 @@ def about_a_line(s: Solution) -> float | None:
     deviation = float(np.sqrt(left @ left / (len(runs) - 2) * np.linalg.inv(gram)[1, 1]))
     on_it = abs(x[1]) > CLEAR * deviation and np.std(left) < LEFT * np.std(zeros)
     return float(np.std(left)) if on_it else None
+
+
+def torque_zero(s: Solution, run: int) -> float:
+    """Of the torque sensor in that run, against the others', N·m; 0 where the load's balance does not tell."""
+    return offset(s, run, "L") if (run, "L") in s.design.eq.rows else 0.0
