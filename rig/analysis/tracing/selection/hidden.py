@@ -19,6 +19,7 @@ from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.locks import lock_tests_differ
+from rig.analysis.tracing.rest.same_spring import same_spring
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.runs.alike import alike, repeats
@@ -36,6 +37,7 @@ def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     foretells unseen runs goes first: it makes single runs and lock tests differ as well."""
     return (
         _in_the_floor(p, s, after, floors)
+        or _in_the_spring(p, s, after)
         or _at_one_speed(p, s, after, floors)
         or _nearly_loud(p, s, after, floors)
         or _in_one_run(p, s)
@@ -73,6 +75,16 @@ def _in_the_floor(
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _in_the_spring(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conclusion | None:
+    """Repeats differ by what their torque winds up; None where they do not."""
+    left = {key: s.residual(key) for key in s.keys}
+    found = same_spring(p.eq, {**left, **after}, s.value("compliance"))
+    if found is None:
+        return None
+    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
+    return Conclusion(verdict, None, ("time",), along("time"))
 
 
 def _at_one_speed(
