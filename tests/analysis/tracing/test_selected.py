@@ -17,7 +17,7 @@ def solution(eq: str, *terms: Any) -> Any:
 
 def prepared(*own: str) -> Any:
     """With those effects that every run has in its own way."""
-    return SimpleNamespace(own=SimpleNamespace(made=dict.fromkeys(own)))
+    return SimpleNamespace(own=SimpleNamespace(made=dict.fromkeys(own), parameters={}))
 
 
 @pytest.mark.parametrize("astray", [True, False])
