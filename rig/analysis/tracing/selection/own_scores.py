@@ -19,18 +19,27 @@ from rig.model.effect import Array
 
 def own_scores(p: Prepared, s: Solution) -> dict[str, tuple[float, float]]:
     """Share of the held-out excess that goes when every run gets its own phase, or its own steps, by effect; and its
-    RMS over the floor, overall. Where no held-out run has any, of the fitted runs' excess, as far as they
-    have repeats that show none of it, or nothing was repeated: it is read from single runs in any case, and nothing is
-    foretold."""
+    RMS over the floor, overall. Steps between runs, where every run has a zero of its own in any case, are known from
+    those zeros alone: all of it, and nothing of an error. Where no held-out run has any, of the fitted runs' excess, as
+    far as they have repeats that show none of it, or nothing was repeated: it is read from single runs in any case, and
+    nothing is foretold."""
     held, out = unseen(s, p.held_out), {}
     for name, mine in p.own.made.items():
-        if keys := [key for key in held.y if key in mine]:
+        if _in_free_zeros(s, mine):
+            out[name] = 1.0, 0.0
+        elif keys := [key for key in held.y if key in mine]:
             out[name] = _taken(p, s, held, name, keys, p.held_out.floors)
         else:
             alone = not repeats(p.campaign.runs, range(len(p.campaign.runs)))  # whole runs: parts of one are alike
             keys = [key for key in s.design.y if key in mine and (alone or _has_repeat_without(p, key, mine))]
             out[name] = _taken(p, s, s.design, name, keys, p.held_out.seen)
     return out
+
+
+def _in_free_zeros(s: Solution, mine: Mapping[Key, Array]) -> bool:
+    """Whether the columns (n, q) of every block are constants beside a zero of its own."""
+    local = s.design.eq.noise.local
+    return all(np.isinf(local[channel]) and not np.ptp(x, axis=0).any() for (_, channel), x in mine.items())
 
 
 def _taken(
