@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, UnevenDrag, WoundCable
+from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.law import LONG
@@ -51,6 +51,19 @@ def test_friction_of_a_sector_takes_both_ways_and_a_pulley_gives_as_it_takes() -
     )
     np.testing.assert_allclose(drag, -back)
     np.testing.assert_array_equal(pulls, again)
+
+
+@pytest.mark.parametrize(("side", "port"), [(0.0, Port.MOTOR_TORQUE), (1.0, Port.LOAD_TORQUE)])
+def test_a_drag_that_grows_with_less_than_the_speed_brakes_the_motor_or_the_load(side: float, port: Port) -> None:
+    s, drag = motion(), SlowingDrag()
+    assert {shape[1] for shape in drag.shapes(REACH)} == {0.0, 1.0}
+    made = drag.columns(s, (0.5, side))
+    assert made.keys() == {port}
+    speed = s.omega_l if side else s.omega_m
+    assert np.all(made[port][:, 0] * speed >= 0)
+    fit = Fit(np.array([0.2]), (0.5, side), np.eye(3), s.gear, s.ratio)
+    assert drag.plausible(fit)
+    assert ("of the load" if side else "of the motor") in drag.amount(fit).says
 
 
 def test_a_cable_gives_back_what_it_took_and_pulls_towards_where_it_was_not_wound() -> None:

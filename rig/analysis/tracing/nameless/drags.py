@@ -37,28 +37,39 @@ class UnevenDrag(Nameless):
 
 
 class SlowingDrag(Nameless):
-    """Drag that grows with less than the speed, as a grease does that thins where it is sheared: c·|ω_m/ω_r|^p·sgn ω_m,
-    p < 1      [wolf2018]"""
+    """Drag that grows with less than the speed, as a grease does that thins where it is sheared, or a conductor in a
+    field: c·|ω_m/ω_r|^p·sgn ω_m, p < 1; or the same of the output      [wolf2018]"""
 
     name: ClassVar[str] = "slowing_drag"
     in_short: ClassVar[str] = "drag grows with less than the speed"
     source: ClassVar[str] = "wolf2018"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
-    shape_names: ClassVar[tuple[str, ...]] = ("power",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
+    shape_names: ClassVar[tuple[str, ...]] = ("power", "side")
+    loose: ClassVar[tuple[bool, ...]] = (False, False)
+    POWERS: Final = (
+        0.5,
+        2 / 3,
+        0.8,
+    )  # of a film between lip and shaft, of grease in a contact, of one that hardly thins
+    MOTOR, LOAD = 0.0, 1.0
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Powers: of a film between lip and shaft, of grease in a rolling contact, of one that hardly thins."""
-        return when(reach.fastest > WIDE * reach.slowest, (0.5,), (2 / 3,), (0.8,))
+        """Of the motor, and of the load."""
+        return when(
+            reach.fastest > WIDE * reach.slowest, *((p, side) for side in (self.MOTOR, self.LOAD) for p in self.POWERS)
+        )
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
-        speed = signals.omega_m / FAST
-        return {Port.MOTOR_TORQUE: (np.sign(speed) * np.abs(speed) ** shape[0])[:, None]}
+        power, side = shape
+        speed = (signals.omega_m if side == self.MOTOR else signals.ratio * signals.omega_l) / FAST
+        port = Port.MOTOR_TORQUE if side == self.MOTOR else Port.LOAD_TORQUE
+        return {port: (np.sign(speed) * np.abs(speed) ** power)[:, None]}
 
     def amount(self, fit: Fit) -> Amount:
         """At speed, beside what grows with it."""
-        return sum_of(fit, "at 40 rad/s, beside what grows with the speed, it is", 1000, "mN·m")
+        whose = "of the motor" if fit.shape[1] == self.MOTOR else "of the load"
+        return sum_of(fit, f"{whose}, at 40 rad/s of the motor, beside what grows with the speed, it is", 1000, "mN·m")
 
     def plausible(self, fit: Fit) -> bool:
         """It brakes: with the other sign it is friction that falls near rest."""

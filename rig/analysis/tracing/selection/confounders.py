@@ -168,8 +168,8 @@ CONFOUNDERS: Final = {
     "slowing_drag": Confounder(
         SlowingDrag(),
         "speed",
-        "The motor's drag grows with less than the speed, as of a grease that thins where it is sheared. No effect of "
-        "the library does so.",
+        "A drag grows with less than the speed, as of a grease that thins where it is sheared. No effect of the "
+        "library does so.",
     ),
     "wiped_grease": Confounder(
         WipedGrease(),
