@@ -284,7 +284,8 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none_or_noth
 
     def stepped(c: Columns, began: float) -> Columns:
         lost = 9 * 2 * np.pi / 1296000 * (np.arange(c["t"].size) > 0.45 * c["t"].size)
-        return {"theta_l": c["theta_l"] - lost} if began == hit else {}
+        # against the torque: the way it pulls, a spring that gave way would look so
+        return {"theta_l": c["theta_l"] + lost} if began == hit else {}
 
     found = spiked(tmp_path, campaign, stepped, names)
     assert "load_10nm_1" in found.fitted

@@ -190,3 +190,23 @@ def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
     nothing: Any = None
     stood = selected._stood_in_for(p, (spring, held, []), (), nothing)
     assert [term.name for term in stood[0].design.terms] == [stays]
+
+
+@pytest.mark.parametrize(("amiss", "stays"), [(1.73, "creep"), (1.2, "hysteretic_stiffness")])
+def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_much(
+    monkeypatch: pytest.MonkeyPatch, amiss: float, stays: str
+) -> None:
+    """Of unseen runs the creep leaves 1.40 times the floor, the loop 1.20, and more than that where it acts."""
+    left = {"hysteretic_stiffness": 1.20, "creep": 1.40}
+    loop, creep = (solution("eq", SimpleNamespace(name=name)) for name in left)
+    score = SimpleNamespace(name="hysteretic_stiffness", left=amiss)
+    monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: creep)
+    monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", [score] if s is loop else []))
+    worst = SimpleNamespace(
+        residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name])
+    )
+    p: Any = SimpleNamespace(held_out=worst)
+    held: Any = "held"
+    nothing: Any = None
+    stood = selected._stood_in_for(p, (loop, held, []), (), nothing)
+    assert [term.name for term in stood[0].design.terms] == [stays]

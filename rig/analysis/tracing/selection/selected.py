@@ -305,9 +305,10 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
     if _left(p, again) * (FREED if freed else 1.0) < _left(p, as_it_was):
         return again
-    mimicked = frozenset().union(*(CONFOUNDERS[name].mimics for name in came))
+    short = [law for name, law in CONFOUNDERS.items() if name in came and law.short]
+    mimicked = frozenset().union(*(law.mimics for law in short))
     amiss = any(score.name in mimicked and score.left > MISSING for score in as_it_was[2])
-    return again if amiss and all(CONFOUNDERS[name].short for name in came) else as_it_was
+    return again if amiss and len(short) == len(came) else as_it_was
 
 
 def _in_words(s: Solution, runs: Sequence[int], spread: Callable[[Solution], Array]) -> Words:
