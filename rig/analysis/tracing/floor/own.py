@@ -49,39 +49,49 @@ class Own:
 def find(s: Solution, parts: Split) -> Own:
     """In the residuals of `s`, a fit to the fitted runs without columns of their own."""
     eq, e = s.design.eq, {key: s.residual(key) for key in s.keys}
-    compliance = s.value("compliance")
     held = design(replace(eq, noisy={}), s.design.terms, parts.held_out)
     # counts are lost in one run or another: what a held-out run shows of it no fit to others foretells
     everywhere = e | {key: held.residual(key, s.x) for key in held.y}
-    made: dict[str, dict[Key, Array]] = {}
-    words: dict[str, tuple[Parameter, ...]] = {}
-    notes: dict[str, str] = {}
-    timed = all("t" in eq.runs[i].has for i in parts.fitted)  # else nothing has a frequency
-    shaken = find_vibration(s, e, parts.fitted) if timed else None
-    line = None
-    if shaken is not None:
-        beside = sidebands(eq, everywhere, [line.frequency_hz for line in shaken.lines])
-        made[VIBRATION.name] = joined([shaken.columns, beside])
-        words[VIBRATION.name] = shaken.parameters()
-    elif timed:
-        line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
-        if line is not None and (found := shaken_motor(s, line) or shaken_load(s, line)) is not None:
-            made[VIBRATION.name], words[VIBRATION.name] = line.columns, found.parameters()
-            notes[VIBRATION.name], line = found.sentence(), None
-    began = ringing(eq, s.design.terms, sorted({i for i, _ in everywhere}))
+    own = _shaken(s, e, everywhere, parts)
+    own = replace(own, nameless=ringing(eq, s.design.terms, sorted({i for i, _ in everywhere})))
     if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
-        return Own(made, words, line, notes, began)
-    steps = find_steps(eq, everywhere, compliance)
+        return own
+    return _stepping(s, everywhere, own)
+
+
+def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array], parts: Split) -> Own:
+    """A vibration of the load or of the motor, or a line that is none."""
+    eq, nothing = s.design.eq, Own({}, {}, None)
+    if any("t" not in eq.runs[i].has for i in parts.fitted):  # nothing has a frequency
+        return nothing
+    if (steady := find_vibration(s, e, parts.fitted)) is not None:
+        beside = sidebands(eq, everywhere, [line.frequency_hz for line in steady.lines])
+        return _with(nothing, VIBRATION.name, joined([steady.columns, beside]), steady.parameters())
+    line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
+    if line is not None and (found := shaken_motor(s, line) or shaken_load(s, line)) is not None:
+        return _with(nothing, VIBRATION.name, line.columns, found.parameters(), found.sentence())
+    return replace(nothing, line=line)
+
+
+def _stepping(s: Solution, everywhere: Mapping[Key, Array], own: Own) -> Own:
+    """With counts that were lost within runs or between two of them, or a jump that may be the gear's."""
+    eq = s.design.eq
+    steps = find_steps(eq, everywhere, s.value("compliance"))
     whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
     if lost_counts(eq, steps, repeats(eq.runs, whole)):
         columns = step_columns(eq, steps)
-        if explained(eq, everywhere, columns) > OWN:
-            if jumped := once_under_load(eq, steps):
-                return Own(made, words, line, notes, joined([began, columns]), jumped)
-            made[LOST.name] = columns
-            words[LOST.name] = steps.parameters()
-    elif not steps.rows and (between := find_between(s, whole)):
-        made[LOST.name] = between.columns(eq)
-        words[LOST.name] = between.parameters()
-        notes[LOST.name] = between.sentence(eq)
-    return Own(made, words, line, notes, began)
+        if explained(eq, everywhere, columns) <= OWN:
+            return own
+        if (jumped := once_under_load(eq, steps)) is not None:
+            return replace(own, nameless=joined([own.nameless, columns]), jumped=jumped)
+        return _with(own, LOST.name, columns, steps.parameters())
+    if steps.rows or (between := find_between(s, whole)) is None:
+        return own
+    return _with(own, LOST.name, between.columns(eq), between.parameters(), between.sentence(eq))
+
+
+def _with(own: Own, name: str, columns: dict[Key, Array], words: tuple[Parameter, ...], note: str = "") -> Own:
+    """And an effect more."""
+    notes = {**own.notes, name: note} if note else own.notes
+    made, parameters = {**own.made, name: columns}, {**own.parameters, name: words}
+    return replace(own, made=made, parameters=parameters, notes=notes)
