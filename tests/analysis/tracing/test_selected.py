@@ -174,6 +174,12 @@ def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
     assert selected._without_needless(with_(["weight", "mode"], now), (), nothing).names == expected
 
 
+def leaving(left: dict[str, float]) -> Any:
+    """Prepared, with unseen runs of which a model of one term leaves that many floors, by its name."""
+    at = SimpleNamespace(residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name]))
+    return SimpleNamespace(held_out=at)
+
+
 @pytest.mark.parametrize(("leaves", "stays"), [(1.17, "loop in the spring"), (1.0, "loop in the sensor")])
 def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
     monkeypatch: pytest.MonkeyPatch, leaves: float, stays: str
@@ -182,10 +188,7 @@ def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
     spring, sensor = (solution("eq", SimpleNamespace(name=name)) for name in left)
     monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: sensor)
     monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", []))
-    worst = SimpleNamespace(
-        residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name])
-    )
-    p: Any = SimpleNamespace(held_out=worst)
+    p = leaving(left)
     held: Any = "held"
     nothing: Any = None
     stood = selected._stood_in_for(p, (spring, held, []), (), nothing)
@@ -202,10 +205,7 @@ def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_m
     score = SimpleNamespace(name="hysteretic_stiffness", left=amiss)
     monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: creep)
     monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", [score] if s is loop else []))
-    worst = SimpleNamespace(
-        residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name])
-    )
-    p: Any = SimpleNamespace(held_out=worst)
+    p = leaving(left)
     held: Any = "held"
     nothing: Any = None
     stood = selected._stood_in_for(p, (loop, held, []), (), nothing)

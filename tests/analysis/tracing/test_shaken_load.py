@@ -10,7 +10,8 @@ import pytest
 
 from rig.analysis.tracing.floor import shaken_load as module
 from rig.analysis.tracing.floor.interference import Interference
-from rig.analysis.tracing.floor.shaken_load import ShakenLoad, shaken_load
+from rig.analysis.tracing.floor.shaken import Shaken
+from rig.analysis.tracing.floor.shaken_load import shaken_load
 
 HZ, TORQUE, K, J_L = 12.7, 0.1, 8000.0, 0.8  # Hz, N·m, N·m/rad, kg·m²
 NOISE = 4e-6  # rad
@@ -20,7 +21,7 @@ SIGMA = 17.0  # Hz, of the low-pass
 
 def found(
     monkeypatch: pytest.MonkeyPatch, missed: float, *, channel: str = "L", runs: int = 8, reads: bool = True
-) -> ShakenLoad | None:
+) -> Shaken | None:
     """Of runs shaken in their own phase by a torque that swells and fades; the wind-up misses `missed` times what it
     misses of a pick-up in the torque sensor."""
     rng = np.random.default_rng(1)
@@ -58,7 +59,7 @@ def test_a_torque_that_winds_the_gear_up_is_told_with_frequency_and_size(monkeyp
     frequency, torque = told.parameters()
     assert frequency.ci95[0] <= HZ <= frequency.ci95[1]
     assert torque.value == pytest.approx(TORQUE, rel=0.05)
-    assert "no pick-up of a sensor" in told.sentence()
+    assert "no pick-up of a sensor" in told.said
 
 
 @pytest.mark.parametrize("missed", [1.0, 0.8, -0.5, (K / J_L) / (2 * np.pi * HZ) ** 2])

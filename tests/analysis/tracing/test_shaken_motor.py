@@ -10,14 +10,15 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.floor.interference import Interference
-from rig.analysis.tracing.floor.shaken_motor import ShakenMotor, shaken_motor
+from rig.analysis.tracing.floor.shaken import Shaken
+from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 
 HZ, TORQUE, NOISE, INERTIA = 8.7, 1.4e-3, 1e-3, 4e-5  # Hz, N·m, N·m, kg·m²
 T = np.arange(0.0, 20.0, 0.01)
 SIGMA = 17.0  # Hz, of the low-pass
 
 
-def found(moves: float, *, channel: str = "M", apart: float = 1.001, runs: int = 8) -> ShakenMotor | None:
+def found(moves: float, *, channel: str = "M", apart: float = 1.001, runs: int = 8) -> Shaken | None:
     """Of runs whose motor's inertia takes `moves` of the wave, each with its own phase."""
     rng = np.random.default_rng(1)
     columns, rows = {}, {}

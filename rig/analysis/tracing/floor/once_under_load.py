@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.floor.steps import Steps
@@ -40,6 +38,6 @@ def once_under_load(eq: Equations, steps: Steps) -> OnceUnderLoad | None:
         return None
     (run, (row,)), (size,) = next(iter(steps.rows.items())), next(iter(steps.sizes.values()))
     torque, most = eq.runs[run].mean_torque, max(abs(r.mean_torque) for r in eq.runs)
-    if not np.isfinite(torque) or abs(torque) < LOADED * most or size * torque <= 0:
+    if abs(torque) < LOADED * most or size * torque <= 0:
         return None
     return OnceUnderLoad(eq.runs[run].name, float(clock(eq, (run, "A"))[row]), size, torque)

@@ -69,7 +69,7 @@ def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array]
         return _with(nothing, VIBRATION.name, joined([steady.columns, beside]), steady.parameters())
     line = find_interference(eq, e, {key: x for key, x in everywhere.items() if key not in e})
     if line is not None and (found := shaken_motor(s, line) or shaken_load(s, line)) is not None:
-        return _with(nothing, VIBRATION.name, line.columns, found.parameters(), found.sentence())
+        return _with(nothing, VIBRATION.name, line.columns, found.parameters(), found.said)
     return replace(nothing, line=line)
 
 

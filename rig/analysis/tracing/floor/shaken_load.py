@@ -3,7 +3,6 @@ reading. A torque that is only read winds nothing up, so that the wind-up misses
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,37 +11,20 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.interference import Interference
 from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.floor.shaken import Shaken, shaken
 from rig.core.quantiles import Z95
-from rig.model.effect import Array, Parameter, parameter
+from rig.model.effect import Array
 from rig.model.linear import held_frequency
 
 MISSED: Final = 0.3  # of what the wind-up misses by a pick-up of either sensor, at most
 FEWEST: Final = 3  # runs
+SAID: Final = (
+    "The vibration wanders in strength, phase or frequency, so that it is read anew every few seconds; the wind-up "
+    "shows none of it that the torque sensor does not, so that no pick-up of a sensor makes it."
+)
 
 
-@dataclass(frozen=True)
-class ShakenLoad:
-    """Usual frequency [Hz] and torque on the load [N·m], each with the half width of its 95 % interval."""
-
-    frequency: tuple[float, float]
-    torque: tuple[float, float]
-
-    def parameters(self) -> tuple[Parameter, ...]:
-        """As of a steady vibration."""
-        return (
-            parameter("frequency", *self.frequency, "Hz"),
-            parameter("torque_amplitude", *self.torque, "N·m"),
-        )
-
-    def sentence(self) -> str:
-        """That it is no steady line, and why no sensor's."""
-        return (
-            "The vibration wanders in strength, phase or frequency, so that it is read anew every few seconds; the "
-            "wind-up shows none of it that the torque sensor does not, so that no pick-up of a sensor makes it."
-        )
-
-
-def shaken_load(s: Solution, line: Interference) -> ShakenLoad | None:
+def shaken_load(s: Solution, line: Interference) -> Shaken | None:
     """What makes the `line` in the residuals of `s`; None of one that is loudest in another channel, or that the
     wind-up may miss as it would a pick-up in the torque sensor, or in the load encoder."""
     eq = s.design.eq
@@ -56,11 +38,7 @@ def shaken_load(s: Solution, line: Interference) -> ShakenLoad | None:
     of_the_encoder = (held_frequency(gear.K, gear.J_l) / (2 * np.pi * line.frequency_hz)) ** 2
     if abs(missed.mean()) + half > MISSED * min(1.0, of_the_encoder):
         return None
-    passed = np.exp(-0.5 * (line.frequency_hz / eq.runs[keys[0][0]].smoother.sigma_hz) ** 2)
-    sizes = np.array([np.sqrt(2) * np.std(line.columns[key]) for key in keys]) / passed
-    spread = Z95 * float(sizes.std(ddof=1)) / np.sqrt(sizes.size)
-    half_hz = Z95 * max(line.apart - 1.0, 1e-3) * line.frequency_hz / np.sqrt(sizes.size)
-    return ShakenLoad((line.frequency_hz, half_hz), (float(np.median(sizes)), spread))
+    return shaken(eq, line, keys, SAID)
 
 
 def _missed(s: Solution, key: Key, wave: Array) -> float:

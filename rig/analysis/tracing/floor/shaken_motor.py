@@ -3,7 +3,6 @@ reading. What shakes it turns it; of a torque that is only read it knows nothing
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,34 +11,16 @@ from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.interference import STEADY, Interference
-from rig.core.quantiles import Z95
-from rig.model.effect import Array, Parameter, parameter
+from rig.analysis.tracing.floor.shaken import Shaken, shaken
+from rig.model.effect import Array
 
 FOLLOWS: Final = 0.03  # of the line, what the motor's inertia takes or gives: a loop that holds the speed leaves little
 SURE: Final = 5.0  # standard errors, of what it is in the mean of all runs
 FEWEST: Final = 3  # runs
+SAID: Final = "The torque acts on the motor: the load's balance has none of it, and the motor turns to and fro by it."
 
 
-@dataclass(frozen=True)
-class ShakenMotor:
-    """Frequency [Hz] and torque on the motor [N·m], each with the half width of its 95 % interval."""
-
-    frequency: tuple[float, float]
-    torque: tuple[float, float]
-
-    def parameters(self) -> tuple[Parameter, ...]:
-        """As of a vibration of the load."""
-        return (
-            parameter("frequency", *self.frequency, "Hz"),
-            parameter("torque_amplitude", *self.torque, "N·m"),
-        )
-
-    def sentence(self) -> str:
-        """Where it acts, which the effect's own law has otherwise."""
-        return "The torque acts on the motor: the load's balance has none of it, and the motor turns to and fro by it."
-
-
-def shaken_motor(s: Solution, line: Interference) -> ShakenMotor | None:
+def shaken_motor(s: Solution, line: Interference) -> Shaken | None:
     """What makes the `line` in the residuals of `s`; None of one that wanders, that is loudest in another channel, or
     by which the motor does not move."""
     keys = [key for key in line.columns if key[1] == "M" and key in s.keys and not s.design.eq.runs[key[0]].locked]
@@ -48,11 +29,7 @@ def shaken_motor(s: Solution, line: Interference) -> ShakenMotor | None:
     follows = np.array([_following(s, key, line.columns[key][:, 0]) for key in keys])
     if not abs(follows.mean()) > max(FOLLOWS, SURE * float(follows.std(ddof=1)) / np.sqrt(follows.size)):
         return None
-    passed = np.exp(-0.5 * (line.frequency_hz / s.design.eq.runs[keys[0][0]].smoother.sigma_hz) ** 2)
-    sizes = np.array([np.sqrt(2) * np.std(line.columns[key]) for key in keys]) / passed
-    spread = Z95 * float(sizes.std(ddof=1)) / np.sqrt(sizes.size)
-    half_hz = Z95 * (line.apart - 1.0) * line.frequency_hz / np.sqrt(sizes.size)
-    return ShakenMotor((line.frequency_hz, half_hz), (float(np.median(sizes)), spread))
+    return shaken(s.design.eq, line, keys, SAID)
 
 
 def _following(s: Solution, key: Key, wave: Array) -> float:
