@@ -11,7 +11,7 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which reading is late
 READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
-STEADY, ON_AND_ON, EACH_RUN = 0.0, 1.0, 2.0  # of the third: whether it grows, and since when
+STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whether it grows, and since when
 SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
 
@@ -22,7 +22,7 @@ class ChannelTimeSkew(Effect):
     From the reading θ: −[θ(t + δ) − θ(t)], of the load the way that its speed makes in δ, of the motor −δ·(ω + δ·α/2).
     In A a late motor angle is an early load angle; what tells them apart is which inertia's torque comes late. Where
     two clocks run apart, δ grows along the campaign, δ + δ'·t, or, where they are set anew for every run, along each
-    run.
+    run; and a buffer that fills and is emptied makes any curve of the run's share that has gone by.
     """
 
     name: ClassVar[str] = "channel_time_skew"
@@ -37,6 +37,9 @@ class ChannelTimeSkew(Effect):
         "drift_in_run_theta_l": "δ', by how much the load angle's lateness grows per second of each run",
         "drift_in_run_theta_m": "δ', by how much the motor angle's lateness grows per second of each run",
         "drift_in_run_tau_l": "δ', by how much the shaft torque's lateness grows per second of each run",
+        "change_in_run_theta_l": "how far apart the least and the largest lateness of the load angle in a run are",
+        "change_in_run_theta_m": "how far apart the least and the largest lateness of the motor angle in a run are",
+        "change_in_run_tau_l": "how far apart the least and the largest lateness of the shaft torque in a run are",
     }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
@@ -44,6 +47,7 @@ class ChannelTimeSkew(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     LONG: Final = 1e3  # s, after which δ' is told
     LARGEST: Final = 30e-3  # s; a sensor that is polled over a serial line is some ten milliseconds late
+    KNOTS: Final = np.linspace(0.0, 1.0, 7)  # of the curve of a run, shares of it
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -52,13 +56,17 @@ class ChannelTimeSkew(Effect):
         sides = [side for side, reading in READING.items() if reading in reach.has]
         steady = [(side, step, STEADY) for side in sides for step in self.STEPS]
         various = reach.backwards > SOME or reach.fastest > WIDE * reach.slowest
-        growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)] if various else []
+        how = (ON_AND_ON, EACH_RUN, ALONG_RUN) if various else ()
+        growing = [(side, 0.0, since) for side in sides for since in how]
         return (*steady, *growing)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG."""
+        """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG; of a curve one
+        for each knot."""
         side, delta, drifts = shape
         port, late = self._late(signals, side, delta)
+        if drifts == ALONG_RUN:
+            return {port: -late[:, None] * _between(_share(signals), self.KNOTS)}
         since = _start(signals) if drifts == EACH_RUN else 0.0
         return {port: -np.stack([late, late * (signals.t - since) / self.LONG], 1) if drifts else -late[:, None]}
 
@@ -85,14 +93,25 @@ class ChannelTimeSkew(Effect):
         return _change(np.nan_to_num(signals.torque), signals.dt, delta)
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """δ of the load angle, the motor angle or the shaft torque; where it drifts, δ at first and δ'."""
+        """δ of the load angle, the motor angle or the shaft torque; where it drifts, δ at first and δ'; of a curve its
+        mean and its range."""
         unit, name = np.eye(fit.covariance.shape[0]), READING[fit.shape[0]]
+        if fit.shape[2] == ALONG_RUN:
+            return self._curve(fit, name)
         skew = parameter(f"skew_{name}", fit.coefficients[0], fit.half_width(unit[0]), "s")
         if not fit.shape[2]:
             return (skew,)
         name = f"in_run_{name}" if fit.shape[2] == EACH_RUN else name
         rate = parameter(f"drift_{name}", fit.coefficients[1] / self.LONG, fit.half_width(unit[1]) / self.LONG, "s/s")
         return skew, rate
+
+    def _curve(self, fit: Fit, name: str) -> tuple[Parameter, ...]:
+        """Mean of δ over a run, and how far apart its least and its largest are."""
+        unit = np.eye(fit.covariance.shape[0])
+        at = fit.coefficients[: self.KNOTS.size]
+        mean = (unit[: at.size].sum(0) - (unit[0] + unit[at.size - 1]) / 2) / (at.size - 1)  # the trapezoidal rule
+        of = (("skew", mean), ("change_in_run", unit[int(np.argmax(at))] - unit[int(np.argmin(at))]))
+        return tuple(parameter(f"{what}_{name}", float(x[: at.size] @ at), fit.half_width(x), "s") for what, x in of)
 
     def expands(self, shape: Shape) -> bool:
         """About the skew itself."""
@@ -114,4 +133,20 @@ def _change(x: Array, dt: float, delta: float) -> Array:
 
 def _start(signals: Signals) -> float:
     """When the run began, s."""
-    return float((signals if signals.cut is None else signals.cut.whole).t[0])
+    return float(_whole(signals)[0])
+
+
+def _share(signals: Signals) -> Array:
+    """Of the run that has gone by, (n,)."""
+    whole = _whole(signals)
+    return np.asarray((signals.t - whole[0]) / max(whole[-1] - whole[0], signals.dt))
+
+
+def _whole(signals: Signals) -> Array:
+    """Times of the run that this is a part of, s."""
+    return np.asarray((signals if signals.cut is None else signals.cut.whole).t)
+
+
+def _between(x: Array, knots: Array) -> Array:
+    """Columns (n, k) whose coefficients are a curve's values at `knots` (k,), straight lines between them."""
+    return np.stack([np.interp(x, knots, unit) for unit in np.eye(knots.size)], 1)

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, TOGETHER, AngleDependentStiffness
-from rig.model.effects.channel_time_skew import EACH_RUN, ChannelTimeSkew
+from rig.model.effects.channel_time_skew import ALONG_RUN, EACH_RUN, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
@@ -505,6 +505,23 @@ def test_clocks_that_are_set_anew_for_every_run_make_the_skew_grow_along_each() 
         (drifting,) = effect.columns(signals, (LOAD_LATE, 0.0, EACH_RUN)).values()
         np.testing.assert_allclose(drifting[:, 0], steady[:, 0])
         np.testing.assert_allclose(drifting[:, 1], steady[:, 0] * (signals.t - late.t[0]) / 1000.0)
+
+
+def test_a_skew_may_follow_a_curve_along_each_run() -> None:
+    """The same one in all of them: a part of a run has its part of it."""
+    effect, s = ChannelTimeSkew(), motion()
+    (steady,) = effect.columns(s, (LOAD_LATE, 0.0, 0.0)).values()
+    (curved,) = effect.columns(s, (LOAD_LATE, 0.0, ALONG_RUN)).values()
+    share = (s.t - s.t[0]) / (s.t[-1] - s.t[0])
+    np.testing.assert_allclose(curved.sum(1), steady[:, 0])
+    np.testing.assert_allclose(curved @ effect.KNOTS, steady[:, 0] * share)
+    (part,) = effect.columns(s.part(slice(40, None)), (LOAD_LATE, 0.0, ALONG_RUN)).values()
+    np.testing.assert_allclose(part, curved[40:])
+    delays = 1e-4 * np.array([1.0, 2.0, 3.0, 2.0, 1.0, 0.0, -1.0])
+    fit = Fit(delays, (LOAD_LATE, 0.0, ALONG_RUN), 1e-12 * np.eye(10), KNOWN, N)
+    mean, change = effect.parameters(fit)
+    assert mean.name == "skew_theta_l" and mean.value == pytest.approx(8e-4 / 6)
+    assert change.value == pytest.approx(4e-4) and not change.holds_zero
 
 
 def test_no_torque_sensor_is_late_where_there_is_none() -> None:
