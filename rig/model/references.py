@@ -64,6 +64,7 @@ REFERENCES: dict[str, str] = {
     "IEEE Trans. Information Theory 20 (1974) 591-598",
     "anderson1965": "D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
+    "rasmussen2006": "C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press (2006)",
     "vig1992": "J. R. Vig, Introduction to quartz frequency standards, US Army Research Laboratory, SLCET-TR-92-1 "
     "(1992)",
     "iwan1966": "W. D. Iwan, A distributed-element model for hysteresis and its steady-state dynamic response, "

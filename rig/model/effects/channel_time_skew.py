@@ -14,6 +14,7 @@ READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
 STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whether it grows, and since when
 SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
+KNOTS = np.linspace(0.0, 1.0, 7)  # of the curve along a run, shares of it
 
 
 class ChannelTimeSkew(Effect):
@@ -37,6 +38,7 @@ class ChannelTimeSkew(Effect):
         "drift_in_run_theta_l": "δ', by how much the load angle's lateness grows per second of each run",
         "drift_in_run_theta_m": "δ', by how much the motor angle's lateness grows per second of each run",
         "drift_in_run_tau_l": "δ', by how much the shaft torque's lateness grows per second of each run",
+        "scatter_theta_l": "how far the lateness of the load angle in single runs is from its mean, RMS",
         "change_in_run_theta_l": "how far apart the least and the largest lateness of the load angle in a run are",
         "change_in_run_theta_m": "how far apart the least and the largest lateness of the motor angle in a run are",
         "change_in_run_tau_l": "how far apart the least and the largest lateness of the shaft torque in a run are",
@@ -47,7 +49,6 @@ class ChannelTimeSkew(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     LONG: Final = 1e3  # s, after which δ' is told
     LARGEST: Final = 30e-3  # s; a sensor that is polled over a serial line is some ten milliseconds late
-    KNOTS: Final = np.linspace(0.0, 1.0, 7)  # of the curve of a run, shares of it
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -66,7 +67,7 @@ class ChannelTimeSkew(Effect):
         side, delta, drifts = shape
         port, late = self._late(signals, side, delta)
         if drifts == ALONG_RUN:
-            return {port: -late[:, None] * _between(_share(signals), self.KNOTS)}
+            return {port: -late[:, None] * along(_share(signals))}
         since = _start(signals) if drifts == EACH_RUN else 0.0
         return {port: -np.stack([late, late * (signals.t - since) / self.LONG], 1) if drifts else -late[:, None]}
 
@@ -108,7 +109,7 @@ class ChannelTimeSkew(Effect):
     def _curve(self, fit: Fit, name: str) -> tuple[Parameter, ...]:
         """Mean of δ over a run, and how far apart its least and its largest are."""
         unit = np.eye(fit.covariance.shape[0])
-        at = fit.coefficients[: self.KNOTS.size]
+        at = fit.coefficients[: KNOTS.size]
         mean = (unit[: at.size].sum(0) - (unit[0] + unit[at.size - 1]) / 2) / (at.size - 1)  # the trapezoidal rule
         of = (("skew", mean), ("change_in_run", unit[int(np.argmax(at))] - unit[int(np.argmin(at))]))
         return tuple(parameter(f"{what}_{name}", float(x[: at.size] @ at), fit.half_width(x), "s") for what, x in of)
@@ -121,6 +122,12 @@ class ChannelTimeSkew(Effect):
         """The skew as found, within a quarter of a period of what the low-pass passes; one that drifts is small."""
         about = 0.0 if shape[2] else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
         return (shape[0], about, shape[2])
+
+
+def along(share: Array) -> Array:
+    """Columns (n, k) whose coefficients are a curve's values at KNOTS, straight lines between them, of a run of which
+    that `share` (n,) has gone by."""
+    return np.stack([np.interp(share, KNOTS, unit) for unit in np.eye(KNOTS.size)], 1)
 
 
 def _change(x: Array, dt: float, delta: float) -> Array:
@@ -145,8 +152,3 @@ def _share(signals: Signals) -> Array:
 def _whole(signals: Signals) -> Array:
     """Times of the run that this is a part of, s."""
     return np.asarray((signals if signals.cut is None else signals.cut.whole).t)
-
-
-def _between(x: Array, knots: Array) -> Array:
-    """Columns (n, k) whose coefficients are a curve's values at `knots` (k,), straight lines between them."""
-    return np.stack([np.interp(x, knots, unit) for unit in np.eye(knots.size)], 1)

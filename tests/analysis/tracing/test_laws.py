@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
 from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, TOGETHER, AngleDependentStiffness
-from rig.model.effects.channel_time_skew import ALONG_RUN, EACH_RUN, ChannelTimeSkew
+from rig.model.effects.channel_time_skew import ALONG_RUN, EACH_RUN, KNOTS, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
@@ -514,7 +514,7 @@ def test_a_skew_may_follow_a_curve_along_each_run() -> None:
     (curved,) = effect.columns(s, (LOAD_LATE, 0.0, ALONG_RUN)).values()
     share = (s.t - s.t[0]) / (s.t[-1] - s.t[0])
     np.testing.assert_allclose(curved.sum(1), steady[:, 0])
-    np.testing.assert_allclose(curved @ effect.KNOTS, steady[:, 0] * share)
+    np.testing.assert_allclose(curved @ KNOTS, steady[:, 0] * share)
     (part,) = effect.columns(s.part(slice(40, None)), (LOAD_LATE, 0.0, ALONG_RUN)).values()
     np.testing.assert_allclose(part, curved[40:])
     delays = 1e-4 * np.array([1.0, 2.0, 3.0, 2.0, 1.0, 0.0, -1.0])

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.equations import Key, Term
 from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.once_under_load import OnceUnderLoad, once_under_load
+from rig.analysis.tracing.floor.own_delays import SKEW, own_delays
 from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.shaken_load import shaken_load
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
@@ -53,10 +54,19 @@ def find(s: Solution, parts: Split) -> Own:
     # counts are lost in one run or another: what a held-out run shows of it no fit to others foretells
     everywhere = e | {key: held.residual(key, s.x) for key in held.y}
     own = _shaken(s, e, everywhere, parts)
-    own = replace(own, nameless=ringing(eq, s.design.terms, sorted({i for i, _ in everywhere})))
+    runs = sorted({i for i, _ in everywhere})
+    own = replace(own, nameless=ringing(eq, s.design.terms, runs))
+    whole = [i for i in runs if HELD_PART not in eq.runs[i].name]
+    if not _is_late(s.design.terms) and (late := own_delays(s, whole, runs)) is not None:
+        return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
     if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
         return own
     return _stepping(s, everywhere, own)
+
+
+def _is_late(terms: Sequence[Term]) -> bool:
+    """Whether a delay of one law for all runs is among them."""
+    return any(term.name == SKEW.name for term in terms)
 
 
 def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array], parts: Split) -> Own:

@@ -12,6 +12,7 @@ from rig.analysis.tracing.outcome.result import Found
 OWN: Final = {
     "external_vibration": "phase and amplitude of the vibration, and of what stands beside its lines there",
     "missed_counts": "instants of the steps or zero after them",
+    "channel_time_skew": "delay of one angle behind the other",
 }
 
 
