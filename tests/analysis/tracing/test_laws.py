@@ -520,8 +520,10 @@ def test_a_skew_may_follow_a_curve_along_each_run() -> None:
     delays = 1e-4 * np.array([1.0, 2.0, 3.0, 2.0, 1.0, 0.0, -1.0])
     fit = Fit(delays, (LOAD_LATE, 0.0, ALONG_RUN), 1e-12 * np.eye(10), KNOWN, N)
     mean, change = effect.parameters(fit)
-    assert mean.name == "skew_theta_l" and mean.value == pytest.approx(8e-4 / 6)
-    assert change.value == pytest.approx(4e-4) and not change.holds_zero
+    assert mean.name == "skew_theta_l"
+    assert mean.value == pytest.approx(8e-4 / 6)
+    assert change.value == pytest.approx(4e-4)
+    assert not change.holds_zero
 
 
 def test_no_torque_sensor_is_late_where_there_is_none() -> None:
