@@ -38,7 +38,7 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
         sliding &= _load_slides(piece, run)
     else:
         sliding &= smooth(told(piece, run)) > 1 - 1e-9
-        if run.is_wound:  # the torque is that of A, and a loop in it
+        if run.locked:  # friction that builds up begins where no run tells, and so does a loop
             sliding &= has_turned(piece)[smooth.centres(piece.t.size)]
     return np.asarray(inside & sliding)
 
