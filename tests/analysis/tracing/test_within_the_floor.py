@@ -24,6 +24,7 @@ PERIOD = 230.0  # s, between the shortest run and the campaign
 EVERY = 84.0  # s
 SEAL = 2.6  # s
 PUMP = 48.0  # s
+STROKES = 6.2  # s, more than a fast run takes
 CAGE = 0.4512  # orders of the motor
 SEGMENTS = 11  # of the scale of a load encoder
 NO_REPEATS = ("slow_ke_1", "speed_120rpm_1", "speed_200rpm_1", "speed_300rpm_1", "lock_60_1")
@@ -37,6 +38,11 @@ def breathing(c: Columns, began: float) -> Columns:
 def rubbing(c: Columns, began: float) -> Columns:
     on = np.mod(began + c["t"], EVERY) < EVERY / 3
     return under(c, 0.3 * on * np.sign(np.gradient(c["theta_m"])))
+
+
+def pumping(c: Columns, began: float) -> Columns:
+    on = np.mod(began + c["t"], STROKES) < STROKES / 2
+    return {"tau_m": c["tau_m"] + 0.009 * on * np.sign(np.gradient(c["theta_m"]))}
 
 
 def swelling(c: Columns, began: float) -> Columns:
@@ -73,6 +79,7 @@ def loaded(c: Columns, began: float) -> Columns:
         pytest.param(breathing, PERIOD, marks=pytest.mark.long),
         pytest.param(rubbing, EVERY, marks=pytest.mark.long),
         pytest.param(swelling, PUMP, marks=pytest.mark.long),
+        pytest.param(pumping, STROKES, marks=pytest.mark.long),
     ],
 )
 def test_what_follows_the_clock_makes_the_floor_and_is_told(
@@ -153,6 +160,20 @@ def test_a_campaign_of_seconds_or_of_days_has_no_waves_of_its_clock(apart: float
     at = {"time": time, "direction": np.ones(2000)}
     none = np.zeros((2000, 0))
     assert _waves(Rest(np.ones(2000), run, at, 0.02, none, none[:0]), lambda r: np.ones(r.e.size)) is None
+
+
+@pytest.mark.parametrize("period", [40.0, 12.5, STROKES, 2.1])
+def test_waves_of_the_campaigns_clock_are_found_slow_and_fast(rng: np.random.Generator, period: float) -> None:
+    """Runs of five seconds, about half a minute apart: each shows a part of one period, or two."""
+    run = np.repeat(np.arange(80), 250)
+    time = np.tile(np.arange(250) / 50, 80) + np.cumsum(rng.uniform(20, 45, 80))[run]
+    way = np.where(run % 2, -1.0, 1.0)
+    e = way * ((np.mod(time, period) < period / 2) - 0.5) + rng.standard_normal(time.size)
+    none = np.zeros((time.size, 0))
+    made = Rest(e, run, {"time": time, "direction": way}, 0.02, none, none[:0], own_zeros=False)
+    found = _waves(made, lambda r: r.at["direction"])
+    assert found is not None
+    assert 1 / found[1] == pytest.approx(period, rel=2e-3)
 
 
 @pytest.mark.parametrize(("rms", "joined"), [(1.0, 0), (1.5, 1)])

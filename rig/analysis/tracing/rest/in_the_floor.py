@@ -8,10 +8,11 @@ fitted runs foretells the others, as no wander does.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
@@ -29,6 +30,9 @@ from rig.model.effect import Array
 TWICE: Final = 2.0  # periods at least within the campaign: less is a trend, as gains and zeros have it
 FINE: Final = 8  # frequencies tried for every whole wave more in the campaign
 MOST: Final = 20_000  # of them: eight hours; each costs a fit
+FASTEST: Final = 0.8  # Hz; what is faster is a line in every run by itself
+OFTEN: Final = 8.0  # means a second at which what comes and goes faster than the slow ones is sought
+PEAKS: Final = 30  # of its spectrum that are looked at
 HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
 FEWEST: Final = 4  # runs
 LARGEST: Final = 2.0  # order of a two-lobed wave generator, the largest of its kinematic error
@@ -116,20 +120,14 @@ def _within_runs(
 def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | None:
     """The reading of the wave that explains most against the `sense` of the motion, and its frequency, Hz; None where
     the campaign is too short for two of them, or lasts for days."""
-    t, run, e, way = _by_seconds(r, _wide(sense(r)))
-    slow = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
-    runs = (run[:, None] == np.unique(run)) * slow[:, None]
-
-    def without_zeros(x: Array) -> Array:
-        return np.asarray(x - runs @ (runs.T @ x / np.maximum(runs.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
-
-    step = 1.0 / max(float(np.ptp(t)), 1e-9) / FINE
+    way = _wide(sense(r))
+    slow = _Means.of(r, way, 1.0)
+    step = 1.0 / max(float(np.ptp(slow.t)), 1e-9) / FINE
     if not TWICE * FINE < SLOWEST / step < MOST:
         return None
-    tried = np.arange(TWICE * FINE * step, SLOWEST, step)
-    y = without_zeros(e)
-    tall = [_explained(without_zeros(_times(waves(TURN * t, f), way)), y) for f in tried]
-    best = float(tried[int(np.argmax(tall))])
+    fast = _Means.of(r, way, OFTEN)
+    tried = [(slow.explained(f), f) for f in np.arange(TWICE * FINE * step, SLOWEST, step).tolist()]
+    best: float = max(tried + [(fast.explained(f), f) for f in fast.loudest(step)])[1]
 
     def columns(rest: Rest) -> Array:
         time = TURN * rest.at["time"]
@@ -137,6 +135,53 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
         return _times(made, _wide(sense(rest)))
 
     return in_columns(columns), best
+
+
+@dataclass(frozen=True)
+class _Means:
+    """Time [s], run, rest without the zeros of runs that have their own, and the sense (n, k): means over an equal
+    time. And those zeros' columns (n, runs), and rows in a mean."""
+
+    t: Array
+    run: npt.NDArray[np.int64]
+    e: Array
+    way: Array
+    zeros: Array
+    rows: float
+
+    @classmethod
+    def of(cls, r: Rest, way: Array, often: float) -> _Means:
+        """`often` a second, of the sense `way` (n, k)."""
+        place = np.floor(often * r.at["time"]).astype(int)
+        _, first, place = np.unique(place * (1 + r.run.max()) + r.run, return_index=True, return_inverse=True)
+        count = np.bincount(place)
+        t, e, *w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, *way.T))
+        run = np.asarray(r.run[first], dtype=np.int64)
+        own = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
+        runs = (run[:, None] == np.unique(run)) * own[:, None]
+        bare = cls(t, run, e, np.stack(w, 1), runs, r.e.size / t.size)
+        return replace(bare, e=bare._without_zeros(e))
+
+    def explained(self, hz: float) -> float:
+        """Sum of squares of rows that a wave of that frequency explains."""
+        z = self._without_zeros(_times(waves(TURN * self.t, hz), self.way))
+        return _explained(z, self.e) * self.rows
+
+    def loudest(self, step: float) -> list[float]:
+        """Frequencies in Hz, `step` apart, from SLOWEST to FASTEST at which the rest has most against the sense."""
+        even = np.round((self.t - self.t[0]) * OFTEN).astype(int)
+        size = max(round(OFTEN / step), even[-1] + 1)
+        laid = np.zeros((self.way.shape[1], size))
+        laid[:, even] = (self.e[:, None] * self.way).T
+        power = (np.abs(np.fft.rfft(laid)) ** 2).sum(0)
+        hz = np.fft.rfftfreq(size, 1 / OFTEN)
+        top = np.flatnonzero((power[1:-1] >= power[:-2]) & (power[1:-1] > power[2:])) + 1
+        top = top[(hz[top] >= SLOWEST) & (hz[top] < FASTEST)]
+        return [float(hz[i]) for i in top[np.argsort(-power[top])][:PEAKS]]
+
+    def _without_zeros(self, x: Array) -> Array:
+        made = self.zeros
+        return np.asarray(x - made @ (made.T @ x / np.maximum(made.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
 
 
 def _wide(x: Array) -> Array:
@@ -153,15 +198,6 @@ def _scaled(x: Array) -> Array:
     """Over its largest, 0 where it is unknown."""
     known = np.nan_to_num(x)
     return np.asarray(known / max(float(np.max(np.abs(known), initial=0.0)), 1e-9))
-
-
-def _by_seconds(r: Rest, way: Array) -> tuple[Array, Array, Array, Array]:
-    """Time, run, rest and `way` (n, k), means over seconds of a run."""
-    second = np.floor(r.at["time"]).astype(int)
-    _, first, place = np.unique(second * (1 + r.run.max()) + r.run, return_index=True, return_inverse=True)
-    count = np.bincount(place)
-    t, e, *w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, *way.T))
-    return t, r.run[first], e, np.stack(w, 1)
 
 
 def _explained(z: Array, y: Array) -> float:
