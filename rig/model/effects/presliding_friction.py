@@ -32,7 +32,7 @@ class PreslidingFriction(Effect):
     name: ClassVar[str] = "presliding_friction"
     in_short: ClassVar[str] = "friction with memory around reversals"
     glosses: ClassVar[Mapping[str, str]] = {
-        "tau_presliding": "motor friction that builds up after a reversal",
+        "tau_presliding": "motor friction that builds up after a reversal; of several, of one that loses as much",
         "tau_presliding_l": "load friction that builds up after a reversal",
         "x_0": "angle over which it builds up",
     }
@@ -87,23 +87,25 @@ class PreslidingFriction(Effect):
         )
 
     def _of_several(self, fit: Fit) -> tuple[Parameter, ...]:
-        """All of it, and the way of an element or a bristle, on the average."""
+        """Of the one element that loses as much at a reversal, Σ τ_i·w_i, and over as long a way on the average: of a
+        short one beside longer ones neither its friction nor the sum of all is known."""
         share = np.array(self.SPREAD if fit.shape[2] == ELEMENTS else self.DECADES)
-        c = fit.coefficients
-        total = float(c.sum()) or 1e-300
-        mean = float(share @ c) / total
+        c, x_0 = fit.coefficients, fit.shape[1]
+        lost, longer = float(share @ c) or 1e-300, float(share**2 @ c) or 1e-300
         torque, way = np.zeros((2, fit.covariance.shape[0]))
-        torque[: c.size] = 1.0
-        way[: c.size] = fit.shape[1] * (share - mean) / total
-        way[c.size + 1] = mean
+        torque[: c.size] = 2 * lost * share / longer - (lost * share / longer) ** 2
+        way[: c.size] = x_0 * (share**2 * lost - share * longer) / lost**2
+        way[c.size + 1] = longer / lost
         return (
-            parameter("tau_presliding", total, fit.half_width(torque), "N·m"),
-            parameter("x_0", fit.shape[1] * mean, fit.half_width(way), "rad"),
+            parameter("tau_presliding", lost**2 / longer, fit.half_width(torque), "N·m"),
+            parameter("x_0", x_0 * longer / lost, fit.half_width(way), "rad"),
         )
 
     def plausible(self, fit: Fit) -> bool:
-        """Friction opposes."""
-        return bool(fit.coefficients.sum() > 0)
+        """Friction opposes: work is lost at a reversal."""
+        if fit.shape[2] == BRISTLE:
+            return bool(fit.coefficients[0] > 0)
+        return bool(np.array(self.SPREAD if fit.shape[2] == ELEMENTS else self.DECADES) @ fit.coefficients > 0)
 
 
 def _element(theta: Array, way: float, start: float) -> Array:

@@ -55,10 +55,22 @@ def test_bristles_take_a_friction_that_approaches_what_it_will_be_with_a_long_ta
     assert min(left(np.hstack([bristle, slid]), friction) for bristle in bristles) > 0.06
 
 
-def test_of_elements_all_the_friction_is_told_and_the_way_after_which_one_slips() -> None:
+def test_of_elements_the_one_is_told_that_loses_as_much_at_a_reversal() -> None:
     fit = Fit(np.array([0.01, 0.02, 0.0, 0.01]), (MOTOR, 0.5, ELEMENTS), np.zeros((7, 7)), KNOWN, N)
     told = {p.name: p.value for p in PreslidingFriction().parameters(fit)}
-    assert told == pytest.approx({"tau_presliding": 0.04, "x_0": 0.5 * (0.01 * 0.2 + 0.02 * 0.6 + 0.01 * 5.4) / 0.04})
+    lost, longer = 0.01 * 0.2 + 0.02 * 0.6 + 0.01 * 5.4, 0.01 * 0.2**2 + 0.02 * 0.6**2 + 0.01 * 5.4**2
+    assert told == pytest.approx({"tau_presliding": lost**2 / longer, "x_0": 0.5 * longer / lost})
+    assert told["tau_presliding"] * told["x_0"] == pytest.approx(0.5 * lost)
+
+
+def test_of_elements_beside_longer_ones_a_short_one_that_nobody_sees_says_nothing() -> None:
+    """One of 0.02 rad of which 1 N·m more or less is not seen leaves what all of them lose as well known as it was."""
+    unsure = np.zeros((7, 7))
+    unsure[0, 0] = 1.0
+    fit = Fit(np.array([0.0, 0.02, 0.02, 0.01]), (MOTOR, 0.1, ELEMENTS), 1e-4 * unsure, KNOWN, N)
+    friction, way = PreslidingFriction().parameters(fit)
+    assert not friction.holds_zero
+    assert way.ci95[1] - way.value < 0.1 * way.value
 
 
 def test_a_ripple_may_saturate_alike_whichever_way_the_torque_points() -> None:
