@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term, acting
+from rig.analysis.tracing.floor.own_delays import OwnDelays
 from rig.analysis.tracing.floor.steps import Steps
 from rig.analysis.tracing.floor.vibration import Line, Vibration
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
@@ -117,7 +118,8 @@ def test_what_an_effect_softens_the_gear_by_has_the_gradient_it_says(effect: Eff
 
 def named(effect: Effect) -> set[str]:
     """What the parameters of `effect` are called, whatever its shape, and what the detectors of each run's own say."""
-    names = {"external_vibration": shaken(), "missed_counts": lost()}.get(effect.name, set())
+    own = {"external_vibration": shaken(), "missed_counts": lost(), "channel_time_skew": late()}
+    names = own.get(effect.name, set())
     for shape in effect.shapes(REACH):
         k = next(iter(effect.columns(motion(n=50), shape).values())).shape[1]
         size = k + len(shape)
@@ -134,6 +136,11 @@ def shaken() -> set[str]:
 def lost() -> set[str]:
     sides = {0: (missed_counts.LOAD, missed_counts.MOTOR)}
     return {p.name for p in Steps({0: (5, 9)}, {0: (1e-3, 2e-3)}, sides, {0: (1e-5, 1e-5)}).parameters()}
+
+
+def late() -> set[str]:
+    delays = {run: np.array([1e-4, 2e-4]) for run in range(3)}
+    return {p.name for p in OwnDelays({}, delays, wander=True).parameters()}
 
 
 @every_effect

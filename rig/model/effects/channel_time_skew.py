@@ -14,7 +14,7 @@ READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
 STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whether it grows, and since when
 SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
-KNOTS = np.linspace(0.0, 1.0, 7)  # of the curve along a run, shares of it
+KNOTS = np.linspace(0.0, 1.0, 13)  # of the curve along a run, shares of it
 
 
 class ChannelTimeSkew(Effect):

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
 
-EXPONENTIAL, KNEE, CUBIC = 0.0, 1.0, 2.0  # of the first shape parameter
+EXPONENTIAL, KNEE, CUBIC, BELOW = 0.0, 1.0, 2.0, 3.0  # of the first shape parameter
 
 
 class NonlinearStiffness(Effect):
@@ -18,6 +18,8 @@ class NonlinearStiffness(Effect):
     The first is a soft wind-up zone that ends gradually, the second the makers' line of pieces with a knee at T_0
     [harmonicdrive]. The third is a spring T = K·φ + k_3·φ³: φ loses c·(T − T_0·u), u + u³ = T/T_0, where
     k_3 = c·K⁴/T_0² as long as the cubic part is small, and c = 1/K throughout      [tuttle1992]
+
+    Of the fourth the soft zone ends as it began: φ gains c·T·exp(−(T/T_0)²), and beyond a few T_0 nothing.
     """
 
     name: ClassVar[str] = "nonlinear_stiffness"
@@ -40,7 +42,8 @@ class NonlinearStiffness(Effect):
         gradual = [(EXPONENTIAL, t) for t in self.TORQUES if t < 2.0 * reach.torque]
         knees = [(KNEE, t) for t in self.TORQUES if t < 0.8 * reach.torque]
         cubic = [(CUBIC, share * reach.torque) for share in self.CUBIC_AT if reach.torque > 0]
-        return (*gradual, *knees, *cubic)
+        below = [(BELOW, t) for t in self.TORQUES if t < 0.8 * reach.torque]
+        return (*gradual, *knees, *cubic, *below)
 
     def beyond(self, shape: Shape, reach: Reach) -> bool:
         """A knee that the fit pushed to next to no torque: that is a gap, and no spring's."""
@@ -51,6 +54,8 @@ class NonlinearStiffness(Effect):
         kind, T_0 = shape
         if kind == CUBIC:
             return {Port.WIND_UP: -(signals.torque - T_0 * _cubic(signals.torque / T_0))[:, None]}
+        if kind == BELOW:
+            return {Port.WIND_UP: (signals.torque * np.exp(-((signals.torque / T_0) ** 2)))[:, None]}
         size = np.abs(signals.torque)
         more = np.minimum(size, T_0) if kind == KNEE else T_0 * -np.expm1(-size / T_0)
         return {Port.WIND_UP: (np.sign(signals.torque) * more)[:, None]}

@@ -23,7 +23,7 @@ from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
-from rig.model.effects.nonlinear_stiffness import CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
 from rig.model.effects.presliding_friction import LOAD as LOAD_BUILDS_UP
 from rig.model.effects.presliding_friction import MOTOR as BUILDS_UP
@@ -517,13 +517,23 @@ def test_a_skew_may_follow_a_curve_along_each_run() -> None:
     np.testing.assert_allclose(curved @ KNOTS, steady[:, 0] * share)
     (part,) = effect.columns(s.part(slice(40, None)), (LOAD_LATE, 0.0, ALONG_RUN)).values()
     np.testing.assert_allclose(part, curved[40:])
-    delays = 1e-4 * np.array([1.0, 2.0, 3.0, 2.0, 1.0, 0.0, -1.0])
-    fit = Fit(delays, (LOAD_LATE, 0.0, ALONG_RUN), 1e-12 * np.eye(10), KNOWN, N)
+    delays = np.interp(KNOTS, np.linspace(0, 1, 7), 1e-4 * np.array([1.0, 2.0, 3.0, 2.0, 1.0, 0.0, -1.0]))
+    fit = Fit(delays, (LOAD_LATE, 0.0, ALONG_RUN), 1e-12 * np.eye(KNOTS.size + 3), KNOWN, N)
     mean, change = effect.parameters(fit)
     assert mean.name == "skew_theta_l"
     assert mean.value == pytest.approx(8e-4 / 6)
     assert change.value == pytest.approx(4e-4)
     assert not change.holds_zero
+
+
+def test_a_soft_zone_may_end_as_it_began() -> None:
+    """Far beyond T_0 the spring is where it would be without one."""
+    s = dataclasses.replace(motion(), torque=np.linspace(-40.0, 40.0, motion().t.size))
+    more = NonlinearStiffness().columns(s, (BELOW, 8.0))[Port.WIND_UP][:, 0]
+    near = np.abs(s.torque) < 1.0
+    np.testing.assert_allclose(more[near], s.torque[near], rtol=0.02)
+    np.testing.assert_allclose(more, -more[::-1], atol=1e-12)
+    assert np.abs(more[np.abs(s.torque) > 30.0]).max() < 1e-4
 
 
 def test_no_torque_sensor_is_late_where_there_is_none() -> None:

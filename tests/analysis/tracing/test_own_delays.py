@@ -12,7 +12,7 @@ from rig.analysis.tracing.floor import own_delays as module
 from rig.analysis.tracing.floor.own_delays import OwnDelays, own_delays
 from rig.analysis.tracing.outcome.each_run import OWN
 from rig.model.effect import Array
-from rig.model.effects.channel_time_skew import along
+from rig.model.effects.channel_time_skew import KNOTS, along
 
 SPEEDS = np.repeat([0.02, 0.13, 0.25, 0.42, 0.63, 0.84], 2)  # rad/s of the output, each taken twice
 ROWS, STEP, NOISE, DELAY, SCATTER = 1200, 4e-3, 3e-6, 1.5e-4, 7e-5  # s, rad, s, s
@@ -60,7 +60,7 @@ def test_delays_that_wander_in_each_run_are_its_own(monkeypatch: pytest.MonkeyPa
     assert mean.value == pytest.approx(DELAY, abs=3 * SCATTER / np.sqrt(SPEEDS.size))
     assert scatter.value == pytest.approx(SCATTER, rel=0.4)
     assert late.columns.keys() == {(i, "A") for i in range(SPEEDS.size)}
-    assert late.columns[0, "A"].shape == (ROWS, 7)
+    assert late.columns[0, "A"].shape == (ROWS, KNOTS.size)
     assert "wanders within runs" in late.sentence()
     assert module.SKEW.name in OWN
     assert all(module.SKEW.gloss(p.name) for p in (mean, scatter))
