@@ -17,9 +17,11 @@ from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
 from rig.analysis.tracing.floor.vibration import VIBRATION
 from rig.analysis.tracing.prepared import Prepared, built
+from rig.analysis.tracing.selection.certain import is_calm, is_certain
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
 from rig.analysis.tracing.selection.further import select_further
-from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certain, select
+from rig.analysis.tracing.selection.select import select
+from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.workers import give_back
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE

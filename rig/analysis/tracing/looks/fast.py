@@ -19,8 +19,10 @@ from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.searched import Tried, beside
+from rig.analysis.tracing.selection.certain import is_calm, is_certain
 from rig.analysis.tracing.selection.confounders import of_the_library
-from rig.analysis.tracing.selection.selected import Selected, is_calm, is_certain, select
+from rig.analysis.tracing.selection.select import select
+from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import LAWS, NEARLY
 from rig.core.errors import UsageError
 from rig.model.effect import Reach

@@ -14,7 +14,8 @@ from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.runs.giving_way import gives_way
 from rig.analysis.tracing.searched import beside
-from rig.analysis.tracing.selection.selected import Selected, select
+from rig.analysis.tracing.selection.select import select
+from rig.analysis.tracing.selection.selected import Selected
 from rig.model.effects.support_compliance import StiffSupport
 
 MOVES: Final = StiffSupport()

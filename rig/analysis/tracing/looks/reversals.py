@@ -16,7 +16,8 @@ from rig.analysis.tracing.runs.building_up import builds_up
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import beside
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.selection.selected import Selected, select
+from rig.analysis.tracing.selection.select import select
+from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import SHADOW
 from rig.model.effect import Reach
 from rig.model.effects.presliding_friction import MOTOR, PreslidingFriction

@@ -22,7 +22,8 @@ from rig.analysis.tracing.selection.candidates import tried
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.instead_of import FRICTIONS, below_zero
-from rig.analysis.tracing.selection.selected import Selected, select
+from rig.analysis.tracing.selection.select import select
+from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import ALIKE, EXPLAINED, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
 from rig.model.effect import Reach
 

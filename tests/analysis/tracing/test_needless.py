@@ -1,4 +1,4 @@
-"""What stays when every effect was eliminated: the gear as the baseline alone told it."""
+"""Names that go again: of a size that may be zero, or without which no more is left."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.selection import selected
+from rig.analysis.tracing.selection import needless
 from rig.model.effect import Parameter
 
 
@@ -20,31 +20,10 @@ def prepared(*own: str) -> Any:
     return SimpleNamespace(own=SimpleNamespace(made=dict.fromkeys(own), parameters={}))
 
 
-@pytest.mark.parametrize("astray", [True, False])
-def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: pytest.MonkeyPatch, astray: bool) -> None:
-    p = prepared()
-    vars(p).update(eq="as prepared", held_out=None, split=SimpleNamespace(fitted=()))
-    found: Any = SimpleNamespace(solution=solution("as searched", "an effect"), rough=False)
-    none_left = solution("astray" if astray else p.eq)
-    monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (none_left, "held", []))
-    monkeypatch.setattr(selected, "_floored", lambda p, s, runs: p)
-    monkeypatch.setattr(selected, "_polished", lambda p, s, so_far, runs, covered: so_far)
-    monkeypatch.setattr(selected, "_own_kept", lambda p, s: (p, s))
-    monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: s)
-    monkeypatch.setattr(selected, "design", lambda eq, terms, runs: SimpleNamespace(eq=eq, terms=terms))
-    monkeypatch.setattr(selected, "carrying", lambda eq, terms: eq)
-    monkeypatch.setattr(selected, "fit", lambda d: SimpleNamespace(design=d))
-    monkeypatch.setattr(selected, "unseen", lambda s, at: f"held out {s.design.eq}")
-    nothing: Any = None
-    left = selected.select(p, found, (), nothing)
-    assert left.solution.design.eq == "as prepared"
-    assert left.held == ("held out as prepared" if astray else "held")
-
-
 @pytest.fixture(autouse=True)
 def repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Enough was repeated, where a test says no other."""
-    monkeypatch.setattr(selected, "_few_repeats", lambda p, runs: False)
+    monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: False)
 
 
 @pytest.mark.parametrize(("needed", "few", "left"), [
@@ -55,7 +34,7 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
 ) -> None:
     """The one that does less is tried first; where that cannot go the other is; where few repeats tell the floor, none
     is needed for what is left over that."""
-    monkeypatch.setattr(selected, "_few_repeats", lambda p, runs: few)
+    monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: few)
     work = {"stribeck": 900.0, "presliding": 500.0}
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 
@@ -70,9 +49,9 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
         rest = [n for n in of.names if n != name]
         return with_(rest, needed == "both" or needed not in rest)
 
-    monkeypatch.setattr(selected, "_without", without)
+    monkeypatch.setattr(needless, "_without", without)
     nothing: Any = None
-    assert selected._without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == set(left)
+    assert needless.without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == set(left)
 
 
 @pytest.mark.parametrize(("known", "left"), [(False, {"weight"}), (True, {"weight", "runout", "spring"})])
@@ -93,9 +72,9 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
         return with_({"weight"})
 
-    monkeypatch.setattr(selected, "_without", without)
+    monkeypatch.setattr(needless, "_without", without)
     nothing: Any = None
-    assert selected._without_insignificant(with_(set(work)), (), nothing).names == left
+    assert needless.without_insignificant(with_(set(work)), (), nothing).names == left
 
 
 @pytest.mark.parametrize(("loud", "speed", "left"), [
@@ -126,9 +105,9 @@ def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
 
-    monkeypatch.setattr(selected, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))
+    monkeypatch.setattr(needless, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))
     nothing: Any = None
-    assert selected._without_insignificant(with_(["play", "stribeck"]), (), nothing).names == set(left)
+    assert needless.without_insignificant(with_(["play", "stribeck"]), (), nothing).names == set(left)
 
 
 @pytest.mark.parametrize(("half", "own", "left"), [
@@ -146,9 +125,9 @@ def test_beside_counts_that_runs_lose_no_name_stands_whose_size_is_hardly_known(
         scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=3.0) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=False, names=set(names), solution=s, p=prepared(*own))
 
-    monkeypatch.setattr(selected, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))
+    monkeypatch.setattr(needless, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))
     nothing: Any = None
-    assert selected._without_insignificant(with_(["spring"]), (), nothing).names == set(left)
+    assert needless.without_insignificant(with_(["spring"]), (), nothing).names == set(left)
 
 
 @pytest.mark.parametrize(("unread", "now", "left", "expected"), [
@@ -169,44 +148,6 @@ def test_under_a_load_nobody_read_a_name_goes_without_which_no_more_is_left(
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
         return with_([n for n in of.names if n != name], left if name == "mode" else 40.0)
 
-    monkeypatch.setattr(selected, "_without", without)
+    monkeypatch.setattr(needless, "_without", without)
     nothing: Any = None
-    assert selected._without_needless(with_(["weight", "mode"], now), (), nothing).names == expected
-
-
-def leaving(left: dict[str, float]) -> Any:
-    """Prepared, with unseen runs of which a model of one term leaves that many floors, by its name."""
-    at = SimpleNamespace(residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name]))
-    return SimpleNamespace(held_out=at)
-
-
-@pytest.mark.parametrize(("leaves", "stays"), [(1.17, "loop in the spring"), (1.0, "loop in the sensor")])
-def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
-    monkeypatch: pytest.MonkeyPatch, leaves: float, stays: str
-) -> None:
-    left = {"loop in the spring": 1.09, "loop in the sensor": leaves}
-    spring, sensor = (solution("eq", SimpleNamespace(name=name)) for name in left)
-    monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: sensor)
-    monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", []))
-    p = leaving(left)
-    held: Any = "held"
-    nothing: Any = None
-    stood = selected._stood_in_for(p, (spring, held, []), (), nothing)
-    assert [term.name for term in stood[0].design.terms] == [stays]
-
-
-@pytest.mark.parametrize(("amiss", "stays"), [(1.73, "creep"), (1.2, "hysteretic_stiffness")])
-def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_much(
-    monkeypatch: pytest.MonkeyPatch, amiss: float, stays: str
-) -> None:
-    """Of unseen runs the creep leaves 1.40 times the floor, the loop 1.20, and more than that where it acts."""
-    left = {"hysteretic_stiffness": 1.20, "creep": 1.40}
-    loop, creep = (solution("eq", SimpleNamespace(name=name)) for name in left)
-    score = SimpleNamespace(name="hysteretic_stiffness", left=amiss)
-    monkeypatch.setattr(selected, "with_confounders", lambda s, runs, covered: creep)
-    monkeypatch.setattr(selected, "backward_elimination", lambda s, at: (s, "held", [score] if s is loop else []))
-    p = leaving(left)
-    held: Any = "held"
-    nothing: Any = None
-    stood = selected._stood_in_for(p, (loop, held, []), (), nothing)
-    assert [term.name for term in stood[0].design.terms] == [stays]
+    assert needless.without_needless(with_(["weight", "mode"], now), (), nothing).names == expected

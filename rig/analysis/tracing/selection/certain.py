@@ -1,0 +1,40 @@
+"""Whether what is found where nothing is above the floor may be said all the same."""
+
+from __future__ import annotations
+
+from rig.analysis.tracing.floor.held_out import HeldOut, unseen
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.elimination import scales
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.selected import Selected, by_speed, is_loud
+from rig.analysis.tracing.selection.sizes import is_hardly_known
+from rig.analysis.tracing.thresholds import ALL, MISSING, PLAIN_TO_SEE, QUIET, SEEN, VOUCHED_FOR
+
+
+def is_certain(selected: Selected, floors: HeldOut) -> bool:
+    """Whether what the search found where nothing is above the `floors` may be said all the same: they are measured on
+    few repeats, and can be too high. Every name must be large and its size known, or repeats vouch for it, of one size
+    in all runs and what it acts on must be explained, and nothing unnamed be needed beside it, by those floors: by the
+    ones that are measured beside it small effects of others may stand out."""
+    loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
+    plain = selected.scores and not confounders_in(selected.solution) and not loud
+    return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
+
+
+def _is_plain_to_see(selected: Selected, score: HeldOutScore) -> bool:
+    """Large, and of a size that is known, or foretold of unseen runs where its law is: two runs at one speed may be all
+    that show a resonance, and from two no interval comes out narrow."""
+    effect = next(term.effect for term in selected.solution.design.terms if term.name == score.name)
+    law = scales(selected.solution, score.name, selected.words)
+    foretold = score.share > ALL and bool(law) and not any(is_hardly_known(scale) for scale in law)
+    known = foretold or not all(is_hardly_known(size) for size in effect.sizes(selected.words.get(score.name, ())))
+    vouched = score.as_repeats and (score.size > VOUCHED_FOR or score.seen > SEEN)
+    return score.fairly and ((known and score.size > PLAIN_TO_SEE) or vouched)
+
+
+def is_calm(p: Prepared) -> bool:
+    """Whether the baseline is at the floor on the held-out runs, and no speed has a friction of its own."""
+    held = unseen(p.baseline, p.held_out)
+    most, one = p.held_out.beyond_chance(p.held_out.residuals(p.baseline, held))
+    return most < QUIET and one < MISSING and not by_speed(p, p.baseline, held)

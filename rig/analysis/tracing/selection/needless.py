@@ -1,0 +1,120 @@
+"""Names that go again: their size may as well be zero, or without them no more is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.model import Solution, fit
+from rig.analysis.tracing.fit.search import polished, reduced
+from rig.analysis.tracing.floor.of_a_run import PAIRS
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
+from rig.analysis.tracing.selection.elimination import backward_elimination, scales, unscaled
+from rig.analysis.tracing.selection.score import HeldOutScore
+from rig.analysis.tracing.selection.selected import Selected, in_words
+from rig.analysis.tracing.selection.sizes import is_hardly_known, may_be_nothing
+from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, UNKNOWN
+from rig.core.quantiles import Z95
+from rig.model.effect import Array, Parameter, Reach
+
+
+def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without names whose size may as well be zero, or is hardly known beside a name that does more, or whose law may
+    be any beside an unknown rest, unless something is left to explain that is not with them: where few repeats tell
+    the floor, that is no reason for such a name. Of two that stand in for each other either may be the one that can go:
+    the one that does less is tried first."""
+    effect = {term.name: term.effect for term in selected.solution.design.terms}
+    most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
+    vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
+    insignificant = [
+        score
+        for score in selected.scores
+        if (sizes := effect[score.name].sizes(selected.words.get(score.name, ())))
+        and (
+            score.name in vague
+            or may_be_nothing(effect[score.name], selected.words.get(score.name, ()))
+            or (score.overall < most and not _vouched_for(score, most) and all(is_hardly_known(p) for p in sizes))
+        )
+    ]
+    needless = {score.name for score in insignificant}
+    nothing = {name for name in needless if may_be_nothing(effect[name], selected.words.get(name, ()))}
+    few = _few_repeats(selected.p, runs)
+    for least in sorted(insignificant, key=lambda score: score.overall):
+        fewer = _without(selected, least.name, runs, covered)
+        gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
+        no_name = few and gone.isdisjoint(CONFOUNDERS)
+        empty = gone <= nothing and _says_nothing(selected, gone)
+        if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
+            return without_insignificant(fewer, runs, covered)
+    return selected
+
+
+def _says_nothing(selected: Selected, names: set[str]) -> bool:
+    """Whether there are any, and of the law of none of them is anything known, not to ten times itself: what is left
+    without such a name is not explained by it either."""
+    laws = [scales(selected.solution, name, selected.words) for name in names]
+    return bool(laws) and all(law and all(_is_unknown(scale) for scale in law) for law in laws)
+
+
+def _is_unknown(scale: Parameter) -> bool:
+    return scale.ci95[1] - scale.ci95[0] > 2 * UNKNOWN * abs(scale.value)
+
+
+def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:
+    return len(repeats(p.eq.runs, runs)) < PAIRS
+
+
+def _vouched_for(score: HeldOutScore, most: float) -> bool:
+    """Whether runs want one size of it, and repeats no other one: beside other effects, not beside lost counts, which
+    are another size in every run."""
+    return score.as_repeats and score.fairly and bool(np.isfinite(most))
+
+
+def without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Of a load whose torque nobody read, without names that leave no more behind when they go, or nothing above the
+    floor: what came in beside a spring and an inertia as they were believed to be may be needed no more beside those
+    that are."""
+    if not any(run.load_unread and (run.look.inertia or run.carries) for run in selected.fitted_runs):
+        return selected
+    for least in sorted(selected.scores, key=lambda score: score.size):
+        fewer = _without(selected, least.name, runs, covered)
+        as_well = max(AS_WELL * selected.left, AT_THE_FLOOR)
+        if len(fewer.scores) == len(selected.scores) - 1 and fewer.left < as_well:
+            return without_needless(fewer, runs, covered)
+    return selected
+
+
+def without_idle(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
+    """Without further terms of an effect that may as well be nothing: what the search put beside the first one of them
+    while that was not yet what it is now."""
+    terms = selected.solution.design.terms
+    several = [i for i, term in enumerate(terms) if sum(term.name == other.name for other in terms) > 1]
+    if not several:
+        return selected
+    known = covariance(selected.solution)
+    least = min(several, key=lambda i: _told(selected.solution, known, i))
+    if _told(selected.solution, known, least) > Z95**2:
+        return selected
+    s = polished(fit(reduced(selected.solution.design, [least])), runs, covered)
+    kept = backward_elimination(s, selected.p.held_out)
+    fewer = Selected(selected.p, *kept, in_words(kept[0], runs, covariance))
+    as_well = fewer.left <= AS_WELL * selected.left and (selected.loud or not fewer.loud)
+    return without_idle(fewer, runs, covered) if as_well and fewer.names == selected.names else selected
+
+
+def _told(s: Solution, known: Array, term: int) -> float:
+    """Squares of the coefficients of a term over what is known of them (p, p), a coefficient."""
+    at = s.design.place(term)
+    x = s.x[at]
+    return float(x @ np.linalg.pinv(known[at, at]) @ x) / max(x.size, 1)
+
+
+def _without(selected: Selected, name: str, runs: Sequence[int], covered: Reach) -> Selected:
+    s = selected.solution
+    gone = [i for i, term in enumerate(s.design.terms) if term.name == name]
+    s, held, scores = backward_elimination(polished(fit(reduced(s.design, gone)), runs, covered), selected.p.held_out)
+    return Selected(selected.p, s, held, scores, in_words(s, runs, covariance))

@@ -1,0 +1,128 @@
+"""What of the search's effects is selected on the held-out runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rig.analysis.tracing.fit.covariance import covariance, scatter
+from rig.analysis.tracing.fit.equations import Equations
+from rig.analysis.tracing.fit.leaning import carrying
+from rig.analysis.tracing.fit.model import Design, Solution, design, fit
+from rig.analysis.tracing.fit.search import Found, polished, reduced
+from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks, unseen
+from rig.analysis.tracing.floor.noise import Measured, measure, quieter
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, with_confounders
+from rig.analysis.tracing.selection.elimination import backward_elimination, run_to_the_end, unresolved
+from rig.analysis.tracing.selection.instead_of import at_a_vibration, instead_of_the_gear
+from rig.analysis.tracing.selection.needless import without_idle, without_insignificant, without_needless
+from rig.analysis.tracing.selection.own_scores import own_scores
+from rig.analysis.tracing.selection.selected import Kept, Selected, in_words, is_loud, left_over
+from rig.analysis.tracing.thresholds import EXPLAINED, FREED, MISSING, NAMED, WORSE
+from rig.model.effect import Reach
+
+
+def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Effects are eliminated until all that are left may be named; their laws are fitted again beside each other."""
+    solution, held, scores = backward_elimination(found.solution, p.held_out)
+    if len(solution.design.terms) < len(found.solution.design.terms):
+        p = _floored(p, solution, runs)
+        solution, held, scores = backward_elimination(solution, p.held_out)
+    fewer = len(solution.design.terms) < len(found.solution.design.terms)
+    if fewer or found.rough or len(solution.design.terms) > 1:
+        solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
+    p, solution = _own_kept(p, solution)
+    solution, held, scores = _stood_in_for(p, (solution, held, scores), runs, covered)
+    told = solution.design.terms
+    while vague := _not_told(p, solution, held, runs, covered):
+        # one at a time: without it another one's law may be plain
+        candidates = [score for score in scores if score.name in vague]
+        least = min(candidates, key=lambda score: min(score.share, 1.0) * score.size).name
+        gone = [i for i, term in enumerate(solution.design.terms) if term.name == least]
+        solution, held, scores = backward_elimination(
+            polished(fit(reduced(solution.design, gone)), runs, covered), p.held_out
+        )
+    if len(solution.design.terms) < len(told):
+        p = _floored(p, solution, runs)
+        solution, held, scores = backward_elimination(solution, p.held_out)
+    if not solution.design.terms and solution.design.eq is not p.eq:
+        # what eliminated effects made of the gear, and with it of readings it stands in for, goes with them
+        solution = fit(design(carrying(p.eq, ()), (), runs))
+        held = unseen(solution, p.held_out)
+    selected = Selected(p, solution, held, scores, in_words(solution, runs, covariance))
+    selected = without_needless(without_insignificant(selected, runs, covered), runs, covered)
+    return without_idle(selected, runs, covered)
+
+
+def _not_told(p: Prepared, s: Solution, held: Design, runs: Sequence[int], covered: Reach) -> list[str]:
+    """Effects of whose law, or of which beside the spring, the data say nothing; beside an unknown rest those too that
+    a law at the end of its range was needed for."""
+    words = in_words(s, runs, scatter)
+    vague = unresolved(s, words, covered) or instead_of_the_gear(s) or at_a_vibration(p.own, words)
+    ended = run_to_the_end(s, covered)
+    return vague or (ended if ended and is_loud(p.held_out, s, held) else [])
+
+
+def _polished(p: Prepared, s: Solution, so_far: Kept, runs: Sequence[int], covered: Reach) -> Kept:
+    """Laws fitted again beside those that stayed; as they were where that loses one, or leaves much more of unseen
+    runs: two terms of one effect can trade what single runs show, and foretell nonsense of others."""
+    again = backward_elimination(polished(s, runs, covered), p.held_out)
+    kept = {term.name for term in again[0].design.terms}
+    now, before = (left_over(p, one) for one in (again, so_far))
+    worse = now > max(WORSE * before, EXPLAINED)
+    return again if kept >= {term.name for term in s.design.terms} and not worse else so_far
+
+
+def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) -> Kept:
+    """With the confounders that explain more than what they are taken for. What leaves more of unseen runs takes no
+    name away: fitted ones may tell two loops apart by what either law has wrong (exam 34, case 25). Where one may fall
+    short of its look-alike and does by no more, and that one leaves much itself, either may be what there is: no name
+    then (exam 56, case 42)."""
+    s, other = kept[0], with_confounders(kept[0], runs, covered)
+    again = backward_elimination(other, p.held_out)
+    came = {term.name for term in other.design.terms} - {term.name for term in s.design.terms}
+    if not came:
+        return again
+    as_it_was = backward_elimination(s, p.held_out)
+    if came.isdisjoint(term.name for term in again[0].design.terms):
+        return as_it_was
+    freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
+    if left_over(p, again) * (FREED if freed else 1.0) < left_over(p, as_it_was):
+        return again
+    short = [law for name, law in CONFOUNDERS.items() if name in came and law.short]
+    mimicked = frozenset().union(*(law.mimics for law in short))
+    amiss = any(score.name in mimicked and score.left > MISSING for score in as_it_was[2])
+    return again if amiss and len(short) == len(came) else as_it_was
+
+
+def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
+    """With the floor measured beside the effects that stayed: eliminated ones may have taken noise with them.
+
+    Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
+    nothing is left over that larger floor either.
+    """
+    measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
+    if any(term.effect.remembers for term in s.design.terms):
+        measured = replace(measured, noise=measured.noise.free("A"))
+    again = replace(p, measured=measured, held_out=_held_out(p, p.eq, measured))
+    known = repeats(p.eq.runs, runs) or not is_loud(again.held_out, s, unseen(s, again.held_out))
+    return again if known else p
+
+
+def _held_out(p: Prepared, eq: Equations, measured: Measured) -> HeldOut:
+    """Those blocks anew, of a campaign that is as calm as it was."""
+    return replace(held_out_blocks(eq, measured, p.split.held_out), calm=p.held_out.calm)
+
+
+def _own_kept(p: Prepared, s: Solution) -> tuple[Prepared, Solution]:
+    """Without effects of each run's own that take too little of the held-out excess to be named."""
+    failing = [name for name, (share, _) in own_scores(p, s).items() if share < NAMED]
+    if not failing:
+        return p, s
+    left = p.own.without(failing)
+    again = replace(p, own=left, eq=replace(p.eq, own=left.columns()))
+    eq = replace(s.design.eq, own=left.columns())
+    again = replace(again, held_out=_held_out(p, again.eq, again.measured))
+    return again, fit(design(eq, s.design.terms, p.split.fitted))

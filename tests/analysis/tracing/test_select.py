@@ -1,0 +1,74 @@
+"""What stays when every effect was eliminated, the gear as the baseline alone told it; and what stands in for what."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rig.analysis.tracing.selection import select
+
+
+def solution(eq: str, *terms: Any) -> Any:
+    return SimpleNamespace(design=SimpleNamespace(eq=eq, terms=terms))
+
+
+@pytest.mark.parametrize("astray", [True, False])
+def test_what_eliminated_effects_made_of_the_gear_goes_with_them(monkeypatch: pytest.MonkeyPatch, astray: bool) -> None:
+    p: Any = SimpleNamespace(eq="as prepared", held_out=None, split=SimpleNamespace(fitted=()))
+    p.own = SimpleNamespace(made={}, parameters={})
+    found: Any = SimpleNamespace(solution=solution("as searched", "an effect"), rough=False)
+    none_left = solution("astray" if astray else p.eq)
+    monkeypatch.setattr(select, "backward_elimination", lambda s, at: (none_left, "held", []))
+    monkeypatch.setattr(select, "without_insignificant", lambda selected, runs, covered: selected)
+    monkeypatch.setattr(select, "_floored", lambda p, s, runs: p)
+    monkeypatch.setattr(select, "_polished", lambda p, s, so_far, runs, covered: so_far)
+    monkeypatch.setattr(select, "_own_kept", lambda p, s: (p, s))
+    monkeypatch.setattr(select, "with_confounders", lambda s, runs, covered: s)
+    monkeypatch.setattr(select, "design", lambda eq, terms, runs: SimpleNamespace(eq=eq, terms=terms))
+    monkeypatch.setattr(select, "carrying", lambda eq, terms: eq)
+    monkeypatch.setattr(select, "fit", lambda d: SimpleNamespace(design=d))
+    monkeypatch.setattr(select, "unseen", lambda s, at: f"held out {s.design.eq}")
+    nothing: Any = None
+    left = select.select(p, found, (), nothing)
+    assert left.solution.design.eq == "as prepared"
+    assert left.held == ("held out as prepared" if astray else "held")
+
+
+def leaving(left: dict[str, float]) -> Any:
+    """Prepared, with unseen runs of which a model of one term leaves that many floors, by its name."""
+    at = SimpleNamespace(residuals=lambda s, held: s.design.terms[0].name, worst=lambda name: (left[name], left[name]))
+    return SimpleNamespace(held_out=at)
+
+
+@pytest.mark.parametrize(("leaves", "stays"), [(1.17, "loop in the spring"), (1.0, "loop in the sensor")])
+def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
+    monkeypatch: pytest.MonkeyPatch, leaves: float, stays: str
+) -> None:
+    left = {"loop in the spring": 1.09, "loop in the sensor": leaves}
+    spring, sensor = (solution("eq", SimpleNamespace(name=name)) for name in left)
+    monkeypatch.setattr(select, "with_confounders", lambda s, runs, covered: sensor)
+    monkeypatch.setattr(select, "backward_elimination", lambda s, at: (s, "held", []))
+    p = leaving(left)
+    held: Any = "held"
+    nothing: Any = None
+    stood = select._stood_in_for(p, (spring, held, []), (), nothing)
+    assert [term.name for term in stood[0].design.terms] == [stays]
+
+
+@pytest.mark.parametrize(("amiss", "stays"), [(1.73, "creep"), (1.2, "hysteretic_stiffness")])
+def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_much(
+    monkeypatch: pytest.MonkeyPatch, amiss: float, stays: str
+) -> None:
+    """Of unseen runs the creep leaves 1.40 times the floor, the loop 1.20, and more than that where it acts."""
+    left = {"hysteretic_stiffness": 1.20, "creep": 1.40}
+    loop, creep = (solution("eq", SimpleNamespace(name=name)) for name in left)
+    score = SimpleNamespace(name="hysteretic_stiffness", left=amiss)
+    monkeypatch.setattr(select, "with_confounders", lambda s, runs, covered: creep)
+    monkeypatch.setattr(select, "backward_elimination", lambda s, at: (s, "held", [score] if s is loop else []))
+    p = leaving(left)
+    held: Any = "held"
+    nothing: Any = None
+    stood = select._stood_in_for(p, (loop, held, []), (), nothing)
+    assert [term.name for term in stood[0].design.terms] == [stays]
