@@ -221,6 +221,21 @@ def test_below_a_floor_that_is_too_high_steps_must_still_take_a_part_of_all_ther
     assert explained(eq, {(0, "A"): wander + 6e-5 * step}, columns) > 0.5
 
 
+@pytest.mark.parametrize(("louder", "all_of_it"), [(1.0, True), (2.0, False)])
+def test_steps_below_the_floor_are_all_that_a_run_has_beyond_its_repeats_or_are_not(
+    monkeypatch: pytest.MonkeyPatch, louder: float, all_of_it: bool, rng: np.random.Generator
+) -> None:
+    """Runs of other conditions have more noise, which says nothing of these."""
+    step = (np.arange(2000) > 900) * 1.0
+    noise = Noise({"A": 5e-5}, {"A": 1.0}, {"A": np.inf})
+    runs: Any = tuple(SimpleNamespace(name=f"{kind}_{i}", kind=kind) for kind in ("slow", "fast") for i in range(3))
+    monkeypatch.setattr(steps, "alike", lambda a, b: a.kind == b.kind)
+    e = {(i, "A"): (2e-5 if i < 3 else 8e-5) * rng.standard_normal(2000) for i in range(6)}
+    e[0, "A"] = louder * e[0, "A"] + 1e-5 * step
+    share = explained(Equations(runs, {}, noise), e, {(0, "A"): step[:, None]})
+    assert (share > 0.7) is all_of_it
+
+
 @pytest.mark.parametrize(("after", "stays"), [(3e-5, True), (0.0, False)])
 def test_counts_are_lost_for_good_and_a_bump_is_not(
     monkeypatch: pytest.MonkeyPatch, after: float, stays: bool, rng: np.random.Generator

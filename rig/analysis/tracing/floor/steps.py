@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, heights, jumps, one_of_size
 from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import STEP, STEP_AGAIN, STEP_ALIKE
 from rig.core.quantiles import Z95
@@ -27,7 +28,7 @@ AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
 OF_MEDIAN = 1.25  # standard error of a median over that of a mean, √(π/2)
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
-AT_LEAST = 0.5  # of all there is, the excess, whatever the floor
+AT_LEAST = 0.5  # of all there is, or of what is taken, the excess, whatever the floor
 FEWER = 0.5  # of the smallest of a few jumps that are certain, another may be: two counts beside three, and noise
 MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
 
@@ -259,11 +260,21 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
 
 
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:
-    """Share of the excess over the floor in A that columns of their own take, in the blocks of `e` that have some.
-    What a step does to the torques is no measure: it has another unit, and is hardly seen there."""
-    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items() if key[1] == "A"}
-    keys = [key for key in own if key in e]
-    whole = sum(float(e[k] @ e[k]) for k in keys)
-    over = whole - sum(e[k].size * eq.noise.sigma[k[1]] ** 2 for k in keys)
-    excess = max(over, AT_LEAST * whole)  # jumps raise a floor that turns of one run tell, even above themselves
-    return sum(float(np.sum((own[k].T @ e[k]) ** 2)) for k in keys) / max(excess, 1e-300)
+    """Share of what is left in A beyond a run's repeats that columns of their own take, in the blocks of `e` that have
+    some; of one that has no repeat without them, beyond the floor. What a step does to the torques is no measure: it
+    has another unit, and is hardly seen there."""
+    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items() if key[1] == "A" and key in e}
+    taken = {key: float(np.sum((q.T @ e[key]) ** 2)) for key, q in own.items()}
+    excess = sum(_excess(eq, e, key, own, work) for key, work in taken.items())
+    return sum(taken.values()) / max(excess, 1e-300)
+
+
+def _excess(eq: Equations, e: Mapping[Key, Array], key: Key, own: Collection[Key], taken: float) -> float:
+    """Sum of squares of a block beyond what it has without its jumps, which take so much of it. Jumps raise a floor
+    that turns of one run tell, even above themselves: of that floor no more than a half is believed."""
+    run, whole = eq.runs[key[0]], float(e[key] @ e[key])
+    others = [k for k in e if k[1] == "A" and k not in own and whole_run(eq.runs[k[0]].name) != whole_run(run.name)]
+    like = [float(np.mean(e[k] ** 2)) for k in others if alike(eq.runs[k[0]], run)]
+    if like:
+        return max(whole - e[key].size * float(np.median(like)), AT_LEAST * taken)
+    return max(whole - e[key].size * eq.noise.sigma["A"] ** 2, AT_LEAST * whole)
