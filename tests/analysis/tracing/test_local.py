@@ -228,7 +228,9 @@ def test_steps_below_the_floor_are_all_that_a_run_has_beyond_its_repeats_or_are_
     """Runs of other conditions have more noise, which says nothing of these."""
     step = (np.arange(2000) > 900) * 1.0
     noise = Noise({"A": 5e-5}, {"A": 1.0}, {"A": np.inf})
-    runs: Any = tuple(SimpleNamespace(name=f"{kind}_{i}", kind=kind) for kind in ("slow", "fast") for i in range(3))
+    runs: Any = tuple(
+        SimpleNamespace(name=f"{kind}_{i}", kind=kind, locked=False) for kind in ("slow", "fast") for i in range(3)
+    )
     monkeypatch.setattr(steps, "alike", lambda a, b: a.kind == b.kind)
     e = {(i, "A"): (2e-5 if i < 3 else 8e-5) * rng.standard_normal(2000) for i in range(6)}
     e[0, "A"] = louder * e[0, "A"] + 1e-5 * step
