@@ -28,7 +28,7 @@ AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
 OF_MEDIAN = 1.25  # standard error of a median over that of a mean, √(π/2)
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
-AT_LEAST = 0.5  # of all there is, or of what is taken, the excess, whatever the floor
+AT_LEAST = 0.5  # of all there is, or of what is taken, the excess that is believed
 FEWER = 0.5  # of the smallest of a few jumps that are certain, another may be: two counts beside three, and noise
 MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
 
@@ -271,10 +271,11 @@ def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array
 
 def _excess(eq: Equations, e: Mapping[Key, Array], key: Key, own: Collection[Key], taken: float) -> float:
     """Sum of squares of a block beyond what it has without its jumps, which take so much of it. Jumps raise a floor
-    that turns of one run tell, even above themselves: of that floor no more than a half is believed."""
+    that turns of one run tell, even above themselves: of that floor no more than a half is believed. Nor does a repeat
+    tell that is about as loud as the run with them."""
     run, whole = eq.runs[key[0]], float(e[key] @ e[key])
     others = [k for k in e if k[1] == "A" and k not in own and whole_run(eq.runs[k[0]].name) != whole_run(run.name)]
     like = [float(np.mean(e[k] ** 2)) for k in others if alike(eq.runs[k[0]], run)]
-    if like:
-        return max(whole - e[key].size * float(np.median(like)), AT_LEAST * taken)
+    if like and (over := whole - e[key].size * float(np.median(like))) > AT_LEAST * taken:
+        return over
     return max(whole - e[key].size * eq.noise.sigma["A"] ** 2, AT_LEAST * whole)
