@@ -233,7 +233,7 @@ def test_steps_below_the_floor_are_all_that_a_run_has_beyond_its_repeats_or_are_
     )
     monkeypatch.setattr(steps, "alike", lambda a, b: a.kind == b.kind)
     e = {(i, "A"): (2e-5 if i < 3 else 8e-5) * rng.standard_normal(2000) for i in range(6)}
-    e[0, "A"] = louder * e[0, "A"] + 2e-5 * step
+    e[0, "A"] = louder * e[0, "A"] + 2e-5 * (step - step.mean())
     share = explained(Equations(runs, {}, noise), e, {(0, "A"): step[:, None]})
     assert (share > 0.7) is all_of_it
 
