@@ -11,14 +11,16 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 from rig.model.gloss import waved
 from rig.model.waves import wave
 
-TOGETHER = 0.0  # of the first shape parameter: orders 1, 2 and 4 at once, as a wave generator with two lobes has them
+# of the first shape parameter, several orders at once: 1, 2 and 4, as a wave generator with two lobes has them, or
+# those of a narrow sector that either lobe passes
+TOGETHER, SECTOR = 0.0, -1.0
 MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
 REACTION: Final = {MOTOR: Port.MOTOR_TORQUE, OUTPUT: Port.LOAD_TORQUE}
 
 
 class AngleDependentStiffness(Effect):
-    """1/K gains κ/K·cos(k·θ_m + φ), k = 1, 2, 4, each alone or all together: the wind-up gains T·κ/K·cos …, the motor
-    is resisted by ½·φ²·dK/dθ_m.
+    """1/K gains κ/K·cos(k·θ_m + φ), of one k or several: the wind-up gains T·κ/K·cos …, the motor is resisted by
+    ½·φ²·dK/dθ_m.
 
     That reaction, −½·T²·d(1/K)/dθ_m, is 0.01 N·m with κ = 5 % at 40 N·m. Where the angle at which the stiffness changes
     is not that of the spring's own energy it is absent: the data choose.
@@ -37,13 +39,13 @@ class AngleDependentStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
-    LOBES: Final = (1.0, 2.0, 4.0)
+    SEVERAL: Final = {TOGETHER: (1.0, 2.0, 4.0), SECTOR: (2.0, 4.0, 6.0, 8.0)}
     OF_OUTPUT: Final = (1.0, 2.0)
     TURNS: Final = 0.5  # of the output, least travel: an order 1 has shown both its ends then
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the wave generator, and of the output where it turns far enough."""
-        of_motor = [(k, reaction, MOTOR) for k in (*self.ORDERS, TOGETHER) for reaction in (1.0, 0.0)]
+        of_motor = [(k, reaction, MOTOR) for k in (*self.ORDERS, TOGETHER, SECTOR) for reaction in (1.0, 0.0)]
         orders = self.OF_OUTPUT if reach.load_turns >= self.TURNS else ()
         return (*of_motor, *((k, reaction, OUTPUT) for k in orders for reaction in (1.0, 0.0)))
 
@@ -73,7 +75,7 @@ class AngleDependentStiffness(Effect):
         return bool((waves * fit.known.K < 1.0).all())
 
     def _orders(self, shape: Shape) -> tuple[float, ...]:
-        return self.LOBES if shape[0] == TOGETHER else (shape[0],)
+        return self.SEVERAL.get(shape[0], (shape[0],))
 
 
 def _amplitude(amplitude_and_phase: tuple[Parameter, Parameter]) -> float:

@@ -21,6 +21,8 @@ VIBRATION = EACH_RUN["external_vibration"]
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
 AS_ONE = 0.7  # an interference in one sensor alone has 0
 CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
+STILL_THERE = 0.3  # of the mean size; of ten vibrations at a fixed frequency 0.98 and more
+SEVERAL = 6  # runs that a line over the speed is laid through
 FEWEST = 3  # runs, or stretches of one, that a line is told by
 SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than that are one
 
@@ -28,7 +30,8 @@ SAME = 0.05  # Hz, half of what a run of 10 s resolves: two lines nearer than th
 @dataclass(frozen=True)
 class Line:
     """One frequency: amplitude by channel (median over runs), half the 95 % intervals of frequency and torque, and the
-    torque itself. `as_one`: how much of it one torque on the load makes, in angle and motor torque alike."""
+    torque itself. `as_one`: how much of it one torque on the load makes, in angle and motor torque alike. `at_rest`: as
+    large as it is by the line over the speed, with its half width, where nothing turns, over its mean."""
 
     frequency_hz: float
     amplitude: dict[str, float]
@@ -36,11 +39,14 @@ class Line:
     half_torque: float
     torque: float  # N·m
     as_one: float = 0.0
+    at_rest: float = 1.0
 
     def of_the_load(self, stiffness: float) -> bool:
         """True for a torque on the load, of a size that is known; an interference in the torque sensor would wind the
-        gear up in A too. Without one the torque shows in A and M, in the proportion that the gear's stiffness and ratio
-        make."""
+        gear up in A too, and what a delay that swings makes of a turning angle is nothing at rest. Without one the
+        torque shows in A and M, in the proportion that the gear's stiffness and ratio make."""
+        if self.at_rest < STILL_THERE:
+            return False
         if "L" not in self.amplitude:
             return self.as_one > AS_ONE
         torque = self.amplitude["L"]
@@ -171,10 +177,23 @@ def _line(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array], f
         information += wave**2 * n * (t[-1] - t[0]) ** 2 / (24 * noise)  # of 2π·f, one run      [rife1974]
     half_hz = float(np.hypot(Z95 / (2 * np.pi * np.sqrt(max(information, 1e-300))), CRYSTAL * frequency))
     if keys:
-        return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)))
+        speeds = np.array([eq.runs[run].turning for run, _ in keys])
+        at_rest = _at_rest(speeds, np.array(sizes))
+        return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)), at_rest=at_rest)
     as_one, sizes = _as_one(eq, e, columns)
     spread = float(np.std(sizes)) / np.sqrt(len(sizes)) if sizes else 0.0
     return Line(frequency, amplitude, half_hz, Z95 * spread, float(np.median(sizes)) if sizes else 0.0, as_one)
+
+
+def _at_rest(speeds: Array, sizes: Array) -> float:
+    """The size where nothing turns, with its half width, over the mean: of the straight line through the sizes of runs
+    (k,) at their speeds (k,); 1 of runs that are few, or turn alike."""
+    if sizes.size < SEVERAL or speeds.max() < LINE_SPEEDS * speeds.min():
+        return 1.0
+    z = np.stack([np.ones(speeds.size), speeds], 1)
+    x = np.linalg.lstsq(z, sizes, rcond=None)[0]
+    variance = float(np.sum((sizes - z @ x) ** 2)) / (sizes.size - 2) * float(np.linalg.inv(z.T @ z)[0, 0])
+    return float(x[0] + Z95 * np.sqrt(variance)) / max(float(sizes.mean()), 1e-300)
 
 
 def _as_one(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> tuple[float, list[float]]:

@@ -17,6 +17,7 @@ from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.uneven_drag import uneven_drag
 from rig.analysis.tracing.rest.uneven_friction import uneven_friction
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.rest.warm_zeros import warm_zeros
@@ -47,7 +48,7 @@ def decide(asked: Asked) -> Conclusion:
         return said
     if not asked.loud:
         inside = None if names else hidden(p, s, asked.after, asked.floors)
-        elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, names, asked.floors)
+        elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, s, names, asked.floors)
         return elsewhere or _jumped(p, names) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     where = _where(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
@@ -167,11 +168,14 @@ def _jumped(p: Prepared, names: tuple[str, ...]) -> Conclusion | None:
     return Conclusion(verdict, None, ("time",), along("time"))
 
 
-def _uneven(p: Prepared, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
-    """Nothing is above the floor, but the motor's friction is another one each way; None where it is not. Names stand
-    beside it."""
+def _uneven(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
+    """Nothing is above the floor, but the motor's friction or its drag is another one each way; None where neither is.
+    Names stand beside it."""
     loudness = [x for (_, c), x in floors.items() if c == "M"]
-    uneven = uneven_friction(p.campaign.runs, float(np.median(loudness))) if loudness else None
+    if not loudness:
+        return None
+    floor = float(np.median(loudness))
+    uneven = uneven_friction(p.campaign.runs, floor) or uneven_drag(s, p.split.fitted, p.split.held_out, floor)
     if uneven is None:
         return None
     verdict = Verdict(Status.UNKNOWN, names, (), "direction", None, None, uneven.sentence())

@@ -1,0 +1,112 @@
+"""A drag of the motor that is more one way, the more the faster: every run has a zero of the motor's torque of its own,
+which takes it on, so that no error shows it.
+
+A run that turns one way at one speed cannot tell it from a zero. All of them together can: their zeros lie on one curve
+over the size of the speed, the same forth and back, and those of unseen runs on the curve through the fitted ones'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.offsets import offset
+from rig.core.quantiles import Z95
+from rig.core.units import RPM
+from rig.model.effect import Array
+
+FITTED: Final = 8  # runs that turn one way: a curve beside what friction has wrong takes four
+UNSEEN: Final = 4
+EACH_WAY: Final = 2  # of the fitted ones that turn at least HALF as fast as the fastest
+HALF: Final = 0.4
+ONE_WAY: Final = 0.9  # of the way
+POWERS: Final = (0.5, 1.0, 2.0)  # of a film between lip and shaft, of a fluid, of what it stirs
+LEFT: Final = 0.4  # of what friction and the time leave of the unseen zeros
+PLAIN: Final = 3.0  # half widths of its interval, six standard errors
+LARGE: Final = 2.0  # floors of the motor's torque: less matters to nobody
+
+
+@dataclass(frozen=True)
+class UnevenDrag:
+    """By how much the drag is more forward than backward at the fastest speed [N·m], its 95 % half width, that speed
+    [rad/s], and what of the unseen zeros is foretold."""
+
+    size: float
+    half: float
+    speed: float
+    foretold: float
+
+    def sentence(self) -> str:
+        """What is said of it."""
+        way = "forward" if self.size > 0 else "backward"
+        return (
+            f"The motor is dragged by {1e3 * abs(self.size):.3g} ± {1e3 * self.half:.2g} mN·m more {way} than the "
+            f"other way at {self.speed / RPM:.0f} rpm, and by less the slower it turns; it foretells "
+            f"{self.foretold:.0%} of what the zeros of the motor's torque in unseen runs differ by. Every run has such "
+            "a zero of its own, so that no error shows it, and no effect of the library explains it."
+        )
+
+
+def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor: float) -> UnevenDrag | None:
+    """Of the zeros of the motor's torque; None where they lie on no curve over the speed, or on one that is less than
+    the `floor` [N·m], or where hardly any run turns fast the other way."""
+    eq = s.design.eq
+    mine, others = (_one_way(eq, runs) for runs in (fitted, unseen))
+    speed, later = (np.array([_speed(eq, i) for i in runs]) for runs in (mine, others))
+    if speed.size < FITTED or later.size < UNSEEN:
+        return None
+    fast = np.abs(speed) > HALF * np.abs(speed).max()
+    if min(np.sum(fast & (speed > 0)), np.sum(fast & (speed < 0))) < EACH_WAY:
+        return None
+    begun, after = (np.array([eq.runs[i].start for i in runs]) for runs in (mine, others))
+    zeros, wanted = (np.array([offset(s, i, "M") for i in runs]) for runs in (mine, others))
+    plain, there = _friction(speed, begun), _friction(later, after)
+    before = _left(plain, there, zeros, wanted)
+    found = [(_left(*_with(p, (plain, speed), (there, later)), zeros, wanted), p) for p in POWERS]
+    left, power = min(found)
+    size, half = _size(_with(power, (plain, speed), (there, later))[0], zeros)
+    if left > LEFT * before or abs(size) < max(LARGE * floor / 2, PLAIN * half):
+        return None
+    return UnevenDrag(2 * size, 2 * half, float(np.abs(speed).max()), 1 - (left / before) ** 2)
+
+
+def _one_way(eq: Equations, runs: Sequence[int]) -> list[int]:
+    """Those in which the motor turned freely, one way."""
+    free = [i for i in runs if (i, "M") in eq.rows and not eq.runs[i].locked]
+    return [i for i in free if abs(_speed(eq, i)) > ONE_WAY * eq.runs[i].turning]
+
+
+def _speed(eq: Equations, run: int) -> float:
+    """Mean, with its sign, rad/s."""
+    return float(np.mean(np.concatenate([p.omega_m for p in eq.runs[run].pieces])))
+
+
+def _friction(speed: Array, begun: Array) -> Array:
+    """What a zero may have besides: one for all, what is wrong in a constant friction and in one that grows with the
+    speed, and a drift, (n, 4)."""
+    return np.stack([np.ones(speed.size), np.sign(speed), speed, begun], 1)
+
+
+def _with(power: float, mine: tuple[Array, Array], others: tuple[Array, Array]) -> tuple[Array, Array]:
+    """The columns of both with the size of the speed to a `power`, over that of the fastest."""
+    fastest = np.abs(mine[1]).max()
+    fitted, unseen = (np.column_stack([(np.abs(x) / fastest) ** power, z]) for z, x in (mine, others))
+    return fitted, unseen
+
+
+def _left(z: Array, there: Array, zeros: Array, wanted: Array) -> float:
+    """RMS that columns `z` (n, k) through the fitted zeros leave of the unseen ones, whose columns are `there`."""
+    x = np.linalg.lstsq(z, zeros, rcond=None)[0]
+    return float(np.sqrt(np.mean((wanted - there @ x) ** 2)))
+
+
+def _size(z: Array, zeros: Array) -> tuple[float, float]:
+    """The first coefficient, and half its 95 % interval by what is left."""
+    x = np.linalg.lstsq(z, zeros, rcond=None)[0]
+    variance = float(np.sum((zeros - z @ x) ** 2)) / max(zeros.size - z.shape[1], 1)
+    return float(x[0]), Z95 * float(np.sqrt(variance * np.linalg.pinv(z.T @ z)[0, 0]))
