@@ -53,7 +53,7 @@ PLACES = {
     "speed": "the speed",
     "load": "the torque through the gear",
     "direction": "the direction of motion",
-    "time": "the time since the campaign began",
+    "time": "the time since the campaign or a run began",
     "time_periodic": "time, at a fixed frequency whatever the speed",
     "temperature": "the temperature",
     "memory": "what the torque has been: memory",

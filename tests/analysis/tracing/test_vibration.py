@@ -64,3 +64,21 @@ def test_a_line_above_what_slow_runs_resolve_is_told_by_the_fast_ones(
 def test_a_line_whose_torque_may_be_nothing_is_no_vibration(half: float, is_one: bool) -> None:
     line = vibration.Line(52.84, {"A": 0.0, "L": 0.065}, 0.001, half, 0.065)
     assert line.of_the_load(7000.0) == is_one
+
+
+def test_a_line_in_proportion_to_the_speed_is_no_torque(rng: np.random.Generator) -> None:
+    """A delay that swings makes one of a turning angle, and nothing at rest."""
+    speeds = np.repeat([1.0, 6.0, 12.0, 21.0, 31.0, 42.0], 2)
+    for sizes, is_one in ((0.012 * speeds, False), (0.25 + 0.0 * speeds, True)):
+        at_rest = vibration._at_rest(speeds, sizes + 0.004 * rng.standard_normal(speeds.size))
+        line = vibration.Line(41.9, {"A": 0.0, "L": 0.25}, 0.001, 0.05, 0.25, at_rest=at_rest)
+        assert line.of_the_load(7500.0) is is_one
+    assert vibration._at_rest(speeds[:2], 0.012 * speeds[:2]) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("hz", "strokes"),
+    [([13.2, 16.5, 9.9, 3.3], True), ([10.4, 10.63, 10.17, 20.8], False), ([4.1, 8.2, 12.3, 16.42], True)],
+)
+def test_lines_at_whole_multiples_of_how_often_it_strikes_are_one_vibration(hz: list[float], strokes: bool) -> None:
+    assert vibration._in_strokes(hz) is strokes

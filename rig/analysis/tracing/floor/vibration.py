@@ -19,6 +19,7 @@ from rig.model.effects.external_vibration import ExternalVibration
 
 VIBRATION = EACH_RUN["external_vibration"]
 LINES = 3  # of one vibration: one that swells and fades has two beside its own
+STROKES = 10  # of one that comes in strokes, at whole multiples of how often
 AS_ONE = 0.7  # an interference in one sensor alone has 0
 CRYSTAL = 2e-5  # of a frequency: what the oscillator of a host's clock may be off      [vig1992]
 STILL_THERE = 0.3  # of the mean size; of ten vibrations at a fixed frequency 0.98 and more
@@ -72,13 +73,15 @@ class Vibration:
 
 def find_vibration(s: Solution, e: Mapping[Key, Array], runs: Sequence[int]) -> Vibration | None:
     """In the residuals `e` of a fit to `runs`; None where nothing shakes the load at a frequency of its own. A swelling
-    one has more than one line."""
+    one has more than one line, and one that comes in strokes has many."""
     eq, stiffness = s.design.eq, 1 / c if (c := s.value("compliance")) > 0 else np.inf
     found: tuple[Line, ...] = ()
     columns: dict[Key, Array] = {}
     left = dict(e)
-    while len(found) < LINES and (hz := _loudest(eq, left)) is not None:
+    while len(found) < STROKES and (hz := _loudest(eq, left)) is not None:
         if any(abs(hz - line.frequency_hz) < SAME for line in found):
+            break
+        if len(found) >= LINES and not _in_strokes([hz, *(line.frequency_hz for line in found)]):
             break
         mine = vibration_columns(eq, hz)
         more = joined([columns, mine])
@@ -91,6 +94,13 @@ def find_vibration(s: Solution, e: Mapping[Key, Array], runs: Sequence[int]) -> 
         found, columns = (*found, line), more
         left = {key: beside.residual(key) for key in left}
     return Vibration(found, columns) if found else None
+
+
+def _in_strokes(hz: Sequence[float]) -> bool:
+    """Whether all frequencies are whole multiples of how far the nearest two of them are apart."""
+    order = np.sort(hz)
+    often = float(np.diff(order).min())
+    return often > 2 * SAME and bool(np.all(np.abs(order - often * np.round(order / often)) < SAME))
 
 
 def _with(eq: Equations, columns: Mapping[Key, Array]) -> Equations:

@@ -36,6 +36,7 @@ class Home:
     own_zeros: bool = True  # whether every run had a zero of its own beside it
     late: bool = False  # said only where no plainer one does nearly as well
     first: bool = False  # said before all others that do no more than nearly as well
+    said: str = ""  # what it is called, where that is more than its coordinate
 
 
 def plainest(found: Sequence[Home]) -> list[Home]:

@@ -20,13 +20,13 @@ from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.effect import Array
 
-FITTED: Final = 8  # runs that turn one way: a curve beside what friction has wrong takes four
+FITTED: Final = 8  # runs that turn one way: a curve beside what friction has wrong takes four numbers
 UNSEEN: Final = 4
 EACH_WAY: Final = 2  # of the fitted ones that turn at least HALF as fast as the fastest
 HALF: Final = 0.4
 ONE_WAY: Final = 0.9  # of the way
 POWERS: Final = (0.5, 1.0, 2.0)  # of a film between lip and shaft, of a fluid, of what it stirs
-LEFT: Final = 0.4  # of what friction and the time leave of the unseen zeros
+LEFT: Final = 0.4  # of what friction leaves of the unseen zeros, or a drift does
 PLAIN: Final = 3.0  # half widths of its interval, six standard errors
 LARGE: Final = 2.0  # floors of the motor's torque: less matters to nobody
 
@@ -65,14 +65,17 @@ def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor
         return None
     begun, after = (np.array([eq.runs[i].start for i in runs]) for runs in (mine, others))
     zeros, wanted = (np.array([offset(s, i, "M") for i in runs]) for runs in (mine, others))
-    plain, there = _friction(speed, begun), _friction(later, after)
+    plain, there = _friction(speed), _friction(later)
+    fastest = np.abs(speed).max()
     before = _left(plain, there, zeros, wanted)
-    found = [(_left(*_with(p, (plain, speed), (there, later)), zeros, wanted), p) for p in POWERS]
-    left, power = min(found)
-    size, half = _size(_with(power, (plain, speed), (there, later))[0], zeros)
-    if left > LEFT * before or abs(size) < max(LARGE * floor / 2, PLAIN * half):
+    drifts = _left(np.column_stack([begun, plain]), np.column_stack([after, there]), zeros, wanted)
+    curves = [((np.abs(speed) / fastest) ** p, (np.abs(later) / fastest) ** p) for p in POWERS]
+    tried = [(np.column_stack([x, plain]), np.column_stack([y, there])) for x, y in curves]
+    left, best = min((_left(*z, zeros, wanted), i) for i, z in enumerate(tried))
+    size, half = _size(tried[best][0], zeros)
+    if left > LEFT * min(before, drifts) or abs(size) < max(LARGE * floor / 2, PLAIN * half):
         return None
-    return UnevenDrag(2 * size, 2 * half, float(np.abs(speed).max()), 1 - (left / before) ** 2)
+    return UnevenDrag(2 * size, 2 * half, float(fastest), 1 - (left / before) ** 2)
 
 
 def _one_way(eq: Equations, runs: Sequence[int]) -> list[int]:
@@ -86,17 +89,10 @@ def _speed(eq: Equations, run: int) -> float:
     return float(np.mean(np.concatenate([p.omega_m for p in eq.runs[run].pieces])))
 
 
-def _friction(speed: Array, begun: Array) -> Array:
-    """What a zero may have besides: one for all, what is wrong in a constant friction and in one that grows with the
-    speed, and a drift, (n, 4)."""
-    return np.stack([np.ones(speed.size), np.sign(speed), speed, begun], 1)
-
-
-def _with(power: float, mine: tuple[Array, Array], others: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The columns of both with the size of the speed to a `power`, over that of the fastest."""
-    fastest = np.abs(mine[1]).max()
-    fitted, unseen = (np.column_stack([(np.abs(x) / fastest) ** power, z]) for z, x in (mine, others))
-    return fitted, unseen
+def _friction(speed: Array) -> Array:
+    """What a zero may have besides: one for all, and what is wrong in a constant friction and in one that grows with
+    the speed, (n, 3)."""
+    return np.stack([np.ones(speed.size), np.sign(speed), speed], 1)
 
 
 def _left(z: Array, there: Array, zeros: Array, wanted: Array) -> float:

@@ -16,6 +16,7 @@ from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
+from rig.analysis.tracing.rest.settling import settled
 from rig.analysis.tracing.rest.sudden import since, turned_since
 from rig.analysis.tracing.rest.worn import worn_off
 from rig.analysis.tracing.thresholds import ALL, PLAIN_ENOUGH
@@ -61,7 +62,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
             out.append(_of_the_way(_of_the_output(found, r), sense))
     if (gone := _wound(h, channel)) is not None:
         out.append(gone)
-    out += worn_off(h, channel)
+    out += [*worn_off(h, channel), *settled(h, channel)]
     out += _frequencies(h, seen, channel)
     out += _at_once(h, channel, alone)
     if channel == "A":

@@ -36,7 +36,7 @@ def nothing(read: Sequence[str], after: float) -> str:
 
 def of_the_rest(best: Home, total: float) -> str:
     """How much is left, in floors, and where it lives."""
-    where = best.coordinate.replace("_", " ")
+    where = best.said or best.coordinate.replace("_", " ")
     if best.share < FORETELLS_NOTHING:
         return (
             f"What is left is {total:.1f} times the floor and follows no effect of the library; no coordinate that was "

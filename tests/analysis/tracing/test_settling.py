@@ -1,0 +1,43 @@
+"""What settles anew in every run is told from what goes with the angle, or with the campaign's time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.rest.binned import Halves, folds
+from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.settling import settled
+from rig.analysis.tracing.selection.sentences import of_the_rest
+from rig.model.effect import Array
+
+RUNS, ROWS, STEP, TAU = 12, 800, 0.05, 6.0  # s
+
+
+def at(time: Array, e: Array, timed: bool = True) -> Halves:
+    run = np.repeat(np.arange(RUNS), ROWS)
+    none = np.zeros((time.size, 0))
+    angle = {"motor_angle": 5.0 * time, "load_angle": 0.1 * time, "direction": np.ones(time.size)}
+    r = Rest(e, run, {"time": time, **angle}, STEP, none, none[:0], own_zeros=False, timed=timed)
+    return Halves(r, folds(r))
+
+
+def test_a_zero_that_runs_in_with_every_run_is_told_by_one_number(rng: np.random.Generator) -> None:
+    since = np.tile(STEP * np.arange(ROWS), RUNS)
+    time = since + np.repeat(100.0 * np.arange(RUNS), ROWS)
+    e = 5 * np.exp(-since / TAU) + rng.standard_normal(time.size)
+    (home,) = settled(at(time, e), "A")
+    assert (home.coordinate, home.first) == ("time", True)
+    assert home.share > 0.9
+    assert "since each run began, with a time constant near 8 s" in of_the_rest(home, 4.0)
+    assert settled(at(time, e, timed=False), "A") == []
+
+
+@pytest.mark.parametrize("once", [True, False])
+def test_what_drifts_through_the_campaign_or_comes_and_goes_does_not_settle(
+    rng: np.random.Generator, once: bool
+) -> None:
+    since = np.tile(STEP * np.arange(ROWS), RUNS)
+    time = since + np.repeat(100.0 * np.arange(RUNS), ROWS)
+    e = 5 * np.exp(-time / 300.0) if once else 5 * np.sin(2 * np.pi * since / 11.0)
+    assert settled(at(time, e + rng.standard_normal(time.size)), "A") == []
