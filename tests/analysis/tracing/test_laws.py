@@ -12,7 +12,13 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.search import _same
 from rig.analysis.tracing.runs.smoothing import thin
 from rig.model.effect import Array, Effect, Fit, Moved, Parameter, Port, Signals
-from rig.model.effects.angle_dependent_stiffness import MOTOR, OUTPUT, TOGETHER, AngleDependentStiffness
+from rig.model.effects.angle_dependent_stiffness import (
+    MOTOR,
+    OUTPUT,
+    SECTOR,
+    TOGETHER,
+    AngleDependentStiffness,
+)
 from rig.model.effects.channel_time_skew import ALONG_RUN, EACH_RUN, KNOTS, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
@@ -591,12 +597,17 @@ def test_a_motor_keeps_a_rotor_of_its_own_beside_what_hangs_on_it(inertia: float
     assert TorsionalMode().plausible(on_the_motor) is is_one
 
 
-def test_orders_of_a_modulated_spring_together_are_those_of_each_alone() -> None:
+@pytest.mark.parametrize("several", [TOGETHER, SECTOR])
+def test_orders_of_a_modulated_spring_together_are_those_of_each_alone(several: float) -> None:
     s, effect = motion(), AngleDependentStiffness()
-    together = effect.columns(s, (TOGETHER, 1.0, MOTOR))
+    together = effect.columns(s, (several, 1.0, MOTOR))
     for port in (Port.WIND_UP, Port.MOTOR_TORQUE):
-        alone = np.hstack([effect.columns(s, (k, 1.0, MOTOR))[port] for k in effect.LOBES])
+        alone = np.hstack([effect.columns(s, (k, 1.0, MOTOR))[port] for k in effect.SEVERAL[several]])
         np.testing.assert_array_equal(together[port], alone)
+
+
+def test_the_largest_order_of_a_modulated_spring_is_told_first() -> None:
+    effect = AngleDependentStiffness()
     sizes = np.array([0.01, 0.0, 0.0, 0.03, 0.0, 0.002]) / KNOWN.K
     names = [p.name for p in effect.parameters(Fit(sizes, (TOGETHER, 1.0, MOTOR), np.eye(9) * 1e-18, KNOWN, N))]
     assert names[::2] == ["kappa_order_2_amplitude", "kappa_order_1_amplitude", "kappa_order_4_amplitude"]
