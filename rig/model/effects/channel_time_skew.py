@@ -40,8 +40,6 @@ class ChannelTimeSkew(Effect):
         "drift_in_run_tau_l": "δ', by how much the shaft torque's lateness grows per second of each run",
         "scatter_theta_l": "how far the lateness of the load angle in single runs is from its mean, RMS",
         "change_in_run_theta_l": "how far apart the least and the largest lateness of the load angle in a run are",
-        "change_in_run_theta_m": "how far apart the least and the largest lateness of the motor angle in a run are",
-        "change_in_run_tau_l": "how far apart the least and the largest lateness of the shaft torque in a run are",
     }
     source: ClassVar[str] = "ghorbel2001"
     needs: ClassVar[frozenset[str]] = frozenset({"t"})
@@ -57,9 +55,11 @@ class ChannelTimeSkew(Effect):
         sides = [side for side, reading in READING.items() if reading in reach.has]
         steady = [(side, step, STEADY) for side in sides for step in self.STEPS]
         various = reach.backwards > SOME or reach.fastest > WIDE * reach.slowest
-        how = (ON_AND_ON, EACH_RUN, ALONG_RUN) if various else ()
-        growing = [(side, 0.0, since) for side in sides for since in how]
-        return (*steady, *growing)
+        if not various:
+            return tuple(steady)
+        growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)]
+        # a curve has many numbers, and what it does to the angles is the same whichever of them is late
+        return (*steady, *growing, *((side, 0.0, ALONG_RUN) for side in sides if side == LOAD))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG; of a curve one
