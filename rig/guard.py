@@ -156,10 +156,12 @@ def travel(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
 
 def twist(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """Motor and load must agree to within what the gear can twist; when one reading is older than the other, as after a
-    stall of the host, by what the motor turns in that time more. How old it may be is the business of `stale`.
+    stall of the host, by what the motor turns in that time more. How old it may be is the business of `stale`. A
+    reading that came in the meantime is new, and may be old all the same: its age is what counts.
     """
     value = guard.twist_of(sample)
-    apart = sample.age if sample.flags & (Flag.STALE_M | Flag.STALE_L) else 0.0
+    angles = sample.flags & (Flag.STALE_M | Flag.STALE_L) or not sample.flags & Flag.STALE_TAU  # the oldest is one
+    apart = sample.age if angles else 0.0
     if guard.twist is None or abs(value) <= guard.twist + apart * abs(sample.omega_m) / guard.ratio:
         return None
     return Trip(

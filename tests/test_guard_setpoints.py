@@ -48,7 +48,9 @@ def test_a_load_reading_that_is_late_may_lag_by_what_the_motor_turned_since_and_
     moving = GOOD._replace(theta_m=2.0, theta_l=0.029, omega_m=60.0, age=0.004)  # 0.63° apart, limit 0.5°
     late = moving._replace(flags=int(Flag.STALE_L))  # 60 rad/s · 4 ms / 50 = 0.28°
     assert guard().check(late, Torque(0.0)) is None
-    for wrong in (moving, late._replace(omega_m=5.0), late._replace(theta_l=0.02), late._replace(theta_l=NAN)):
+    assert guard().check(moving, Torque(0.0)) is None  # it came in the meantime, and is as old: after a stall
+    of_the_torque = moving._replace(flags=int(Flag.STALE_TAU))  # both angles are new
+    for wrong in (of_the_torque, late._replace(omega_m=5.0), late._replace(theta_l=0.02), late._replace(theta_l=NAN)):
         trip = guard().check(wrong, Torque(0.0))
         assert trip is not None
         assert trip.name == "twist" or math.isnan(wrong.theta_l)

@@ -54,7 +54,7 @@ class Job:
 def perform(job: Job, show: Show, looking_on: Observer) -> int:
     """One procedure to the end, its figures on stdout; the exit code. Raises UsageError where nothing can be kept."""
     refuse_unwritable(job.root)
-    done = _recorded(job, show, looking_on)
+    done, interrupted = _recorded(job, show, looking_on)
     # torque is off and the run is closed: from here Ctrl-C only ends the analysis
     show.say(f"run {done.ending.status}: {done.ending.reason}")
     if done.ending.exit is Exit.PASS and (told := finding(job.procedure, done)):
@@ -63,6 +63,8 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
         print(f"{simulated_line(done.folder)}{told}\nrun folder {done.folder}")
         return int(Exit.PASS)
     try:
+        if interrupted and not done.ending.exit:  # asked for when nothing was left of the run to end
+            raise KeyboardInterrupt
         result, simulated = analyse_folder(done.folder, done.folder)
     except KeyboardInterrupt:
         show.say(f"the run is complete in {done.folder}; hdrig analyse makes its report")
@@ -77,8 +79,9 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
     return code
 
 
-def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
-    """Proof, changes by hand, the run. Ctrl-C once = stop, twice = halt; keys as in `show.keys`."""
+def _recorded(job: Job, show: Show, looking_on: Observer) -> tuple[Done, bool]:
+    """Proof, changes by hand, the run; and whether a signal asked for an end. Ctrl-C once = stop, twice = halt; keys as
+    in `show.keys`."""
     show.bench(job.bench, job.clock)
     observer = Onlookers(show, looking_on)
     with (
@@ -98,7 +101,8 @@ def _recorded(job: Job, show: Show, looking_on: Observer) -> Done:
             show.say(remark)
         if job.limits:
             session.facts["limits"] = dict(job.limits)
-        return session.run(job.procedure)
+        done = session.run(job.procedure)
+    return done, interrupts.signalled
 
 
 def simulated_line(folder: Path) -> str:

@@ -38,6 +38,11 @@ class Interrupts:
         self._signals = value
 
     @property
+    def signalled(self) -> bool:
+        """Whether a signal asked for an end, not a key."""
+        return self._signals > 0
+
+    @property
     def exit(self) -> Exit:
         """What the command ends with when this is why: stopped, halted, or PASS when nobody asked."""
         return (Exit.PASS, Exit.STOPPED, Exit.HALTED)[min(self.count, 2)]

@@ -146,3 +146,12 @@ def test_a_piece_of_a_log_that_is_too_short_to_cut_is_a_part_of_it() -> None:
     whole.pieces = (*whole.pieces, Piece(np.linspace(0.0, 40.0, 900)), Piece(np.linspace(0.0, 1.0, 60)))
     fitted, tested = _here_and_there(whole) or ((), ())
     assert sum(piece.theta_m.size for piece in (*fitted, *tested)) == 32_000 + 900 + 60
+
+
+def test_a_hole_at_the_start_takes_nothing_from_what_is_fitted() -> None:
+    """A sensor that reads nothing for half a second near the start of a lock test leaves two pieces of it."""
+    theta = triangle(0.3)
+    whole: Any = SimpleNamespace(pieces=(Piece(theta[:900]), Piece(theta[1400:])))
+    fitted, tested = _head_and_tail(whole) or ((), ())
+    assert [len(piece.theta_m) for piece in fitted] == [900, 7600]
+    assert sum(len(piece.theta_m) for piece in (*fitted, *tested)) == 11_500

@@ -22,6 +22,7 @@ from rig.model.effect import Array
 
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
 OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
+NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left counts as noise"
 BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
@@ -72,6 +73,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
         if not found:
+            if (left := _locked_alone(eq, e, channel)) is not None:
+                sigma[channel], how[channel] = max(sigma[channel], left), NEVER_COMPARED
             continue
         if channel == "M":
             found, friction = evened(solution, found, sigma["M"] ** 2 * kappa["M"])
@@ -99,6 +102,15 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
     return Measured(noise, by_run, white, how, free, frozenset(apart), friction)
+
+
+def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
+    """RMS of all that is left in A where only locked runs have it and none was done twice; None elsewhere. A load that
+    nobody read is taken to be at rest, and what its encoder's noise would be says nothing of that."""
+    keys = [key for key in e if key[1] == channel]
+    if channel != "A" or not keys or not all(eq.runs[i].locked for i, _ in keys):
+        return None
+    return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
 
 
 def _compared(

@@ -134,7 +134,7 @@ def _parts(runs: Sequence[Recording], moving: list[int]) -> Split:
     made, held = _parted(runs, moving)
     if not held:
         raise UsageError(TOO_SHORT)
-    how = "a third of every run, whole turns or strokes: there are no repeats"
+    how = "a third of every run, whole turns or strokes: there are too few repeats to hold whole runs out"
     return Split(made, tuple(moving), held, how)
 
 
@@ -210,11 +210,16 @@ def _pairs(piece: Signals) -> list[Signals]:
 
 
 def _head_and_tail(run: Recording) -> Parts | None:
-    cut = _cut(run)
+    """The end of it to test with, cut in the piece in which it begins: where rows are missing there are several."""
+    wish = int(KEPT * sum(piece.theta_m.size for piece in run.pieces))
+    before = np.cumsum([0, *(piece.theta_m.size for piece in run.pieces)])
+    k = int(np.searchsorted(before, wish, side="right")) - 1
+    piece = run.pieces[k]
+    cut = _cut(piece.theta_m, wish - int(before[k]))
     if cut is None:
         return None
-    piece = run.pieces[0]
-    return (piece.part(slice(0, cut)),), (piece.part(slice(cut, None)), *run.pieces[1:])
+    head, tail = piece.part(slice(0, cut)), piece.part(slice(cut, None))
+    return (*run.pieces[:k], head), (tail, *run.pieces[k + 1 :])
 
 
 def _both_ways(theta: Array, stroke: slice) -> int:
@@ -224,9 +229,8 @@ def _both_ways(theta: Array, stroke: slice) -> int:
     return cut if float(abs(theta[stroke.stop - 1] - theta[cut])) >= TURN else int(stroke.stop)
 
 
-def _cut(run: Recording) -> int | None:
-    theta = run.pieces[0].theta_m
-    wish = int(KEPT * theta.size)
+def _cut(theta: Array, wish: int) -> int | None:
+    """The row of an angle (n,) nearest to `wish` at which it turns back, or has gone whole turns."""
     parts = strokes(theta)
     if len(parts) >= 2:
         edges = np.array([p.stop for p in parts[:-1]])
