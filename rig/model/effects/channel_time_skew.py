@@ -58,8 +58,10 @@ class ChannelTimeSkew(Effect):
         if not various:
             return tuple(steady)
         growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)]
-        # a curve has many numbers, and what it does to the angles is the same whichever of them is late
-        return (*steady, *growing, *((side, 0.0, ALONG_RUN) for side in sides if side == LOAD))
+        # a curve has many numbers, and what it does to the angles is the same whichever of them is late; where the
+        # wind-up was not measured it takes on whatever the weight has wrong
+        measured = {"tau_l", READING[LOAD]} <= reach.has
+        return (*steady, *growing, *([(LOAD, 0.0, ALONG_RUN)] if measured else []))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, whose coefficient is δ; where it drifts a second one, for what it gains in LONG; of a curve one

@@ -28,7 +28,7 @@ def found(monkeypatch: pytest.MonkeyPatch, left: list[Array], torques: Array | N
         return {"A": way * along(t / t[-1]) if made is module.CURVE else way, "M": np.zeros((ROWS, 1))}
 
     rows = {(i, "A"): SimpleNamespace(y=y, z=np.zeros((ROWS, 0)), at=()) for i, y in enumerate(left)}
-    runs = [SimpleNamespace(locked=False, has={"t"}) for _ in left]
+    runs = [SimpleNamespace(locked=False, has={"t", "tau_l"}) for _ in left]
     eq = SimpleNamespace(runs=runs, rows=rows, term=term, noise=SimpleNamespace(local={"A": np.inf}))
     s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), x=np.zeros(0))
     monkeypatch.setattr(module, "clock", lambda _, key: t)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from rig.analysis.tracing.fit.equations import Key, Term, orthonormal
 from rig.analysis.tracing.fit.model import Solution
@@ -75,7 +76,8 @@ def own_delays(s: Solution, whole: Sequence[int], runs: Sequence[int]) -> OwnDel
     """By the repeats among runs `whole`, none of them a part of one; columns for all `runs`. None where repeats do not
     differ by much, or by something else."""
     eq = s.design.eq
-    free = [i for i in whole if (i, "A") in eq.rows and not eq.runs[i].locked and "t" in eq.runs[i].has]
+    # without a torque sensor what the wind-up has wrong goes with the motion as well
+    free = [i for i in whole if (i, "A") in eq.rows and not eq.runs[i].locked and {"t", "tau_l"} <= eq.runs[i].has]
     pairs = [_pair(s, i, j) for i, j in repeats(eq.runs, free)]
     if len(pairs) < FEWEST or _differ(pairs) < DIFFER:
         return None
@@ -92,26 +94,28 @@ def own_delays(s: Solution, whole: Sequence[int], runs: Sequence[int]) -> OwnDel
 
 
 def _pair(s: Solution, a: int, b: int) -> _Pair:
-    """Of two repeats, side by side from where each begins."""
-    first, second = (_seen(s, i) for i in (a, b))
-    n = min(x["y"].shape[0] for x in (first, second))
-    first, second = ({name: x[:n] for name, x in each.items()} for each in (first, second))
-    speed = {i: each["delay"].sum(1) for i, each in ((0, first), (1, second))}
+    """Of two repeats, at the same times since each began: of either some rows may be left out."""
+    (when, first), (then, second) = (_seen(s, i) for i in (a, b))
+    _, here, there = np.intersect1d(when, then, return_indices=True)
+    first, second = ({by: x[at] for by, x in each.items()} for each, at in ((first, here), (second, there)))
+    apart = first["delay"].sum(1) - second["delay"].sum(1)
     # the delay that both have is no difference, nor are zeros where every run has its own
     free = np.isinf(s.design.eq.noise.local["A"])
-    shared = orthonormal(np.stack([np.ones(n) if free else np.zeros(n), speed[0] - speed[1]], 1))
+    shared = orthonormal(np.stack([np.full(here.size, float(free)), apart], 1))
     y = _without(shared, first["y"][:, None] - second["y"][:, None])[:, 0]
     made = {by: _without(shared, np.hstack([first[by], -second[by]])) for by in first if by != "y"}
     left = [float(np.var(y - z @ np.linalg.lstsq(z, y, rcond=None)[0])) for z in made.values()]
     return _Pair(y, max(min(left), 1e-300), made)
 
 
-def _seen(s: Solution, run: int) -> dict[str, Array]:
-    """What the model leaves of θ̃ with its zero, "y", and the columns of what may differ, means over TOGETHER rows."""
+def _seen(s: Solution, run: int) -> tuple[npt.NDArray[np.int64], dict[str, Array]]:
+    """Places in time since the run began, and means there of what the model leaves of θ̃ with its zero, "y", and of the
+    columns of what may differ."""
     eq, key = s.design.eq, (run, "A")
     r, delay = eq.rows[key], eq.term(run, CURVE)["A"]
     t = clock(eq, key)
-    curve = along((t - t[0]) / max(float(np.ptp(t)), 1e-9))
+    since = t - t[0]
+    curve = along(since / max(float(since[-1]), 1e-9))
     torque = np.nan_to_num(at_rows(eq, key, "torque"))
     made = {
         "y": r.y - r.z @ s.x[list(r.at)],
@@ -120,13 +124,16 @@ def _seen(s: Solution, run: int) -> dict[str, Array]:
         "friction": curve * np.sign(delay.sum(1))[:, None],
         "spring": curve * torque[:, None],
     }
-    return {name: _means(x) for name, x in made.items()}
+    step = TOGETHER * float(np.median(np.diff(t)))
+    when, place, count = np.unique(np.floor(since / step + 0.25).astype(int), return_inverse=True, return_counts=True)
+    return when, {by: _means(x, place, count) for by, x in made.items()}
 
 
-def _means(x: Array) -> Array:
-    """Of TOGETHER rows each, (n, …)."""
-    n = x.shape[0] // TOGETHER
-    return np.asarray(x[: n * TOGETHER].reshape(n, TOGETHER, *x.shape[1:]).mean(1))
+def _means(x: Array, place: npt.NDArray[np.int64], count: npt.NDArray[np.int64]) -> Array:
+    """Of the rows at each place, (n, …)."""
+    out = np.zeros((count.size, *x.shape[1:]))
+    np.add.at(out, place, x)
+    return np.asarray(out / count.reshape(-1, *[1] * (x.ndim - 1)))
 
 
 def _without(q: Array, x: Array) -> Array:
