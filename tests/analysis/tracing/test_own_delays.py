@@ -91,3 +91,12 @@ def test_repeats_that_differ_by_noise_and_zeros_have_no_delays_of_their_own(
     monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
     assert not any(found(monkeypatch, [noise(rng) for _ in SPEEDS]) for _ in range(20))
+
+
+def test_runs_too_short_to_tell_noise_from_curves_are_not_compared(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """Of forty means two curves of thirteen knots each leave next to nothing, whatever makes the repeats differ."""
+    monkeypatch.setattr(module, "TOGETHER", 30)
+    delays = [DELAY + SCATTER * wandering(rng) for _ in SPEEDS]
+    assert found(monkeypatch, [noise(rng) - speed(i) * delays[i] for i in range(SPEEDS.size)]) is None

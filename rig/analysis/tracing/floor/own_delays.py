@@ -21,13 +21,14 @@ from rig.analysis.tracing.runs.alike import repeats
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
 from rig.model.effects import CATALOGUE
-from rig.model.effects.channel_time_skew import ALONG_RUN, LOAD, STEADY, along
+from rig.model.effects.channel_time_skew import ALONG_RUN, KNOTS, LOAD, STEADY, along
 
 SKEW: Final = CATALOGUE["channel_time_skew"]
 CURVE: Final = Term(SKEW, (LOAD, 0.0, ALONG_RUN))
 ONE: Final = Term(SKEW, (LOAD, 0.0, STEADY))
 TOGETHER: Final = 8  # rows, a mean of which is taken for independent of the next
 FEWEST: Final = 4  # pairs of repeats
+SHORTEST: Final = 3  # means of rows a number of two curves, at least: of fewer their noise is not known
 DIFFER: Final = 1000.0  # nats by which repeats differ: clean ones have 120 at most, with anything the model lacks
 BEYOND: Final = 10.0  # nats over what else may differ from run to run: once in 20 000
 SIZES: Final = np.geomspace(0.03, 30.0, 13)  # times what the repeats differ by at a glance
@@ -78,7 +79,7 @@ def own_delays(s: Solution, whole: Sequence[int], runs: Sequence[int]) -> OwnDel
     eq = s.design.eq
     # without a torque sensor what the wind-up has wrong goes with the motion as well
     free = [i for i in whole if (i, "A") in eq.rows and not eq.runs[i].locked and {"t", "tau_l"} <= eq.runs[i].has]
-    pairs = [_pair(s, i, j) for i, j in repeats(eq.runs, free)]
+    pairs = [pair for i, j in repeats(eq.runs, free) if (pair := _pair(s, i, j)) is not None]
     if len(pairs) < FEWEST or _differ(pairs) < DIFFER:
         return None
     found = {
@@ -93,10 +94,13 @@ def own_delays(s: Solution, whole: Sequence[int], runs: Sequence[int]) -> OwnDel
     return OwnDelays(columns, _delays(s, free, columns), term is CURVE)
 
 
-def _pair(s: Solution, a: int, b: int) -> _Pair:
-    """Of two repeats, at the same times since each began: of either some rows may be left out."""
+def _pair(s: Solution, a: int, b: int) -> _Pair | None:
+    """Of two repeats, at the same times since each began: of either some rows may be left out. None of two that are too
+    short to tell noise from curves."""
     (when, first), (then, second) = (_seen(s, i) for i in (a, b))
     _, here, there = np.intersect1d(when, then, return_indices=True)
+    if here.size < SHORTEST * 2 * KNOTS.size:
+        return None
     first, second = ({by: x[at] for by, x in each.items()} for each, at in ((first, here), (second, there)))
     apart = first["delay"].sum(1) - second["delay"].sum(1)
     # the delay that both have is no difference, nor are zeros where every run has its own
@@ -104,8 +108,8 @@ def _pair(s: Solution, a: int, b: int) -> _Pair:
     shared = orthonormal(np.stack([np.full(here.size, float(free)), apart], 1))
     y = _without(shared, first["y"][:, None] - second["y"][:, None])[:, 0]
     made = {by: _without(shared, np.hstack([first[by], -second[by]])) for by in first if by != "y"}
-    left = [float(np.var(y - z @ np.linalg.lstsq(z, y, rcond=None)[0])) for z in made.values()]
-    return _Pair(y, max(min(left), 1e-300), made)
+    left = [float(np.sum((y - z @ np.linalg.lstsq(z, y, rcond=None)[0]) ** 2)) for z in made.values()]
+    return _Pair(y, max(min(left) / (y.size - 2 * KNOTS.size), 1e-300), made)
 
 
 def _seen(s: Solution, run: int) -> tuple[npt.NDArray[np.int64], dict[str, Array]]:
