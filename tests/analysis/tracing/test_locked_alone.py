@@ -12,9 +12,14 @@ from rig.analysis.tracing.floor.noise import _locked_alone
 
 
 def test_all_that_is_left_of_lock_tests_that_were_done_once_counts_as_noise(rng: np.random.Generator) -> None:
-    eq: Any = SimpleNamespace(runs=[SimpleNamespace(locked=True), SimpleNamespace(locked=False)])
+    eq: Any = SimpleNamespace(
+        runs=[
+            SimpleNamespace(locked=lock, has=has) for lock, has in ((True, set()), (False, set()), (True, {"theta_l"}))
+        ]
+    )
     e = {(0, "A"): 3e-6 * rng.standard_normal(4000), (1, "M"): rng.standard_normal(4000)}
     assert _locked_alone(eq, e, "A") == pytest.approx(3e-6, rel=0.05)
     assert _locked_alone(eq, e, "M") is None
     assert _locked_alone(eq, e | {(1, "A"): np.ones(100)}, "A") is None
+    assert _locked_alone(eq, e | {(2, "A"): np.ones(100)}, "A") is None
     assert _locked_alone(eq, {}, "A") is None

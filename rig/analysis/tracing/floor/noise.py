@@ -105,10 +105,11 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
 
 
 def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
-    """RMS of all that is left in A where only locked runs have it and none was done twice; None elsewhere. A load that
-    nobody read is taken to be at rest, and what its encoder's noise would be says nothing of that."""
+    """RMS of all that is left in A where only locked runs have it, whose load angle nobody read; None elsewhere. That
+    load is taken to be at rest, and what its encoder's noise would be says nothing of it."""
     keys = [key for key in e if key[1] == channel]
-    if channel != "A" or not keys or not all(eq.runs[i].locked for i, _ in keys):
+    unread = all(eq.runs[i].locked and "theta_l" not in eq.runs[i].has for i, _ in keys)
+    if channel != "A" or not keys or not unread:
         return None
     return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
@@ -139,11 +138,10 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
 
 @dataclass(frozen=True)
 class _Means:
-    """Time [s], run, rest without the zeros of runs that have their own, and the sense (n, k): means over an equal
+    """Time [s], rest without the zeros of runs that have their own, and the sense (n, k): means over an equal
     time. And those zeros' columns (n, runs), and rows in a mean."""
 
     t: Array
-    run: npt.NDArray[np.int64]
     e: Array
     way: Array
     zeros: Array
@@ -156,10 +154,10 @@ class _Means:
         _, first, place = np.unique(place * (1 + r.run.max()) + r.run, return_index=True, return_inverse=True)
         count = np.bincount(place)
         t, e, *w = (np.bincount(place, x) / count for x in (r.at["time"], r.e, *way.T))
-        run = np.asarray(r.run[first], dtype=np.int64)
+        run = r.run[first]
         own = np.ones(run.size) if r.own_zeros else np.zeros(run.size)
         runs = (run[:, None] == np.unique(run)) * own[:, None]
-        bare = cls(t, run, e, np.stack(w, 1), runs, r.e.size / t.size)
+        bare = cls(t, e, np.stack(w, 1), runs, r.e.size / t.size)
         return replace(bare, e=bare._without_zeros(e))
 
     def explained(self, hz: float) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.rest.drifting_zeros import foretold
 from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.effect import Array
@@ -97,8 +98,7 @@ def _friction(speed: Array) -> Array:
 
 def _left(z: Array, there: Array, zeros: Array, wanted: Array) -> float:
     """RMS that columns `z` (n, k) through the fitted zeros leave of the unseen ones, whose columns are `there`."""
-    x = np.linalg.lstsq(z, zeros, rcond=None)[0]
-    return float(np.sqrt(np.mean((wanted - there @ x) ** 2)))
+    return float(np.sqrt(np.mean((wanted - foretold(z, there, zeros)[0]) ** 2)))
 
 
 def _size(z: Array, zeros: Array) -> tuple[float, float]:
