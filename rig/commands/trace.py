@@ -101,7 +101,7 @@ def tell(found: Trace) -> None:
     print(f"  {found.verdict.sentence}")
     for law in found.law:
         print(f"  {law}")
-    if found.curve and not found.law:
+    if found.added_curves and not found.law:
         print(f"  {added(found)}")
     if rest := remainder(found):
         print(f"  {rest}")

@@ -38,7 +38,7 @@ def cards(trace: Trace) -> list[Card]:
 
 def changed(trace: Trace) -> bool:
     """Whether anything was added to the model that the errors could show."""
-    return bool(trace.effects) or trace.curve or trace.ratios_after != trace.ratios_before
+    return bool(trace.effects or trace.added_curves or trace.law) or trace.ratios_after != trace.ratios_before
 
 
 def _card(trace: Trace, channel: Channel, main: bool) -> Card:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.outcome import told
 from rig.analysis.tracing.outcome.each_run import LOADED
 from rig.analysis.tracing.outcome.each_run import of_each_run as own_words
 from rig.analysis.tracing.outcome.honest import ORDER
-from rig.analysis.tracing.outcome.result import Found, Trace
+from rig.analysis.tracing.outcome.result import Curve, Found, Trace
 from rig.analysis.tracing.outcome.told import PARAMETERS, listed
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effect import Parameter
@@ -156,13 +156,13 @@ def added(trace: Trace) -> str:
             return "Nothing was added. The parameters are those of the baseline."
         case Status.UNKNOWN:
             beside = f" beside {names}" if names else ""
-            where = f"{place(v.coordinate)}{_pitch(trace)}"
-            if not trace.curve:
-                also = f"{humanise(names)} was added; no" if names else "Nothing was added: no"
-                return f"{also} curve in {where} foretells what is left in runs the fit did not see."
+            where = f"{place(v.coordinate)}{_pitch(v)}"
             if trace.law:
                 return f"A law that is no effect of the library{beside}. {' '.join(trace.law)}"
-            return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
+            if not trace.added_curves:
+                also = f"{humanise(names)} was added; no" if names else "Nothing was added: no"
+                return f"{also} curve in {where} foretells what is left in runs the fit did not see."
+            return _curves(trace, beside, where)
         case Status.AMBIGUOUS if not v.rivals:
             return "Nothing was added: the fitted runs do not reach as far as the held-out ones."
         case Status.AMBIGUOUS:
@@ -196,10 +196,23 @@ def under_load(trace: Trace) -> str:
     )
 
 
-def _pitch(trace: Trace) -> str:
-    v = trace.verdict
-    order = f", order {plain(v.order, 4)} per turn" if v.order is not None else ""
-    return order + (f", {plain(v.frequency_hz, 4)} Hz" if v.frequency_hz is not None else "")
+def _curves(trace: Trace, beside: str, where: str) -> str:
+    """The curves without a name: the first along the verdict's coordinate, and what each of the others leaves."""
+    more = trace.added_curves[1:]
+    if not more:
+        return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
+    others = listed([f"{place(c.coordinate)}{_pitch(c)}" for c in more])
+    last = {c.channel: c.over_floor for c in trace.added_curves}
+    left = listed([f"{c.name.lower()} {plain(last[c.sensor], 3)} times" for c in CHANNELS if c.sensor in last])
+    return (
+        f"A curve without a name{beside}, in {where}, and beside it {'another' if len(more) == 1 else 'others'} in "
+        f"{others}: {left} its floor with all of them. No physics is claimed for them."
+    )
+
+
+def _pitch(of: Verdict | Curve) -> str:
+    order = f", order {plain(of.order, 4)} per turn" if of.order is not None else ""
+    return order + (f", {plain(of.frequency_hz, 4)} Hz" if of.frequency_hz is not None else "")
 
 
 def meaning(p: Parameter) -> tuple[str, str]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.answer import Candidate, NextRun, Status, Verdict
-from rig.analysis.tracing.outcome.result import Before, Errors, Floor, Found, Trace
+from rig.analysis.tracing.outcome.result import Before, Curve, Errors, Floor, Found, Trace
 from rig.model.effect import parameter
 from rig.report.trace.campaign import Provenance
 
@@ -161,7 +161,7 @@ def unknown() -> Trace:
         after=both(3.6, 0.002),
         lives_in=("load_angle",),
         curves=curves(after=4.0),
-        curve=True,
+        added_curves=(Curve("load_angle", "theta_l", 37.0, None, 1.2),),
     )
 
 

@@ -106,7 +106,7 @@ def test_a_law_without_a_name_is_told_in_the_place_of_the_curve() -> None:
 
 
 def test_a_curve_that_was_not_added_is_not_said_to_be() -> None:
-    words = read(bare(replace(made_up.unknown(), curve=False))).words
+    words = read(bare(replace(made_up.unknown(), added_curves=()))).words
     assert "Nothing was added: no curve in the load angle, order 37 per turn foretells" in words
     assert "no physics is claimed for it" not in words
 

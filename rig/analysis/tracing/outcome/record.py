@@ -46,6 +46,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "over_floor_before": trace.ratios_before,
             "over_floor_after": trace.ratios_after,
             "law": trace.law,
+            "curves": [asdict(curve) for curve in trace.added_curves],
             "ripple": [r.document() for r in trace.ripple],
             "mean_drift": [drift.document() for drift in trace.mean_drift],
         },

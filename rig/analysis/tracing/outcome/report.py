@@ -25,9 +25,8 @@ from rig.analysis.tracing.outcome.pictures import pictures
 from rig.analysis.tracing.outcome.result import Floor, Found, Trace
 from rig.analysis.tracing.outcome.ripple import Ripple, ripples
 from rig.analysis.tracing.outcome.unlike import unlike_declared
+from rig.analysis.tracing.outcome.unnamed import Unnamed, unnamed
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.foretold import smooth_term
-from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.selection.asked import Asked
@@ -58,7 +57,8 @@ def report(
     baseline = honest(parameters.baseline(empty), fitted_runs)
     conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found, fitted))
     conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
-    final, curve = _with_a_curve(p, s, after, conclusion.home)
+    beside = unnamed(p, s, after, conclusion.home) if conclusion.home else Unnamed(after)
+    final = beside.after
     confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)
     words, first = p.own.parameters | dict(fitted), errors(p.eq, p.held_out, before)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
@@ -93,8 +93,8 @@ def report(
         notes=(*unlike_declared(refitted, fitted_runs), *_notes(p, effects, one_way, ripple, drift)),
         ripple=ripple,
         mean_drift=drift,
-        curve=curve,
-        law=laws_in(s) if curve else (),
+        added_curves=beside.curves,
+        law=laws_in(s) if beside.curves or conclusion.home is None else (),
         read=len(p.campaign.runs),
         left_out=p.campaign.left_out,
         cannot=(*conclusion.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
@@ -117,20 +117,6 @@ def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[d
     shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
     does = {score.name: score.overall for score in scores} | {name: much for name, (_, much) in own.items()}
     return shares, tuple(sorted(shares, key=lambda name: -does[name]))
-
-
-def _with_a_curve(
-    p: Prepared, s: Solution, after: dict[Key, Array], home: Home | None
-) -> tuple[dict[Key, Array], bool]:
-    """What is left of held-out runs beside a curve along the coordinate where a rest without a name lives, and whether
-    a curve is in the model: one that foretells nothing of unseen runs is not added."""
-    if home is None:
-        return after, bool(confounders_in(s))
-    rest = {key: s.residual(key) for key in s.keys}
-    smooth = smooth_term(p.eq, rest, after, p.floors | p.held_out.floors, home)
-    mine = [key for key in after if key[1] == home.channel]
-    foretells = p.held_out.ratio(smooth, mine) < p.held_out.ratio(after, mine)
-    return (smooth, True) if foretells else (after, False)
 
 
 def _floors(p: Prepared) -> tuple[Floor, ...]:

@@ -46,6 +46,17 @@ class Errors:
 
 
 @dataclass(frozen=True)
+class Curve:
+    """A curve without a name along a coordinate, in one channel; what that leaves of unseen runs, RMS over floor."""
+
+    coordinate: str
+    channel: str  # theta_l, tau_l or tau_m
+    order: float | None  # cycles per turn of that coordinate
+    frequency_hz: float | None
+    over_floor: float
+
+
+@dataclass(frozen=True)
 class Before:
     """Errors on held-out runs alone."""
 
@@ -89,7 +100,7 @@ class Trace:
     curves: dict[str, Array] = field(default_factory=dict)
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
     mean_drift: tuple[MeanDrift, ...] = ()  # of torques from day to day, where a channel is missing
-    curve: bool = False  # whether a curve or law without a name was added, in the verdict's coordinate
+    added_curves: tuple[Curve, ...] = ()  # without a name, in the order in which they were added
     law: tuple[str, ...] = ()  # the laws without a name that were, for people
     read: int = 0  # runs of the campaign that were read, standstill among them
     left_out: tuple[str, ...] = ()  # runs that were not, by folder; the notes say why

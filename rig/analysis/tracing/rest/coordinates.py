@@ -96,6 +96,7 @@ INDICES: Mapping[str, Callable[[Rest], Index]] = {
 }
 FINE: Sequence[tuple[str, Callable[[Rest], Index]]] = (
     ("motor_angle", lambda r: turned(r.at["motor_angle"], FINER * BINS)),
+    ("load_angle", lambda r: turned(r.at["load_angle"], FINER * 6 * BINS)),
     ("load", lambda r: steps(r.at["load"], FINER * LEVELS)),
 )
 """The same once more: a dent in a race is narrow, and so are the waves of a sensor's scale."""
@@ -126,7 +127,10 @@ JOINT: Mapping[str, Sequence[Callable[[Rest], Index]]] = {
         lambda r: both(turned(r.at["motor_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
         lambda r: both(turned(r.at["load_angle"], BINS), _levels(r.at["temperature"], PERIODS)),
     ),
-    "motor_angle": (lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),),
+    "motor_angle": (
+        lambda r: both(turned(r.at["motor_angle"], BINS), (r.at["direction"] + 1).astype(int)),
+        lambda r: both(turned(r.at["motor_angle"], FINER * BINS), (r.at["direction"] + 1).astype(int)),
+    ),
     "load_angle": (lambda r: both(turned(r.at["load_angle"], 2 * BINS), (r.at["direction"] + 1).astype(int)),),
     "speed": (
         lambda r: steps(np.abs(r.at["speed"])),

@@ -64,7 +64,7 @@ def _in_channel(
     beside = unseen_beside(eq, fitted, unseen, floors, channel)
 
     def left(home: Home) -> float:
-        return square(beside.without(replace(home, own_zeros=r.own_zeros)), floors, keys)[0]
+        return square(beside.without(replace(home, own_zeros=r.own_zeros)).unseen, floors, keys)[0]
 
     bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
     if bare < NOTHING * sum(unseen[key].size for key in keys):

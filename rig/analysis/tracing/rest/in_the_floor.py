@@ -78,7 +78,7 @@ def _in_channel(
     beside = unseen_beside(eq, fitted, unseen, still, channel)
 
     def foretold(home: Home) -> float:
-        after, _ = square(beside.without(home), still, keys)
+        after, _ = square(beside.without(home).unseen, still, keys)
         return (before - max(after, n)) / (before - n)
 
     bare = foretold(Home("time", channel, 0.0, read=in_columns(nothing)))
