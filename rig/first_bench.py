@@ -64,7 +64,8 @@ def first_bench(
     own = NO_SYNC if any(node.profile == NO_PROFILE for node in nodes) else SLOW.get(interface, TEMPLATE)
     document: Any = tomlkit.parse((BENCHES / f"{own}.toml").read_text(encoding="utf-8"))
     bench: Any = tomlkit.document()
-    for line in HEAD:
+    twin = any(node.identity.simulated for node in nodes)
+    for line in (*HEAD, *([" SIMULATED: the devices say that they are the twin's."] if twin else [])):
         bench.add(tomlkit.comment(line.strip()))
     for key, value in document.items():
         bench[key] = value
@@ -76,7 +77,7 @@ def first_bench(
         given = tomlkit.inline_table()
         given.update(options)
         bench["bus"]["rig"]["options"] = given
-    if not any(node.identity.simulated for node in nodes):
+    if not twin:
         bench.pop("hand")  # only a twin's: a bench of real devices is refused with one
         bench["gear"]["serial"] = "UNNAMED"
     found = {PROFILES[node.profile]: node for node in nodes if node.profile in PROFILES}

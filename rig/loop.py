@@ -18,10 +18,11 @@ from rig.guard import Guard, Trip, stale
 from rig.instruments import TURNS, Instruments
 from rig.process.interrupts import Interrupts
 from rig.process.realtime import RealTime
-from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
+from rig.supervisor import PRESS, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
+AS_LONG = 0.8  # of the longest a channel may be silent: all that fell silent with the one that trips are named
 LONG = 0.01  # s without a command: by less no gains that hold a reference lose it
 RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
@@ -105,7 +106,7 @@ class Loop:
             why = str(error) or repr(error)
             if not self.instruments.safe():
                 why = self._unconfirmed(why)
-                error.add_note(UNCONFIRMED)
+                error.add_note(f"{UNCONFIRMED}: {PRESS}")
             self.supervisor.act(Act.TRIP, why)
             raise
         finally:
@@ -242,7 +243,7 @@ class Loop:
             return trip._replace(sentence=f"{trip.sentence}; {words}")
         if trip.name != "stale":
             return trip
-        late = self.instruments.overdue(now, self.guard.limits.stale)
+        late = self.instruments.overdue(now, AS_LONG * self.guard.limits.stale)
         trip = stale(self.guard, sample._replace(flags=late), asked) or trip
         told = [words for words in (self.instruments.silent(), self._held_up(now, sample.age)) if words]
         return trip._replace(sentence="; ".join([trip.sentence, *told]))

@@ -28,6 +28,7 @@ Say = Callable[[str], None]
 BANDWIDTHS = (60.0, 90.0, 130.0, 180.0, 250.0, 350.0)  # rad/s of the speed loop, tried from the gentlest
 MARGIN = 0.5  # of the limits of a good run: a trial is short, the real run is long
 TRIAL = KinematicError(amplitude_deg=540.0, frequency=4 / 150, cycles=1.0)  # 9.6 rpm like the slow run, 37.5 s
+CLEARLY = 0.8  # of the speed scatter there was: short trials differ by less without any change of gains
 BREAKAWAY = 1.6  # times the measured friction: what the proportional part must give within the following limit
 
 
@@ -89,6 +90,11 @@ def _trial(session: Session, bench: Bench) -> Smoothness | str:
     if done.ending.exit is not Exit.PASS:
         raise Ended(f"the trial was ended: {done.ending.reason}", done.ending.exit)
     return smoothness_of(Run.open(done.folder)) or "the motor made no whole turn"
+
+
+def no_better(before: Smoothness | str, after: Smoothness) -> bool:
+    """Whether gains that pass as well turned the motor as evenly, within what one short trial each tells."""
+    return not isinstance(before, str) and before.within(MARGIN) and after.sigma > CLEARLY * before.sigma
 
 
 def as_it_was(session: Session, bench: Bench) -> Smoothness | str:

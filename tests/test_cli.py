@@ -122,7 +122,7 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
             ["run", "stiffness-lock", "--with", "cycles=1,hold=2"],
             ["cycles = 1,hold=2: expected one parameter at a time, cycles=1 and then hold=2 by itself"],
         ),
-        (["tune", "--write", "nowhere/x.toml"], ["nowhere is no folder"]),
+        (["tune", "--write", "nowhere/x.toml"], ["there is no folder nowhere; name another place with --write"]),
         (["analyse", "nowhere"], ["nowhere", "does not exist"]),
         (["recover", "nowhere"], ["nowhere", "does not exist"]),
     ],

@@ -17,7 +17,7 @@ from rig.guard import Guard, Trip
 from rig.instruments import Instruments
 from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
-from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
+from rig.supervisor import PRESS, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
@@ -121,7 +121,7 @@ def test_what_a_run_ends_with_says_when_the_stop_was_not_confirmed(error: Except
         bench.run(at)
     assert bench.supervisor.state is State.FAULT
     assert bench.supervisor.fault == f"{error}; {UNCONFIRMED}"
-    assert UNCONFIRMED in caught.value.__notes__
+    assert caught.value.__notes__ == [f"{UNCONFIRMED}: {PRESS}"]
 
 
 def test_a_driver_that_breaks_while_it_takes_the_torque_off_has_not_confirmed_it() -> None:

@@ -66,6 +66,7 @@ def compensate(
     Raises NotReady when the series does not fit the rig, Ended when a run comes to no end, DataError.
     """
     refuse_first(session.bench, gear, speeds_rpm, revolutions)
+    say("the motor is about to turn: sign-and-scale proof, one turn forth and back")
     say(f"sign and scale: {session.prove().sentence}")
     series, where, found = gear.kinematic_error.series, None, []
     for speed in sorted(speeds_rpm):
@@ -138,7 +139,11 @@ def unlike_the_series(gear: GearFile, speed_rpm: float) -> str:
 
 def _run(session: Session, procedure: Compensated, say: Callable[[str], None]) -> tuple[str, Followed]:
     fed = "with" if procedure.a else "without"
-    say(f"{procedure.speed_rpm:g} rpm {fed} compensation")
+    lasts = procedure.envelope(session.bench.setting(lambda text: None)).duration
+    say(
+        f"{procedure.speed_rpm:g} rpm {fed} compensation: {procedure.revolutions} turns of the motor forth and back, "
+        f"{lasts:.0f} s"
+    )
     done = session.run(procedure)
     if done.ending.exit is not Exit.PASS:
         raise Ended(f"the run {fed} compensation came to no end: {done.ending.reason}", done.ending.exit)

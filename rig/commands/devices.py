@@ -6,12 +6,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.commands.targets import refuse_unwritable
+from rig.commands.targets import refuse_taken
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from drivers.scan import Found
+
+
+UNTOLD = "n/a"  # pyserial's word
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,9 +42,12 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out:
         _refuse_taken(args.out, args.channel)
+    if args.bitrate <= 0:
+        raise UsageError(f"--bitrate {args.bitrate}: expected bit/s of the bus, for example 1000000")
     ports = scan_ports()
     for port in ports:
-        print(f"serial  {port.path}: {port.what}" + (f", serial number {port.serial}" if port.serial else ""))
+        what = port.what if port.what != UNTOLD else "a port that tells nothing of what is behind it"
+        print(f"serial  {port.path}: {what}" + (f", serial number {port.serial}" if port.serial else ""))
     if not ports:
         print("serial  no ports")
     if not args.channel:
@@ -50,7 +56,8 @@ def run(args: argparse.Namespace) -> int:
     nodes = scan_bus(args.interface, args.channel, args.bitrate, options)
     for node in nodes:
         who = " ".join(part for part in node.identity if part)
-        print(f"node {node.number:<3d} {node.speaks}: {who}{_plate(node)}")
+        mark = "SIMULATED " if node.identity.simulated else ""
+        print(f"{mark}node {node.number:<3d} {node.speaks}: {who}{_plate(node)}")
     if not nodes:
         where = f"{args.interface} {args.channel} at {args.bitrate} bit/s"
         raise NotReady(f"nobody answers on {where}: wrong bitrate, no termination, no power?")
@@ -67,9 +74,7 @@ def run(args: argparse.Namespace) -> int:
 def _refuse_taken(path: Path, channel: str) -> None:
     if not channel:
         raise UsageError("--out needs --channel: the drive is found on a CAN bus")
-    if path.exists():
-        raise UsageError(f"{path} exists; nothing is overwritten")
-    refuse_unwritable(path.parent)
+    refuse_taken(path, "--out")
 
 
 def _plate(node: Found) -> str:

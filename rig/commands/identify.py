@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from rig.commands.folders import expand, runs_argument
-from rig.commands.targets import refuse_unwritable, refuse_unwritable_file
+from rig.commands.targets import refuse_taken
 from rig.core.errors import UsageError
 from rig.evaluation.identification import TERMS, identify
 
@@ -25,11 +25,8 @@ def run(args: argparse.Namespace) -> int:
     """Report on stdout, gear file where asked for."""
     if not 1 <= args.terms <= MOST_TERMS:
         raise UsageError(f"--terms {args.terms}: expected 1 to {MOST_TERMS} orders")
-    if args.out is not None and args.out.exists():
-        raise UsageError(f"{args.out} exists already; give the name of a new file")
     if args.out is not None:
-        refuse_unwritable(args.out.parent, "-o")
-        refuse_unwritable_file(args.out, "-o")  # minutes of thought are not lost to a folder that is not there
+        refuse_taken(args.out, "-o")  # minutes of thought are not lost to a folder that is not there
     done = identify(expand(args.runs), args.terms, say)
     print("\n".join(done.lines()))
     if args.out is not None:

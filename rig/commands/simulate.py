@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from rig.commands.targets import refuse_taken
 from rig.core.errors import Exit, UsageError
 from rig.core.units import ARCSEC, RPM
 
@@ -54,6 +55,8 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out is not None and args.out.suffix not in (".svg", ".html"):
         raise UsageError(f"--out {args.out}: expected a name that ends in .svg or .html")
+    if args.out is not None:
+        refuse_taken(args.out, "--out")
     if not math.isfinite(args.load):
         raise UsageError(f"--load {args.load:g}: expected a torque in N·m")
     for rpm in args.speed or ():

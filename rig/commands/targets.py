@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from rig.core.errors import UsageError
 from rig.runfile.process import sole_writer
 from rig.runfile.text_path import refuse_no_text
 from rig.runfile.writing import writing
@@ -39,10 +40,29 @@ def refuse_unwritable_file(path: Path, option: str) -> None:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, "it is a folder")
         if not path.parent.is_dir():
+            if os.path.lexists(path.parent):
+                raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
             raise FileNotFoundError(errno.ENOENT, f"there is no folder {path.parent}")
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     refuse_unwritable(path.parent, option)
+
+
+def refuse_taken(path: Path, option: str) -> None:
+    """Raises UsageError when something is at `path` already, or when no file can be written there: what a user names
+    may be the only copy of something. Leaves nothing."""
+    if os.path.lexists(path):
+        raise UsageError(f"{option} {path} exists already; nothing is overwritten: give the name of a new file")
+    refuse_unwritable_file(path, option)
+
+
+def refuse_other_than_json(path: Path, option: str) -> None:
+    """Raises UsageError when what is at `path` is a file of something else than an object in JSON, which a program
+    writes anew each time."""
+    with writing(path, option):
+        other = path.is_file() and path.read_bytes()[:1] not in (b"", b"{")
+    if other:
+        raise UsageError(f"{option} {path} exists already and is no JSON; nothing else is overwritten")
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.commands.targets import alone_in, refuse_unwritable, refuse_unwritable_file
+from rig.commands.targets import alone_in, refuse_other_than_json, refuse_unwritable, refuse_unwritable_file
 from rig.core.errors import Exit
 from rig.core.loading import load
 from rig.process.ctrl_c import uninterrupted
@@ -43,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.analysis.tracing.outcome.record import write_trace
     from rig.analysis.tracing.runs.campaign import folders_of_runs
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
+    from rig.analysis.tracing.runs.unfinished import refuse_going_on, unfinished
     from rig.analysis.tracing.trace import trace
     from rig.process.software import software
     from rig.runfile.manifest import utc_now
@@ -50,12 +51,15 @@ def run(args: argparse.Namespace) -> int:
     target = args.out or args.campaign
     if args.campaign.is_dir() and os.access(args.campaign, os.R_OK | os.X_OK):  # else that is said, not this
         refuse_unwritable(target)  # a minute of thought is not lost to a wrong name
+    refuse_going_on(args.campaign)
     refuse_unmatched([run.name for run in folders_of_runs(args.campaign)], args.hold_out)
+    if args.json:
+        refuse_other_than_json(args.json, "--json")
     if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
     with alone_in(target):
         found = trace(args.campaign, args.hold_out)
-        tell(found)
+        tell(found, unfinished(args.campaign))
         load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
         from rig.report.trace.campaign import provenance
         from rig.report.trace.page import put, render
@@ -87,8 +91,8 @@ def asked(run: NextRun) -> str:
     return f"{run.procedure.replace('_', '-')}{f' at {at}' if at else ''}: {run.because}"
 
 
-def tell(found: Trace) -> None:
-    """Verdict, parameters, errors before and after, on stdout."""
+def tell(found: Trace, first: str = "") -> None:
+    """Verdict, parameters, errors before and after, on stdout; what is to be known `first` stands below the head."""
     from rig.analysis.tracing.outcome.without import counted_out
     from rig.report.trace.channels import held_out_with
     from rig.report.trace.sizes import said
@@ -96,6 +100,8 @@ def tell(found: Trace) -> None:
 
     out = f", {counted_out(found)} left out" if found.left_out else ""
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}{out}")
+    if first:
+        print(f"  {first}")
     if found.left_out:
         print(f"  {runs_read(found)} read. {not_read(found)}")
     print(f"  {found.verdict.sentence}")
@@ -117,5 +123,5 @@ def tell(found: Trace) -> None:
             )
     if found.next_run:
         print(f"  next run: {asked(found.next_run)}")
-    for note in (*found.notes, *found.cannot):
+    for note in (*(note for note in found.notes if note != first), *found.cannot):
         print(f"  note: {note}")

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from pathlib import Path
 
 from rig.commands.options import bench_arguments, open_bench
 from rig.commands.show.at_the_rig import at_the_keys
 from rig.commands.show.words import wired_twin
-from rig.commands.targets import refuse_unwritable
-from rig.core.errors import Exit, UsageError
+from rig.commands.targets import refuse_taken, refuse_unwritable
+from rig.core.errors import Exit
 from rig.runfile.writing import writing
 from rig.session import Session
-from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains
+from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains, no_better
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,13 +26,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Steps, trials, after and before; exit 1 when no gains pass."""
     bench, clock = open_bench(args)
-    if args.write is not None and args.write.exists():
-        raise UsageError(f"{args.write} exists already; give the name of a new file")
-    if args.write is not None and not args.write.parent.is_dir():
-        raise UsageError(f"{args.write.parent} is no folder; the bench file could not be written there")
     refuse_unwritable(args.out)
     if args.write is not None:
-        refuse_unwritable(args.write.parent, "--write")
+        refuse_taken(args.write, "--write")
     if bench.simulated:
         print(f"SIMULATED: bench '{bench.file.name}' is the twin, {clock} clock", file=sys.stderr)
     with (
@@ -45,12 +42,18 @@ def run(args: argparse.Namespace) -> int:
             with writing(args.write, "--write"):
                 args.write.write_text(best[0].text, encoding="utf-8")
             changed = f", with the changes of --set ({', '.join(args.set)})" if args.set else ""
-            print(f"bench file with the gains found written to {args.write}{changed}: use it with --bench {args.write}")
-        print(f"before: {describe(bench, as_it_was(session, bench))}")
+            print(
+                f"bench file with the gains found written to {args.write}{changed}: use it with "
+                f"--bench {shlex.quote(str(args.write))}"
+            )
+        before = as_it_was(session, bench)
+        print(f"before: {describe(bench, before)}")
     if best is None:
         print(f"FAIL: no bandwidth up to {BANDWIDTHS[-1]:g} rad/s turned the motor smoothly")
         return int(Exit.OUT_OF_LIMITS)
     print(f"after:  {describe(*best)}")
+    if no_better(before, best[1]):
+        print("no better: one trial each, and the bench's own gains turn the motor as evenly; they may stay")
     return int(Exit.PASS)
 
 

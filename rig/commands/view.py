@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rig.commands.folders import say_simulated
+from rig.commands.targets import refuse_taken
 from rig.core.errors import NotReady, UsageError
 
 BEAT = 0.5  # s between looks whether the page is still wanted
@@ -22,7 +23,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     where.add_argument("--web", action="store_const", const="web", dest="where", help="a page, until Ctrl-C")
     where.add_argument("--native", action="store_const", const="native", dest="where", help="a window, until it closes")
     where.add_argument(
-        "-o", "--out", type=Path, metavar="FILE", help="a recording in this file; default: view.rrd in the run folder"
+        "-o",
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="a recording in this new file; default: view.rrd in the run folder, made anew",
     )
 
 
@@ -39,6 +44,8 @@ def run(args: argparse.Namespace) -> int:
     if args.where is None:
         if goes_on:
             raise UsageError(f"{args.run} is still being made: --web or --native follows it, a file is made afterwards")
+        if args.out is not None:
+            refuse_taken(args.out, "--out")
         say_simulated(args.run, manifest)
         return _record(args.run, args.out)
     say_simulated(args.run, manifest)

@@ -10,7 +10,7 @@ from rig.console.bodies import FORWARDED, OF_CHECK
 from rig.console.campaigns import ours
 from rig.console.check import WHOLE, check, wrong
 from rig.console.gate import CONTROL, Answer, Gate
-from rig.console.link import Link
+from rig.console.link import DEAF, Link
 from rig.console.state import rights
 from rig.core.errors import UsageError
 from rig.runfile.manifest import utc_now
@@ -48,7 +48,7 @@ class ActDesk:
         """
         act, key = asked.get("act"), str(asked.get("id"))
         if act in PRESSED:
-            return self._with_revision(Answer.yes(await self.link.press(str(act))))
+            return self._with_revision(await self._press(str(act)))
         before = self.gate.before(asked)
         if before is not None:
             return self._with_revision(before)
@@ -76,7 +76,7 @@ class ActDesk:
 
     async def _carry_out(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
         if act == "hold":
-            return Answer.yes(await self.link.press(act))
+            return await self._press(act)
         self.gate.take(page)
         self.gate.passed()  # a second click is based on what was before the first
         if act == CONTROL:
@@ -89,6 +89,11 @@ class ActDesk:
         if not why:
             why = await self.link.act({key: asked[key] for key in FORWARDED if key in asked})
         return Answer.no(why) if why else Answer.yes()
+
+    async def _press(self, act: str) -> Answer:
+        """Nobody is told that a motor was stopped by a process that is gone."""
+        seen = await self.link.press(act)
+        return Answer.yes(seen) if self.link.alive else Answer.no(DEAF)
 
     async def _wrong(self, act: str, asked: Mapping[str, Any]) -> str:
         """What can be said against an act before the station is bothered with it."""

@@ -25,7 +25,9 @@ LOOK = 0.001  # s between two looks whether the loop has seen a switch
 SEEN = 0.25  # s after which nobody waits any longer for that
 REAPED = 0.2  # s until a process whose line is gone has ended as well
 STARTING = "starting the control process"
-GONE = "the control process has ended: start hdrig serve again; its run, if there was one, is in the run folder"
+GONE = "the control process has ended: nobody looks after the rig, and nobody confirms that its torque is off"
+WHAT_NOW = "Use the hard-wired stop. Then end hdrig serve with Ctrl-C and start it again{rest}."
+DEAF = f"nobody hears it: {GONE}. Use the hard-wired stop"
 
 
 def ended_by(code: int | None) -> str:
@@ -46,6 +48,7 @@ class Link:
         self.events: deque[dict[str, Any]] = deque(maxlen=EVENTS)
         self.idle: deque[dict[str, Any]] = deque(maxlen=40)  # readings nobody has fetched yet: two seconds
         self.heard = time.monotonic()  # s, when anything came
+        self.what_now = ""  # once the station is gone: what to do, and what there is of its run
         self.changed: Callable[[], None] = lambda: None  # told of every new picture or event
         self.lost: Callable[[str], None] = lambda sentence: None  # told when the station ended unasked
         self._asked_to_end = False
@@ -104,7 +107,9 @@ class Link:
     def _gone(self) -> None:
         if not self._asked_to_end:
             self.lost(self._post_mortem())
-        self.picture = Status(last_run=self.picture["last_run"]).picture() | {"fault": GONE}
+        self.what_now = WHAT_NOW.format(rest=self._rest())
+        known = Status(bench=self.picture["bench"], state="fault", fault=GONE, last_run=self.picture["last_run"])
+        self.picture = known.picture()
         for waiting in self._replies.values():
             if not waiting.done():
                 waiting.set_result(GONE)
@@ -116,13 +121,16 @@ class Link:
         assert self._process is not None
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(REAPED)
-        run = self.picture["run"]
-        rest = f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
         return (
             f"the control process {self.pid} has ended{ended_by(self._process.returncode)}: nobody looks after the "
             "rig, and nobody confirms that its torque is off. Use the hard-wired stop. Then end this with Ctrl-C and "
-            f"start hdrig serve again{rest}"
+            f"start hdrig serve again{self._rest()}"
         )
+
+    def _rest(self) -> str:
+        """How the run that died with the station is made readable; "" where none ran."""
+        run = self.picture["run"]
+        return f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
 
     async def act(self, message: Mapping[str, Any]) -> str:
         """Hand an act on; why the station refuses it, or ""."""
@@ -139,7 +147,8 @@ class Link:
             return f"the control process did not answer within {REPLY:g} s, and will not do it later: try again"
 
     async def press(self, name: str) -> float | None:
-        """Hold, stop or halt; ms until the loop had seen it, None when no loop looked: none ran."""
+        """Hold, stop or halt; ms until the loop had seen it, None when no loop looked: none ran. Pressed even where the
+        station is gone, which nobody can be sure of for a moment."""
         began, runs = time.monotonic(), self.picture["run"] is not None
         {"hold": self.switches.hold, "stop": self.switches.stop, "halt": self.switches.halt}[name]()
         if self._channel is not None:

@@ -8,9 +8,9 @@ import errno
 import signal
 import socket
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
 import uvicorn
 
@@ -90,6 +90,7 @@ class Serving:
         (link.switches.stop if self._asked == 1 else link.switches.halt)()
         if self._ending is None:
             self.console.closing = True
+            self._run = link.picture["run"]
             self.console.pages.news()
             self._ending = asyncio.create_task(self._end())
 
@@ -97,7 +98,16 @@ class Serving:
         if not await self.console.link.close(LONGEST_STOP):
             self.console.link.switches.halt()
             await self.console.link.close(GOODBYE)
+        if self._run is not None:
+            _tell(_ended(self._run, self.console.link.picture["last_run"]))
         self._server.should_exit = True
+
+
+def _ended(run: Mapping[str, Any], last: Mapping[str, Any] | None) -> str:
+    """What became of the run that went on when the end was asked for."""
+    if last is None or last["uid"] != run["uid"]:
+        return f"how the {run['title']} run ended was not told: use the hard-wired stop; its folder is {run['folder']}"
+    return f"the {last['title']} run has ended: {last['reason']}; its folder is {last['folder']}"
 
 
 def _tell(sentence: str) -> None:

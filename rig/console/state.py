@@ -26,7 +26,7 @@ def compose(link: Link, feed: Feed, gate: Gate, page: str, extra: dict[str, Any]
         "age_ms": round(feed.age_ms, 1),
         "heard_ms": round(1e3 * heard, 1),
         "station": link.alive,
-        "advice": advice(picture) if link.alive else picture["fault"],
+        "advice": advice(picture) if link.alive else link.what_now,
         "run": _run(link, feed),
         "campaign": _campaign(link, feed),
         "events": list(link.events),

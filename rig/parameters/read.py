@@ -23,6 +23,7 @@ WORDS = {
 }
 
 
+NUMBER: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 DECIMAL_COMMA: Final = re.compile(r"[-+]?\d+,\d+")
 ANOTHER: Final = re.compile(r",\s*(\w+)\s*=")
 WITH_MORE: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
@@ -121,4 +122,6 @@ def _number(field: Field[Any], raw: Any, signed: bool) -> float:
 def _refused(field: Field[Any], raw: Any, expected: str) -> UsageError:
     shown = str(raw)
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
+    if isinstance(raw, str) and expected in (WORDS[float], WORDS[int]) and NUMBER.fullmatch(raw.strip()):
+        shown, expected = f'"{shown}"', f"{expected}, not text"
     return UsageError(f"{field.name} = {shown}: expected {expected}, for example {field.default}")

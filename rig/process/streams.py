@@ -7,6 +7,8 @@ import errno
 import os
 from typing import Any, TextIO
 
+from rig.process.plain import NAME
+
 NOBODY = (errno.EPIPE, errno.EIO)  # `| head`, a closed terminal: who read here chose not to, and nothing is missed
 
 
@@ -74,8 +76,8 @@ class Tolerant:
 
 
 def show_what_fits(stream: TextIO | None) -> None:
-    """From here on a character that the encoding of `stream` lacks is written as `?`, and fails no line."""
+    """From here on a character that the encoding of `stream` lacks is written in others, and fails no line."""
     reconfigure = getattr(stream, "reconfigure", None)
     if reconfigure is not None:
         with contextlib.suppress(OSError, ValueError):  # closed, or text is half written
-            reconfigure(errors="replace")
+            reconfigure(errors=NAME)

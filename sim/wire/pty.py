@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import final
 
+from rig.core.errors import UsageError
 from sim.wire.agenda import Agenda
 from sim.wire.reactor import Reactor, Source
 
@@ -51,7 +52,8 @@ class Spoiler:
 
 @final
 class SerialLine(Source):
-    """`path` is a symbolic link to the pty, as /dev/serial/by-id has them; it goes and comes with the plug."""
+    """`path` is a symbolic link to the pty, as /dev/serial/by-id has them; it goes and comes with the plug. Raises
+    UsageError where something else has that name."""
 
     def __init__(self, agenda: Agenda, reactor: Reactor, path: Path, device: LineDevice, baud: float) -> None:
         self.agenda, self.reactor, self.path, self.device, self.baud = agenda, reactor, path, device, baud
@@ -61,6 +63,8 @@ class SerialLine(Source):
         self.present = False
         self._free_at = 0.0  # s
         device.line = self
+        if os.path.lexists(path) and not path.is_symlink():
+            raise UsageError(f"{path} is not a link of an earlier twin; it stays as it is: give a name that is free")
         self.plug()
 
     def fileno(self) -> int:

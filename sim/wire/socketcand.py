@@ -6,7 +6,7 @@ import re
 import socket
 from typing import final
 
-from rig.core.errors import NotReady
+from rig.core.errors import NotReady, UsageError
 from sim.wire.bus import Bus
 from sim.wire.frame import ERROR, EXTENDED, REMOTE, Frame
 from sim.wire.reactor import Reactor, Source
@@ -17,7 +17,8 @@ LONGEST = 4096  # bytes without a message among them
 
 @final
 class SocketCand(Source):
-    """Listens at `port` on this machine only; 0 takes a free one. Raises NotReady when it is taken."""
+    """Listens at `port` on this machine only; 0 takes a free one. Raises NotReady when it is taken,
+    UsageError when there is no such port."""
 
     def __init__(self, bus: Bus, reactor: Reactor, port: int) -> None:
         self.bus, self.reactor = bus, reactor
@@ -26,6 +27,9 @@ class SocketCand(Source):
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind(("127.0.0.1", port))
+        except OverflowError:
+            self._socket.close()
+            raise UsageError(f"socketcand at port {port}: ports go from 0, a free one, to 65535") from None
         except OSError as error:
             self._socket.close()
             raise NotReady(f"cannot serve socketcand at port {port}: {error.strerror}") from None

@@ -40,6 +40,8 @@ def made(root: Path, known: GearFile, speed: float) -> tuple[Compared, float]:
         told: list[Compared] = []
         found, where = compensate(session, known, [speed], 3, said.append, told.append)
     assert told == found
+    assert said[0].startswith("the motor is about to turn")
+    assert any(f"{speed:g} rpm without compensation: 3 turns of the motor forth and back, " in line for line in said)
     assert not any("the load left its reference" in line for line in said)  # the figures are told once
     return found[0], where.shift
 

@@ -12,7 +12,7 @@ import pytest
 from rig.bench import read
 from rig.cli import main
 from rig.commands import CATALOGUE
-from rig.commands.targets import refuse_unwritable
+from rig.commands.targets import refuse_other_than_json, refuse_unwritable
 from rig.core.errors import DataError, Exit, UsageError
 from rig.doctor.disk import check_disk
 from rig.doctor.finding import Health
@@ -83,6 +83,49 @@ def test_a_gear_file_for_a_folder_that_is_not_there_is_not_worked_for(
     assert f"there is no folder {tmp_path / 'nope'}; name another place with -o" in said.err
     assert said.out == ""
     assert "identify:" not in said.err  # nothing was thought about
+
+
+TAKEN = {
+    "identify": ["identify", "RUN", "-o"],
+    "view": ["view", "RUN", "-o"],
+    "simulate": ["simulate", "twin", "--speed", "300", "-o"],
+    "tune": ["tune", "--write"],
+    "devices": ["devices", "--channel", "can0", "--out"],
+}
+
+
+@pytest.mark.parametrize("verb", TAKEN)
+def test_what_is_there_already_is_left_as_it_is(
+    verb: str, run: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    there = tmp_path / "only copy.svg"
+    there.write_text("the only copy of something")
+    assert main([*(run if word == "RUN" else word for word in TAKEN[verb]), str(there)]) == Exit.USAGE
+    assert f"{there} exists already; nothing is overwritten: give the name of a new file" in capsys.readouterr().err
+    assert there.read_text() == "the only copy of something"
+
+
+def test_a_recording_for_the_viewer_never_takes_the_place_of_samples(
+    run: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    samples = Path(run) / "samples.parquet"
+    before = samples.read_bytes()
+    assert main(["view", run, "-o", str(samples)]) == Exit.USAGE
+    assert samples.read_bytes() == before
+    assert "nothing is overwritten" in capsys.readouterr().err
+
+
+def test_a_trace_for_programs_takes_the_place_of_an_earlier_one_only(
+    run: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    samples = Path(run) / "samples.parquet"
+    before = samples.read_bytes()
+    assert main(["trace", str(Path(run).parent), "--json", str(samples), "--out", str(tmp_path / "o")]) == Exit.USAGE
+    assert samples.read_bytes() == before
+    assert f"--json {samples} exists already and is no JSON" in capsys.readouterr().err
+    for text in ("", '{"schema": "hdrig.trace/1"}'):
+        (tmp_path / "t.json").write_text(text)
+        refuse_other_than_json(tmp_path / "t.json", "--json")
 
 
 @pytest.mark.parametrize("verb", [["tune", "--write"], ["devices", "--channel", "can0", "--out"]])

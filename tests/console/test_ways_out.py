@@ -103,7 +103,9 @@ def test_ctrl_c_brings_the_motor_to_rest_and_closes_the_run_before_the_server_en
     station = served.station
     served.process.send_signal(signal.SIGINT)
     assert served.process.wait(PATIENCE) == 0
-    assert served.said.read_text() == ""  # the control process ended because it was told to
+    (line,) = served.said.read_text().splitlines()  # the control process ended because it was told to
+    assert line.startswith("hdrig: the kinematic-error run has ended: stopped by the operator: ")
+    assert line.endswith(f"brought to rest, torque off; its folder is {folder}")
     assert gone(station)
     about = read(folder)
     assert (about["status"], "brought to rest" in about["exit_reason"]) == ("stopped", True)
@@ -134,9 +136,14 @@ def test_a_killed_control_process_is_told_and_its_run_can_be_recovered(served: S
     assert "nobody confirms that its torque is off. Use the hard-wired stop." in line
     assert line.endswith(f"hdrig recover {folder}")
     assert "the control process has ended" in state["fault"]
-    assert state["run"] is None
-    said = served.client.post("/api/act", json={"id": str(uuid.uuid4()), "act": "halt"})
-    assert (said.status_code, said.json()["seen_by_loop_ms"]) == (200, None)
+    assert "Use the hard-wired stop." in state["advice"]
+    assert f"hdrig recover {folder}" in state["advice"]
+    assert (state["run"], state["bench"]["simulated"]) == (None, True)
+    for act in ("halt", "stop", "hold"):  # nobody hears them, and nobody is told that somebody did
+        asked = {"id": str(uuid.uuid4()), "act": act, "based_on": state["revision"]}
+        said = served.client.post("/api/act", json=asked)
+        assert (said.status_code, said.json()["accepted"]) == (409, False)
+        assert "Use the hard-wired stop" in said.json()["why"]
     recovered = subprocess.run(
         [sys.executable, "-m", "rig.cli", "recover", str(folder)], capture_output=True, text=True
     )

@@ -12,6 +12,7 @@ import pytest
 
 import rig.commands.list_
 from rig.cli import main
+from rig.process.plain import NAME
 from rig.process.streams import Tolerant
 
 TEN = "import sys, rig.cli; sys.exit(rig.cli.main(sys.argv[1:]))"
@@ -67,7 +68,7 @@ def test_a_run_whose_stderr_is_closed_runs_and_its_number_is_no_files(tmp_path: 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
-def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost(encoding: str) -> None:
+def test_what_a_terminal_cannot_show_is_told_in_other_letters_and_no_line_is_lost(encoding: str) -> None:
     args = [sys.executable, "-c", TEN, "run", "standstill", "--dry-run"]
     shown = {
         name: subprocess.run(args, capture_output=True, timeout=120, env={**os.environ, "PYTHONIOENCODING": name})
@@ -75,7 +76,7 @@ def test_what_a_terminal_cannot_show_becomes_a_question_mark_and_no_line_is_lost
     }
     whole = shown["utf-8"].stdout.decode()
     assert not whole.isascii()
-    assert shown[encoding].stdout == whole.encode(encoding, errors="replace")
+    assert shown[encoding].stdout == whole.encode(encoding, errors=NAME)
     assert shown[encoding].returncode == shown["utf-8"].returncode == 0
 
 

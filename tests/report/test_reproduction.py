@@ -97,7 +97,7 @@ def test_the_numbers_behind_the_page_are_beside_it(tmp_path: Path) -> None:
 def test_the_terminal_gets_one_line_a_claim_and_a_sum() -> None:
     lines = list(told((DRAWN, ABSENT)))
     assert "  ✓ it falls: Peak to peak 93.40 ± 0.20\u00a0arcsec." in lines
-    assert lines[-1] == "1 claims of the paper hold, 1 do not, 1 cannot be told"
+    assert lines[-1] == "of 3 claims of the paper 1 hold by these runs, 1 fail, 1 cannot be told"
 
 
 def test_a_number_without_an_interval_stands_alone() -> None:

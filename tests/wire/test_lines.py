@@ -13,11 +13,13 @@ from pathlib import Path
 import pytest
 import serial
 
+from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
 from sim.wire.pty import LineDevice, SerialLine
 from sim.wire.qsb import Qsb
 from sim.wire.reactor import Reactor
 from sim.wire.serial_torque import AsciiTorque
+from sim.wire.socketcand import SocketCand
 from sim.wire.spoilers import Cut, Garbage, Glued, Mute, Torn
 from tests.wire.host import assembly
 
@@ -226,3 +228,23 @@ def test_the_qsb_forgets_without_power_what_was_not_stored(qsb: Plugged) -> None
         qsb.open(termios.B230400)
         qsb.says(b"R0B\r")
         assert int(qsb.hears(0.01)[3:11], 16) == kept
+
+
+def test_a_file_that_has_the_name_of_a_line_is_left_and_a_link_of_an_earlier_twin_is_not(tmp_path: Path) -> None:
+    twin = assembly(*QUIET)
+    device = AsciiTorque(twin.agenda, twin.world, 100.0)
+    (tmp_path / "tty").write_text("the only copy")
+    with pytest.raises(UsageError, match="is not a link of an earlier twin; it stays as it is"):
+        SerialLine(twin.agenda, Reactor(twin.agenda), tmp_path / "tty", device, 115_200)
+    assert (tmp_path / "tty").read_text() == "the only copy"
+    (tmp_path / "left").symlink_to("/dev/pts/nobody")
+    line = SerialLine(twin.agenda, Reactor(twin.agenda), tmp_path / "left", device, 115_200)
+    assert (tmp_path / "left").resolve() != Path("/dev/pts/nobody")
+    line.close()
+
+
+@pytest.mark.parametrize("port", [-1, 65536, 99999])
+def test_a_port_that_does_not_exist_is_a_sentence(port: int) -> None:
+    twin = assembly(*QUIET)
+    with pytest.raises(UsageError, match=f"socketcand at port {port}: ports go from 0"):
+        SocketCand(twin.bus, Reactor(twin.agenda), port)

@@ -41,8 +41,13 @@ from rig.loop import Ending
 from rig.runfile.manifest import utc_now
 from rig.session.done import Watch
 from rig.session.observer import Begun, Observer
+from rig.supervisor import PRESS, UNCONFIRMED
 from rig.timing.ticks import LoopTiming
 
+NOW = (
+    f"{PRESS[0].upper()}{PRESS[1:]}: a drive that hears nothing any more takes it off by itself only where its "
+    "watchdog is set. When the rig is whole, free to turn, and the drive answers again: hdrig reset."
+)
 PERIOD = 0.1  # s of wall time between two pictures of a run
 LATENESS = 0.5  # s between two looks at the statistics, which take longer
 
@@ -112,6 +117,8 @@ class Show(Observer):
         """From the session: torque is off."""
         self.energised = False
         self.tell("ended", folder=str(folder), status=ending.status, reason=ending.reason, exit=int(ending.exit))
+        if UNCONFIRMED in ending.reason:
+            self.say(NOW)
 
 
 class Progress:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from pathlib import Path
 
 from rig.core.channels import CHANNEL
@@ -26,18 +27,26 @@ def record(folder: Path, path: Path) -> None:
 
     Raises UsageError when the folder is no run or the file cannot be made.
     """
-    from rig.live.view.rerun_canvas import RerunCanvas
+    from rig.live.view.rerun_canvas import Gone, RerunCanvas, Stalled
 
     run, said = Run.open(folder), about(folder)
     part = path.with_name(path.name + ".part")
     try:
         canvas = RerunCanvas.to_file(said, part)
+        draw(run, said, canvas)
+        canvas.flush(60.0)  # s: a file
+        canvas.close()
+        os.replace(part, path)
     except OSError as error:
         raise UsageError(f"{path} cannot be written: {error.strerror}") from error
-    draw(run, said, canvas)
-    canvas.flush(60.0)  # s: a file
-    canvas.close()
-    os.replace(part, path)
+    except (Gone, Stalled):  # the SDK does not say why
+        free = shutil.disk_usage(path.parent).free
+        raise UsageError(
+            f"{path} cannot be written: the disk is full, or a file may not be so large; {free / 1e6:.1f} MB were free "
+            "when it stopped; name another place with --out"
+        ) from None
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def draw(run: Run, said: About, canvas: Canvas) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from rig.analysis.reproduction.claim import Claim, Number, Ruling
 from rig.analysis.reproduction.exhibit import Cell, Exhibit
-from rig.report.numbers import estimate, plain
+from rig.report.numbers import counted, estimate, plain
 
 SIGN = {Ruling.HOLDS: "✓", Ruling.FAILS: "✗", Ruling.OPEN: "–"}
 TONE = {Ruling.HOLDS: "good", Ruling.FAILS: "bad", Ruling.OPEN: "plain"}
@@ -51,8 +51,8 @@ def told(exhibits: Sequence[Exhibit]) -> Iterator[str]:
             yield f"  {SIGN[c.ruling]} {c.paper}: {found(c)}"
     rulings = count(exhibits)
     yield (
-        f"{rulings[Ruling.HOLDS]} claims of the paper hold, {rulings[Ruling.FAILS]} do not, "
-        f"{rulings[Ruling.OPEN]} cannot be told"
+        f"of {counted(sum(rulings.values()), 'claim')} of the paper {rulings[Ruling.HOLDS]} hold by these runs, "
+        f"{rulings[Ruling.FAILS]} fail, {rulings[Ruling.OPEN]} cannot be told"
     )
 
 

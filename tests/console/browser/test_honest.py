@@ -72,6 +72,9 @@ def test_a_dead_control_process_is_as_loud_as_a_dead_server(page: Page, station:
     station.tell(state="running", bench=BENCH, run=RUN, station=False, fault="the control process has ended")
     page.wait_for_selector("#stale", state="visible")
     assert "control process has ended" in text(page, "#stale")
+    assert page.locator("#fault").evaluate(CROSSED) == "none"  # that is new, and what to do now
+    assert page.locator("#advice").evaluate(CROSSED) == "none"
+    assert page.locator("#run-title").evaluate(CROSSED) == "line-through"
 
 
 def test_the_age_grows_as_time_goes_by_and_not_with_what_the_server_says(

@@ -13,6 +13,7 @@ import pytest
 
 from rig.core.errors import UsageError
 from rig.live.view.recording import record
+from rig.live.view.rerun_canvas import Gone, RerunCanvas
 from rig.live.view.server import binary
 from tests.live.view.kept import turning
 
@@ -72,6 +73,19 @@ def test_a_recording_is_read_back_with_every_entity_and_every_row(folder: Path, 
     verified = subprocess.run([str(binary()), "rrd", "verify", str(path)], capture_output=True, text=True, check=False)
     assert verified.returncode == 0, verified.stderr
     assert not list(tmp_path.glob("*.part"))
+
+
+def test_a_disk_that_fills_up_is_one_sentence_and_leaves_nothing_behind(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(canvas: RerunCanvas, within: float) -> None:
+        raise Gone("File-writer thread shut down prematurely")
+
+    monkeypatch.setattr(RerunCanvas, "flush", full)
+    (tmp_path / "there").mkdir()
+    with pytest.raises(UsageError, match=r"cannot be written: the disk is full.* MB were free"):
+        record(folder, tmp_path / "there" / "view.rrd")
+    assert list((tmp_path / "there").iterdir()) == []
 
 
 @pytest.mark.slow

@@ -22,6 +22,7 @@ from rig.analysis.tracing.runs.recording import Recording, record
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
+from rig.analysis.tracing.runs.unfinished import unfinished
 from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
@@ -99,7 +100,9 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     out += [*carrying, *other_weights(runs)]
     clocked = [r for r in runs if r.clocked]
     unfit += [said_of(len(clocked), len(runs) - len(clocked), hz)] if hz is not None and clocked else []
-    notes = unfit + mixed(opened) + told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
+    part = unfinished(folder)
+    said = told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
+    notes = [*([part] if part else []), *unfit, *mixed(opened), *said]
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))

@@ -19,7 +19,7 @@ export async function act(name, state, more = {}) {
       signal: URGENT.has(name) ? AbortSignal.timeout(UNANSWERED) : undefined,
     });
     const said = await answer.json().catch(() => ({}));
-    if (answer.status === 200 && URGENT.has(name) && state?.station === false) return { ok: false, text: unheard(name) };
+    if (URGENT.has(name) && state?.station === false) return { ok: false, text: unheard(name) };
     return told(name, answer.status, said, performance.now() - began);
   } catch (error) {
     return { ok: false, text: unheard(name, error) };

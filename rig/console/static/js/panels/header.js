@@ -31,6 +31,7 @@ export function freshness(link, state) {
   const dead = state?.station === false;
   const kind = root.dataset.link === "refused" ? "refused" : link.stale || dead ? "stale" : link.waiting ? "waiting" : "live";
   root.dataset.link = kind;
+  root.dataset.station = dead && !link.stale ? "gone" : "there"; // what is said of its end is new, whatever else is old
   show($("stale"), kind === "stale" || kind === "refused");
   say($("stale").firstElementChild, kind === "refused" ? "NO TOKEN" : "STALE");
   if (kind === "refused") say($("stale-age"), "this page hears nothing, and its halt is refused");
