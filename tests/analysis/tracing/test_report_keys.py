@@ -14,7 +14,7 @@ import rig
 from rig.analysis.tracing.outcome.mean_drift import MeanDrift
 from rig.analysis.tracing.outcome.record import document
 from rig.analysis.tracing.outcome.result import Trace
-from rig.analysis.tracing.outcome.ripple import Ripple
+from rig.analysis.tracing.outcome.ripple import KEYS, Ripple
 from tests.report.trace import made_up
 
 PAGE = Path(rig.__file__).parent / "analysis" / "tracing" / "REPORT.md"
@@ -25,7 +25,7 @@ IN_ITS_NAME = {"_arcsec": "arcsec", "_hz": "Hz", "_Nm": "N·m"}
 
 def rippled() -> Trace:
     """One with a channel missing, a run that was left out and a law without a name."""
-    ripple = Ripple("tau_m", 2, 8, 0.01, 1e-3, 1e-6, (1e-3, 1e-4), (0.01, 0.002))
+    ripple = Ripple("tau_m", 2, 8, 0.01, 1e-3, 1e-6, (1e-3, 1e-4), (0.01, 0.002), dict.fromkeys(KEYS, 1e-7))
     drift = MeanDrift("tau_l", 0.02, 0.001, 9)
     return replace(
         made_up.unknown(),

@@ -1,5 +1,6 @@
 """What one angle and one torque can say: laws of the ripple are given back, and none is made up."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -33,6 +34,20 @@ def test_constant_load_and_speed_parts_and_the_lag_come_back(rng: np.random.Gene
     assert two.lag[1] < 5e-5
 
 
+@pytest.mark.slow
+def test_intervals_of_the_amplitudes_cover_and_are_no_wider_than_they_have_to_be():
+    true = {"constant": 0.2, "per_load": 0.01, "per_speed_squared": 5e-5}
+    off = {name: [] for name in true}
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        two, _ = _laws("tau_l", [seen(rng, v, load) for v in SPEEDS for load in (0.5, 20.0)], True)
+        for name, value in true.items():
+            off[name].append((getattr(two, name) - value) / two.halves[name])
+    for of in off.values():
+        assert np.mean(np.abs(of) <= 1) >= 0.9  # 95 %, and noise of both parts is half of what is said here
+        assert np.sqrt(np.mean(np.square(of))) > 0.2
+
+
 def test_one_speed_has_no_law_of_speed_and_no_lag(rng: np.random.Generator):
     (two, _) = _laws("tau_l", [seen(rng, 12.0, load) for load in (0.5, 5.0, 20.0)], True)
     assert two.per_speed_squared is None
@@ -64,7 +79,7 @@ def test_noise_alone_has_no_orders(rng: np.random.Generator):
 @pytest.mark.slow
 def test_every_law_is_a_sentence_with_units(rng: np.random.Generator):
     for r in _laws("tau_l", [seen(rng, v, load, lag=4e-4) for v in SPEEDS for load in (0.5, 20.0)], True):
-        assert "N·m" in r.sentence()
+        assert re.search(r" run(s)?: \S+ ± \S+ N·m, \S+ ± \S+ mN·m more per N·m of load, \S+ ± \S+ mN·m", r.sentence())
         assert "ms after the angle" in r.sentence()
 
 

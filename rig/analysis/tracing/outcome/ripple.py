@@ -11,7 +11,7 @@ turns with speed by itself, and δ holds well below it only. Where no row has a 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -25,6 +25,7 @@ from rig.core.units import RPM
 from rig.model.effect import MEASURED, Array, Signals
 
 Complex = npt.NDArray[np.complex128]
+KEYS: Final = {"constant": "constant_Nm", "per_load": "per_load", "per_speed_squared": "per_speed_squared"}
 HIGHEST: Final = 24  # order
 ROWS: Final = 3.0  # a period of an order, at least: the thinned rows hold no more
 PART: Final = 1 / 6  # of an output turn: less of it looks like a trend
@@ -53,7 +54,8 @@ class Seen:
 @dataclass(frozen=True)
 class Ripple:
     """One order in all runs: amplitudes in N·m, N·m per N·m, N·m per (rad/s)², None where the runs cannot say; lag in s
-    and relative change per day, each with half its 95 % interval."""
+    and relative change per day. `halves` are halves of the 95 % intervals of those amplitudes, by their names, the
+    others have theirs with them."""
 
     channel: str
     order: int
@@ -63,12 +65,14 @@ class Ripple:
     per_speed_squared: float | None
     lag: tuple[float, float] | None
     per_day: tuple[float, float] | None
+    halves: Mapping[str, float]
 
     def document(self) -> dict[str, Any]:
         """For trace.json."""
         return {
             "channel": self.channel, "order": self.order, "runs": self.runs, "constant_Nm": self.constant,
             "per_load": self.per_load, "per_speed_squared": self.per_speed_squared,
+            "half95": {key: self.halves.get(name) for name, key in KEYS.items()},
             "lag_s": None if self.lag is None else {"value": self.lag[0], "half95": self.lag[1]},
             "change_per_day": None if self.per_day is None else {"value": self.per_day[0], "half95": self.per_day[1]},
         }  # fmt: skip
@@ -77,17 +81,20 @@ class Ripple:
         """For people."""
         name = SENSOR_NAMES[self.channel]
         runs = f"{self.runs} run{'' if self.runs == 1 else 's'}"
-        said = [f"Ripple of the {name} at order {self.order} of the motor, {runs}: {self.constant:.3g} N·m"]
+        said = [f"Ripple of the {name} at order {self.order} of the motor, {runs}: {self._pm('constant', 1.0)} N·m"]
         if self.per_load is not None:
-            said.append(f"{1e3 * self.per_load:.3g} mN·m more per N·m of load")
+            said.append(f"{self._pm('per_load', 1e3)} mN·m more per N·m of load")
         if self.per_speed_squared is not None:
-            said.append(f"{1e3 * self.per_speed_squared:.3g} mN·m more per (rad/s)²")
+            said.append(f"{self._pm('per_speed_squared', 1e3)} mN·m more per (rad/s)²")
         if self.lag is not None:
             late = f"{1e3 * self.lag[0]:.3g} ± {1e3 * self.lag[1]:.2g} ms after the angle"
             said.append(f"read {late} (or turned so by a resonance)")
         if self.per_day is not None:
             said.append(f"changing by {100 * self.per_day[0]:.2g} ± {100 * self.per_day[1]:.2g} % a day")
         return ", ".join(said) + "."
+
+    def _pm(self, name: str, scale: float) -> str:
+        return f"{scale * getattr(self, name):.3g} ± {scale * self.halves[name]:.2g}"
 
 
 def ripples(runs: Sequence[Recording]) -> tuple[Ripple, ...]:
@@ -214,12 +221,21 @@ def _law(
     z, names = _columns(seen, timed)
     speed = np.array([s.speed for s in seen])
     turned = np.exp(-1j * (k + 1) * speed * (lag[0] if lag else 0.0))
-    _, c = _missed(z, phasors, weight, turned)
+    total, c = _missed(z, phasors, weight, turned)
     made = dict(zip(names, map(float, np.abs(c)), strict=True))
     return Ripple(
         channel, k + 1, len(seen), made["constant"], made.get("per_load"), made.get("per_speed_squared"), lag,
-        _drift(seen, phasors, z @ c * turned),
+        _drift(seen, phasors, z @ c * turned), dict(zip(names, _halves(z * weight[:, None], total), strict=True)),
     )  # fmt: skip
+
+
+def _halves(design: Array, total: float) -> list[float]:
+    """Halves of the 95 % intervals of amplitudes, from the weighted columns (runs, c) and the sum of squares that is
+    left; of as many runs as columns from what each run by itself leaves."""
+    freedom = 2 * (design.shape[0] - design.shape[1])
+    scatter = max(1.0, total / freedom) if freedom else 1.0
+    known = np.linalg.pinv(design.T @ design)
+    return [float(Z95 * np.sqrt(scatter * x)) for x in np.diag(known)]
 
 
 def _drift(seen: Sequence[Seen], phasors: Complex, law: Complex) -> tuple[float, float] | None:
