@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from rig.analysis.tracing.aligned import aligned
 from rig.analysis.tracing.looks import second_looks
 from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace
-from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.workers import give_back, one_heap
@@ -19,6 +19,7 @@ def trace(folder: Path, hold_out: Sequence[str] = ()) -> Trace:
     one_heap()
     campaign = read_campaign(folder)
     give_back()
-    first, found = searched(prepare(campaign, hold_out))
+    campaign, p = aligned(campaign, hold_out)
+    first, found = searched(p)
     selected, found = second_looks(first, found, campaign, hold_out)
     return report(selected.p, found, selected.solution, selected.held, selected.scores, selected.words)

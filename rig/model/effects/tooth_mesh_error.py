@@ -15,7 +15,8 @@ from rig.model.waves import wave
 class ToothMeshError(Effect):
     """θ̃_p gains C·cos(z·θ_m + φ), z = 2N teeth of the flexspline, 2N + 2 of the circular spline, or twice as many
 
-    A wave generator that is not true presses harder once or twice a turn: orders beside those by one and two.
+    A wave generator that is not true presses harder once or twice a turn: orders beside those by one and two. Where
+    every second tooth is another one there are half as many.
     """
 
     name: ClassVar[str] = "tooth_mesh_error"
@@ -33,7 +34,9 @@ class ToothMeshError(Effect):
         """Orders the slowest run samples at least three times a period."""
         teeth = [2 * reach.ratio + beside for beside in range(-self.BESIDE, 3 + self.BESIDE)]
         highest = reach.rate / 3.0 / (reach.slowest / (2.0 * np.pi))
-        return tuple((m * z,) for m in self.MULTIPLES for z in teeth if m * z < highest)
+        halves = [z / 2 for z in (2 * reach.ratio, 2 * reach.ratio + 2)]
+        orders = [*halves, *(m * z for m in self.MULTIPLES for z in teeth)]
+        return tuple((order,) for order in orders if order < highest)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine, with their lever."""

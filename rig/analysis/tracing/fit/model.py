@@ -58,6 +58,11 @@ class Design:
         """N·m/rad, that of the gear where it is stiffer than the paper's: its mesh drags by a smaller angle."""
         return max((STIFFNESS, *(float(run.pieces[0].gear.K) for run in self.eq.runs[:1] if run.pieces)))
 
+    @cached_property
+    def forward(self) -> float:
+        """s, by how much the torque was brought forward when it was read: no more than that can be too much."""
+        return max((run.look.late_torque for run in self.eq.runs[:1]), default=0.0)
+
     @property
     def prior(self) -> Array:
         """Information (p,) known beforehand."""
@@ -256,7 +261,7 @@ def without(s: Solution, terms: Sequence[int]) -> Solution:
     stay = np.setdiff1d(np.arange(s.design.size), gone)
     gram = s.design.gram + np.diag(s.design.prior)
     x = np.zeros(s.design.size)
-    x[stay], _, _ = bounded(gram[np.ix_(stay, stay)], s.design.right[stay], s.design.stiffness)
+    x[stay], _, _ = bounded(s.design, gram[np.ix_(stay, stay)], s.design.right[stay])
     return Solution(x, s.gram, s.right, s.design, s.keys)
 
 
@@ -268,17 +273,17 @@ def solve(gram: Array, right: Array) -> Array:
 
 def fit(d: Design) -> Solution:
     """Fit all columns of the design to its blocks."""
-    x, gram, right = bounded(d.gram + np.diag(d.prior), d.right, d.stiffness)
+    x, gram, right = bounded(d, d.gram + np.diag(d.prior), d.right)
     return Solution(x, gram, right, d, tuple(d.y))
 
 
-def bounded(gram: Array, right: Array, stiffness: float = STIFFNESS) -> tuple[Array, Array, Array]:
+def bounded(d: Design, gram: Array, right: Array) -> tuple[Array, Array, Array]:
     """Least squares whose baseline keeps to its bounds: coefficients, and normal equations that pin those at one.
 
     Unbound, a drag of the mesh ten times any gear's would take the place of an encoder read late.
     """
     x = solve(gram, right)
-    for name, (low, high) in {"mesh": (0.0, MESH / stiffness), "lag": (0.0, LATEST)}.items():
+    for name, (low, high) in {"mesh": (0.0, MESH / d.stiffness), "lag": (-d.forward, LATEST)}.items():
         i = INDEX[name]
         at = float(np.clip(x[i], low, high))
         if at != x[i]:

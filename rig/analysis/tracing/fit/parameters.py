@@ -47,6 +47,7 @@ def baseline(s: Solution) -> tuple[Parameter, ...]:
         both += by * (2 * s.value("damping") * stiff - lag) * stiff**2
         out.append(_of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad"))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    out = [_from_the_reading(p, s.design.forward) if p.name == "lag" else p for p in out]
     if any(run.look.inertia for run in s.design.eq.runs):
         known = s.design.eq.runs[0].pieces[0].gear.J_l + s.value("inertia")
         out.append(_of("J_l", known, _unit(c, "inertia"), c, PLAIN["J_l"]))
@@ -65,6 +66,11 @@ def _of_the_gear(s: Solution, c: Array) -> tuple[float, Array]:
         compliance -= more
         by[s.design.place(i)] -= gradient
     return compliance, by
+
+
+def _from_the_reading(lag: Parameter, forward: float) -> Parameter:
+    """A delay that is left, with what was taken off the reading before."""
+    return replace(lag, value=lag.value + forward, ci95=(lag.ci95[0] + forward, lag.ci95[1] + forward))
 
 
 def _at_its_bound(s: Solution, lag: Parameter) -> Parameter:

@@ -17,7 +17,6 @@ from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.rest.above_the_band import has_fast_rows, rings_above
 from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
 from rig.analysis.tracing.runs.holdout import split
-from rig.analysis.tracing.runs.look import Look
 from rig.analysis.tracing.searched import Tried, beside
 from rig.analysis.tracing.selection.certain import is_calm, is_certain
 from rig.analysis.tracing.selection.confounders import of_the_library
@@ -82,7 +81,7 @@ def _beside(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Foun
 def _read_again(first: Campaign) -> Campaign | None:
     """The same runs at fast rows; None where these are others now: what was told stands."""
     try:
-        again = read_campaign(first.folder, Look(fast=True))
+        again = read_campaign(first.folder, replace(first.runs[0].look, fast=True))
     except UsageError:
         return None
     same = [run.name for run in again.runs] == [run.name for run in first.runs]

@@ -40,6 +40,10 @@ class UnevenInertia(Nameless):
             made.append(value * alpha[:, None] + 0.5 * slope * square[:, None])
         return {Port.LOAD_TORQUE: np.hstack(made)}
 
+    def plausible(self, fit: Fit) -> bool:
+        """At no angle is less than nothing left of the load's inertia."""
+        return bool(np.all(np.hypot(fit.coefficients[0::2], fit.coefficients[1::2]) < fit.known.J_l))
+
     def amount(self, fit: Fit) -> Amount:
         """Of the first order: of the second there may be as much."""
         return wave_of(fit, "once a turn of the output by a wave of", 1000, "g·m²")

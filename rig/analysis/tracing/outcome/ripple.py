@@ -18,6 +18,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.findings.collected import true_minus
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.quantiles import Z95
@@ -91,7 +92,7 @@ class Ripple:
             said.append(f"read {late} (or turned so by a resonance)")
         if self.per_day is not None:
             said.append(f"changing by {100 * self.per_day[0]:.2g} ± {100 * self.per_day[1]:.2g} % a day")
-        return ", ".join(said) + "."
+        return true_minus(", ".join(said) + ".")
 
     def _pm(self, name: str, scale: float) -> str:
         return f"{scale * getattr(self, name):.3g} ± {scale * self.halves[name]:.2g}"

@@ -16,6 +16,8 @@ class Look:
     rigid: bool = False  # its wind-up is what is believed of the gear: nothing in these runs tells it
     inertia: bool = False  # its torque beside the inertia of the load, which nobody stated and no sensor weighs
     fast: bool = False  # rows twice as often, compared up to frequencies twice as high: chosen when it is read
+    late_torque: float = 0.0  # s, by how much its torque sensor is brought forward: chosen when it is read
+    late_load: float = 0.0  # s, the same of its load angle
     zeros: bool = False  # its zeros are those of all others, but for what its speed makes of them
 
 

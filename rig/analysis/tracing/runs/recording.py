@@ -15,6 +15,7 @@ from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
 from rig.analysis.tracing.runs.grid import grid, is_even, joined, refuse_other_time, refuse_sparse, uniform
 from rig.analysis.tracing.runs.holes import without_holes
+from rig.analysis.tracing.runs.late import earlier
 from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet
@@ -159,6 +160,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     )
     smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
+    whole = {name: _forward(name, x, look, dt) for name, x in whole.items()}
     made = [
         _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
         for lo, hi in joined(t, whole["theta_m"], dt, breaks, steady)
@@ -198,6 +200,12 @@ def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
         return {"t": run.column("t"), "theta_m": None, **found}
     picked = {name: _there(motion.pick(run.column(name))) for name in names}
     return {"t": motion.t, "theta_m": motion.theta_m, "theta_l": motion.theta_l, **picked}
+
+
+def _forward(name: str, x: Array, look: Look, dt: float) -> Array:
+    """A column as it is looked at, its rows `dt` apart."""
+    late = {"tau_l": look.late_torque, "theta_l": look.late_load}.get(name, 0.0)
+    return earlier(x, late / dt) if late else x
 
 
 def _there(x: Array | None) -> Array | None:

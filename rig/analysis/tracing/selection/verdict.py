@@ -38,6 +38,8 @@ DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wa
 SAME_ORDER: Final = 0.05  # of a turn
 HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
 AT_THE_START: Final = {"stribeck_friction"}  # more where a motor is slow, and so is what wears off after a start
+LITTLE: Final = 1.4  # floors, of which a coordinate must foretell a part to be more than friction that scatters
+FORETOLD_BY_CHANCE: Final = 0.3  # of the excess
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
 
@@ -93,6 +95,8 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     """Much is left, and no effect explains it; names whose own part is plain stand beside it."""
     p, before, after = asked.p, asked.before, asked.after
     line, best, (_, total) = p.own.line, where[0], asked.worst
+    if line is None and not asked.names and total < LITTLE and best.share < FORETOLD_BY_CHANCE:
+        return _settled(p, (), asked.found, *asked.worst)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     other = _of_the_same_order(asked.s, best) | (AT_THE_START if best.coordinate == "memory" and best.first else set())

@@ -1,0 +1,68 @@
+"""A torque sensor that is read through a low-pass of its own is brought forward, told, and no missing effect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.aligned import aligned
+from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.fit.parameters import baseline
+from rig.analysis.tracing.runs.campaign import read_campaign
+from rig.analysis.tracing.runs.late import earlier
+from rig.analysis.tracing.trace import trace
+from tests.analysis.tracing.spiked import Columns, change
+
+CORNER = 100.0  # Hz
+DELAY = np.sqrt(2.0) / (2 * np.pi * CORNER)  # s, of a low-pass of the second order far below its corner
+RUNS = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "speed_120rpm_1", "speed_300rpm_1", "speed_300rpm_2")
+
+
+def filtered(c: Columns, began: float) -> Columns:
+    """The shaft torque through a Butterworth low-pass, from rest where it begins."""
+    from scipy.signal import butter, sosfilt, sosfilt_zi
+
+    sos = butter(2, CORNER, fs=1 / float(np.median(np.diff(c["t"]))), output="sos")
+    return {"tau_l": sosfilt(sos, c["tau_l"], zi=sosfilt_zi(sos) * c["tau_l"][0])[0]}
+
+
+def early(c: Columns, began: float) -> Columns:
+    """The load angle read 1.6 ms early, which looks the same beside the load."""
+    return {"theta_l": np.interp(c["t"] + 1.6e-3, c["t"], c["theta_l"])}
+
+
+@pytest.mark.parametrize("rows", [0.0, 0.3, 1.0, 2.7, -1.4])
+def test_a_signal_is_brought_forward_by_parts_of_a_row(rows: float) -> None:
+    at = np.arange(400.0)
+    wave = np.sin(2 * np.pi * at / 10)
+    assert earlier(wave, rows)[5:-5] == pytest.approx(np.sin(2 * np.pi * (at + rows) / 10)[5:-5], abs=6e-3)
+
+
+def test_a_missing_row_spoils_its_neighbours_alone() -> None:
+    x = np.ones(100)
+    x[50] = np.nan
+    assert np.flatnonzero(~np.isfinite(earlier(x, 1.5))).tolist() == [47, 48, 49, 50]
+
+
+@pytest.mark.slow
+def test_the_delay_of_a_low_pass_is_found_told_and_no_effect(tmp_path: Path, shared: Path) -> None:
+    found = trace(change(tmp_path / "filtered", shared / "cases" / "open-1", filtered, RUNS))
+    lag = next(p for p in found.baseline if p.name == "lag")
+    assert lag.value == pytest.approx(DELAY, rel=0.06)
+    assert found.verdict.status is Status.NOTHING
+    (note,) = [note for note in found.notes if "The torque sensor is read" in note]
+    assert " ms after the angles in all runs, as much as a low-pass of " in note
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changed", [early, lambda c, began: {}])
+def test_a_load_angle_that_is_early_and_a_torque_that_is_not_late_are_left_as_they_are(
+    changed: object, tmp_path: Path, shared: Path
+) -> None:
+    campaign = read_campaign(change(tmp_path / "other", shared / "cases" / "open-1", changed, RUNS))  # type: ignore[arg-type]
+    read, p = aligned(campaign, ())
+    assert read is campaign
+    assert p.campaign.runs[0].look.late_torque == 0.0
+    assert next(q for q in baseline(p.baseline) if q.name == "lag").value < 1.1e-3
