@@ -14,7 +14,8 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.findings.collected import pm
-from rig.analysis.tracing.fit.channels import WHOLE
+from rig.analysis.tracing.fit.channels import INDEX, WHOLE
+from rig.analysis.tracing.fit.model import solve
 from rig.analysis.tracing.fit.parameters import baseline
 from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
@@ -33,10 +34,9 @@ def aligned(campaign: Campaign, hold_out: Sequence[str]) -> tuple[Campaign, Prep
     """The campaign and what is prepared of it: as they are, or with the torque brought forward by its delay, which a
     note tells."""
     p = prepare(campaign, hold_out)
-    late = _late(p)
-    if late < AT_ITS_END * LATEST or not _all_read(p):
+    if p.baseline.value("lag") < AT_ITS_END * LATEST or not _all_read(p):
         return campaign, p
-    found = _brought_forward(campaign, hold_out, late)
+    found = _brought_forward(campaign, hold_out, _late(p))
     # a load angle that is early looks the same beside the load
     if found is None or _left(found) > min(_left(p), _with_a_later_load(campaign, hold_out, _late(found))):
         return campaign, p
@@ -50,8 +50,12 @@ def _all_read(p: Prepared) -> bool:
 
 
 def _late(p: Prepared) -> float:
-    """How late the torque is read, s: what it was brought forward by, and what is left of that."""
-    return p.campaign.runs[0].look.late_torque + p.baseline.value("lag")
+    """How late the torque is read, s: what it was brought forward by, and what is left of that by the runs alone. What
+    is believed of a sensor beforehand would hold back each step to it."""
+    d = p.baseline.design
+    believed = d.prior.copy()
+    believed[INDEX["lag"]] = 0.0
+    return d.forward + float(solve(d.gram + np.diag(believed), d.right)[INDEX["lag"]])
 
 
 def _brought_forward(campaign: Campaign, hold_out: Sequence[str], late: float) -> Prepared | None:

@@ -17,7 +17,7 @@ from rig.analysis.tracing.selection.elimination import backward_elimination, sca
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, in_words
 from rig.analysis.tracing.selection.sizes import is_hardly_known, may_be_nothing
-from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, UNKNOWN
+from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MOSTLY, UNKNOWN
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, Reach
 
@@ -37,7 +37,7 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
         and (
             score.name in vague
             or may_be_nothing(effect[score.name], selected.words.get(score.name, ()))
-            or (score.overall < most and not _vouched_for(score, most) and all(is_hardly_known(p) for p in sizes))
+            or (score.overall < most and not _is_sure(score, most) and all(is_hardly_known(p) for p in sizes))
         )
     ]
     needless = {score.name for score in insignificant}
@@ -68,10 +68,12 @@ def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:
     return len(repeats(p.eq.runs, runs)) < PAIRS
 
 
-def _vouched_for(score: HeldOutScore, most: float) -> bool:
+def _is_sure(score: HeldOutScore, most: float) -> bool:
     """Whether runs want one size of it, and repeats no other one: beside other effects, not beside lost counts, which
-    are another size in every run."""
-    return score.as_repeats and score.fairly and bool(np.isfinite(most))
+    are another size in every run. Or it takes nearly all there is where it acts, plainly: the size that is told of a
+    drag is that at 10 rad/s, and hardly known of one with the cube of the speed."""
+    vouched = score.as_repeats and score.fairly and bool(np.isfinite(most))
+    return vouched or (score.plain and score.share > MOSTLY)
 
 
 def without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
