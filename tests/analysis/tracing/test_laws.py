@@ -446,6 +446,7 @@ def test_a_housing_has_modes_of_its_own_frequencies_and_the_same_one_only_once()
 def test_teeth_under_an_untrue_wave_generator_have_orders_beside_their_own() -> None:
     orders = {shape[0] for shape in ToothMeshError().shapes(REACH)}
     assert orders >= {2 * N - 2, 2 * N, 2 * N + 2, 2 * N + 4}
+    assert orders >= {N, N + 1}  # where every second tooth is another one
 
 
 def test_a_fall_between_creep_and_the_slowest_run_is_known_by_its_upper_end() -> None:

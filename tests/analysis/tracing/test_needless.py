@@ -39,7 +39,10 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 
     def with_(names: list[str], loud: bool) -> Any:
-        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=work[name]) for name in names]
+        scores = [
+            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=work[name])
+            for name in names
+        ]
         effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
         s = solution("eq", *terms)
@@ -66,7 +69,10 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
 
     def with_(names: set[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=work[name]) for name in names]
+        scores = [
+            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=work[name])
+            for name in names
+        ]
         return SimpleNamespace(scores=scores, words=words, loud=True, names=names, solution=s, p=prepared())
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
@@ -75,6 +81,35 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
     monkeypatch.setattr(needless, "_without", without)
     nothing: Any = None
     assert needless.without_insignificant(with_(set(work)), (), nothing).names == left
+
+
+@pytest.mark.parametrize(("plain", "share", "left"), [
+    (True, 0.99, {"eccentricity", "drag"}), (False, 0.99, {"eccentricity"}), (True, 0.85, {"eccentricity"}),
+])  # fmt: skip
+def test_a_law_that_takes_nearly_all_plainly_stands_though_its_size_at_one_speed_is_hardly_known(
+    monkeypatch: pytest.MonkeyPatch, plain: bool, share: float, left: set[str]
+) -> None:
+    """A drag with the cube of the speed, 0.44 ± 0.33 mN·m at 10 rad/s and all there is at 50."""
+    words = {
+        "drag": (Parameter("drag_at_10_rad_s", 4.4e-4, (1.1e-4, 7.6e-4), "N·m"),),
+        "eccentricity": (Parameter("size", 5e-3, (4.6e-3, 5.4e-3), "rad"),),
+    }
+    effect = SimpleNamespace(sizes=lambda found: found[:1], shape_names=(), loose=())
+
+    def with_(names: set[str]) -> Any:
+        s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in sorted(names)))
+        scores = [
+            SimpleNamespace(
+                name=name, as_repeats=False, fairly=False, plain=plain, share=share,
+                overall=30.0 if name == "eccentricity" else 20.0,
+            )
+            for name in sorted(names)
+        ]  # fmt: skip
+        return SimpleNamespace(scores=scores, words=words, loud=True, names=names, solution=s, p=prepared())
+
+    monkeypatch.setattr(needless, "_without", lambda of, name, runs, reach: with_(of.names - {name}))
+    nothing: Any = None
+    assert needless.without_insignificant(with_({"eccentricity", "drag"}), (), nothing).names == left
 
 
 @pytest.mark.parametrize(("loud", "speed", "left"), [
@@ -99,7 +134,14 @@ def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
         }
         terms = [SimpleNamespace(name=name, effect=effect[name]) for name in names]
         scores = [
-            SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=9.0 if name == "play" else 5.0)
+            SimpleNamespace(
+                name=name,
+                as_repeats=False,
+                fairly=False,
+                plain=False,
+                share=0.7,
+                overall=9.0 if name == "play" else 5.0,
+            )
             for name in names
         ]
         s = solution("eq", *terms)
@@ -122,7 +164,10 @@ def test_beside_counts_that_runs_lose_no_name_stands_whose_size_is_hardly_known(
 
     def with_(names: list[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [SimpleNamespace(name=name, as_repeats=False, fairly=False, overall=3.0) for name in names]
+        scores = [
+            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=3.0)
+            for name in names
+        ]
         return SimpleNamespace(scores=scores, words=words, loud=False, names=set(names), solution=s, p=prepared(*own))
 
     monkeypatch.setattr(needless, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))

@@ -69,11 +69,11 @@ def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:
 
 
 def _is_sure(score: HeldOutScore, most: float) -> bool:
-    """Whether runs want one size of it, and repeats no other one: beside other effects, not beside lost counts, which
-    are another size in every run. Or it takes nearly all there is where it acts, plainly: the size that is told of a
-    drag is that at 10 rad/s, and hardly known of one with the cube of the speed."""
-    vouched = score.as_repeats and score.fairly and bool(np.isfinite(most))
-    return vouched or (score.plain and score.share > MOSTLY)
+    """Whether runs want one size of it, and repeats no other one; or it takes nearly all there is where it acts,
+    plainly: the size that is told of a drag is that at 10 rad/s, and hardly known of one with the cube of the speed.
+    Beside other effects, not beside lost counts, which are another size in every run."""
+    vouched = score.as_repeats and score.fairly
+    return bool(np.isfinite(most)) and (vouched or (score.plain and score.share > MOSTLY))
 
 
 def without_needless(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
