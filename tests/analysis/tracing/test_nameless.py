@@ -25,7 +25,7 @@ from tests.analysis.tracing.test_gains import SOME
 from tests.blind.cases import Request
 from tests.blind.forms import OUTSIDE
 from tests.blind.generate import write_case
-from tests.contract.test_effects import REACH, motion
+from tests.contract.test_effects import KNOWN, REACH, motion
 
 
 @pytest.mark.parametrize("law", [TwoConstants(), UnevenDrag()], ids=lambda law: law.name)
@@ -96,6 +96,13 @@ def test_an_inertia_that_changes_along_the_turn_gives_back_what_it_took() -> Non
     kinetic = 0.5 * inertia * omega[:, None] ** 2
     work = np.trapezoid(made * omega[:, None], t, axis=0)
     np.testing.assert_allclose(work, kinetic[-1] - kinetic[0], atol=1e-5)
+
+
+@pytest.mark.parametrize(("once", "twice", "possible"), [(0.5, 0.0, True), (1.2, 0.0, False), (0.1, 1.2, False)])
+def test_an_inertia_is_at_no_angle_less_than_nothing(once: float, twice: float, possible: bool) -> None:
+    J_l = KNOWN.J_l
+    fit = Fit(np.array([once, 0.0, 0.0, twice]) * J_l, (), np.zeros((4, 4)), KNOWN, 50.0)
+    assert UnevenInertia().plausible(fit) == possible
 
 
 def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:

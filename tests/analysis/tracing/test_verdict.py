@@ -16,6 +16,7 @@ from rig.analysis.tracing.selection.falls import share, share_of_all
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.standing import standing
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
+from rig.analysis.tracing.selection.verdict import is_next_to_nothing
 from rig.analysis.tracing.thresholds import PART
 from rig.model.effects.nonlinear_stiffness import NonlinearStiffness
 from rig.model.effects.torque_ripple import TorqueRipple
@@ -121,3 +122,8 @@ def test_the_sentence_says_that_there_is_a_law_beside_the_names() -> None:
     assert said.effects == ("hysteretic_stiffness",)
     assert said.sentence.startswith(found.verdict.sentence)
     assert "less than the floor in any run" in said.sentence
+
+
+@pytest.mark.parametrize(("total", "share", "nothing"), [(1.33, 0.27, True), (1.33, 0.5, False), (1.6, 0.1, False)])
+def test_a_little_that_no_coordinate_foretells_is_no_effect(total: float, share: float, nothing: bool) -> None:
+    assert is_next_to_nothing(Home("memory", "M", share), total) == nothing

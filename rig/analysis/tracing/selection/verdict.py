@@ -95,7 +95,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     """Much is left, and no effect explains it; names whose own part is plain stand beside it."""
     p, before, after = asked.p, asked.before, asked.after
     line, best, (_, total) = p.own.line, where[0], asked.worst
-    if line is None and not asked.names and total < LITTLE and best.share < FORETOLD_BY_CHANCE:
+    if line is None and not asked.names and is_next_to_nothing(best, total):
         return _settled(p, (), asked.found, *asked.worst)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
@@ -109,6 +109,12 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
         sentence = f"{lacks(stand, *most(p.held_out, before, after), 'most improved')} {sentence}"
     verdict = Verdict(Status.UNKNOWN, stand, (), best.coordinate, best.order, best.frequency_hz, sentence)
     return Conclusion(verdict, best, _lives(where), along(best.coordinate))
+
+
+def is_next_to_nothing(best: Home, total: float) -> bool:
+    """Whether what is left is little, and little of it is foretold by any coordinate: friction that scatters within
+    runs leaves as much where repeats at another speed tell the floor. An effect is foretold by something."""
+    return total < LITTLE and best.share < FORETOLD_BY_CHANCE
 
 
 def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float], one: float) -> list[Home]:
