@@ -46,11 +46,12 @@ class Campaign:
         return [(r, k) for r in here for k in r.slow]
 
     def at_speed(self, rpm: float) -> Reading | None:
-        """The first unloaded run that was meant to turn at `rpm`; where that is not said, the one nearest to it."""
+        """The unloaded run that was meant to turn at `rpm` and came nearest to it; where that is not said of any, the one
+        nearest to it of all."""
         found = [r for r in self.readings if r.fast is not None and r.tau_ext == 0.0]
         meant = [r for r in found if r.speed_rpm == rpm]
         near = [r for r in found if math.isnan(r.speed_rpm) and _off(r, rpm) <= NEAR]
-        return meant[0] if meant else min(near, key=lambda r: _off(r, rpm), default=None)
+        return min(meant or near, key=lambda r: _off(r, rpm), default=None)
 
     def lock(self) -> Reading | None:
         """The first lock test of which a stiffness was had."""
