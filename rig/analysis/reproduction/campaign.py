@@ -46,8 +46,8 @@ class Campaign:
         return [(r, k) for r in here for k in r.slow]
 
     def at_speed(self, rpm: float) -> Reading | None:
-        """The unloaded run that was meant to turn at `rpm` and came nearest to it; where that is not said of any, the one
-        nearest to it of all."""
+        """The unloaded run that was meant to turn at `rpm` and came nearest to it; where that is not said of any, the
+        one nearest to it of all."""
         found = [r for r in self.readings if r.fast is not None and r.tau_ext == 0.0]
         meant = [r for r in found if r.speed_rpm == rpm]
         near = [r for r in found if math.isnan(r.speed_rpm) and _off(r, rpm) <= NEAR]
