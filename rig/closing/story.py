@@ -101,7 +101,7 @@ def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> R
         held_out=len(found.held_out),
         in_part=sum(name not in found.fitted and whole_run(name) in found.fitted for name in found.held_out),
         over_floor_before=found.ratios_before,
-        over_floor_after=found.ratios_after,
+        over_floor_after=found.ratios_after if found.verdict.status is Status.UNKNOWN else found.by_names,
         pooled_before=said["before"]["pooled"],
         pooled_after=said["after"]["pooled"],
         parameters={name: effect["parameters"] for name, effect in said["effects"].items()},

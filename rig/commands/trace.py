@@ -107,7 +107,7 @@ def tell(found: Trace, first: str = "") -> None:
     print(f"  {found.verdict.sentence}")
     for law in found.law:
         print(f"  {law}")
-    if found.added_curves and not found.law:
+    if found.verdict.status == "unknown_effect" and found.added_curves and not found.law:
         print(f"  {added(found)}")
     if rest := remainder(found):
         print(f"  {rest}")

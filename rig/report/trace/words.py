@@ -142,9 +142,9 @@ def remainder(trace: Trace) -> str:
     """What stays above the floor although effects were named; "" where nothing does or the verdict says it itself."""
     if trace.verdict.status is Status.UNKNOWN:
         return ""
-    loud = [(c, r) for c in CHANNELS if (r := trace.ratios_after.get(c.sensor, 0.0)) > EXPLAINED]
+    loud = [(c, r) for c in CHANNELS if (r := trace.by_names.get(c.sensor, 0.0)) > EXPLAINED]
     said = listed([f"the {c.name.lower()} stays at {plain(r, 3)} times its floor" for c, r in loud])
-    return f"Not all of it: {said}. What that is, is not known." if said else ""
+    return f"Not all of it: {said}. What that is, is not known{_beside_names(trace)}." if said else ""
 
 
 def added(trace: Trace) -> str:
@@ -207,6 +207,20 @@ def _curves(trace: Trace, beside: str, where: str) -> str:
     return (
         f"A curve without a name{beside}, in {where}, and beside it {'another' if len(more) == 1 else 'others'} in "
         f"{others}: {left} its floor with all of them. No physics is claimed for them."
+    )
+
+
+def _beside_names(trace: Trace) -> str:
+    """What curves without a name leave where names explain most; "" without any."""
+    if not trace.added_curves:
+        return ""
+    places = listed(list(dict.fromkeys(f"{place(c.coordinate)}{_pitch(c)}" for c in trace.added_curves)))
+    last = {c.channel: c.over_floor for c in trace.added_curves}
+    left = listed([f"the {c.name.lower()} at {plain(last[c.sensor], 3)} times" for c in CHANNELS if c.sensor in last])
+    one = len(trace.added_curves) == 1
+    return (
+        f"; {'a curve' if one else 'curves'} without a name in {places}, for which no physics is claimed, "
+        f"{'leaves' if one else 'leave'} {left} its floor"
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.outcome.result import Curve
-from rig.report.trace.words import added
+from rig.report.trace.words import added, remainder
 from tests.analysis.tracing.spiked import Columns, spiked
 from tests.report.trace import made_up
 
@@ -41,3 +41,18 @@ def test_every_curve_is_told_with_its_place_and_what_all_of_them_leave() -> None
     said = added(replace(one, added_curves=(*one.added_curves, *further)))
     assert "beside it others in the motor angle, order 12.63 per turn and the torque through the gear" in said
     assert "kinematic error 1.1 times and motor torque 1.2 times its floor" in said
+
+
+def test_what_curves_leave_beside_names_is_told_apart_from_what_the_names_leave() -> None:
+    base = made_up.explained()
+    by_names = base.ratios_after | {"theta_l": 2.15}
+    curve = Curve("load", "theta_l", None, None, 1.2)
+    partly = replace(base, ratios_named=by_names, added_curves=(curve,))
+    said = "the kinematic error stays at 2.15 times its floor. What that is, is not known"
+    assert f"{said}; a curve without a name in the torque through the gear, for which no physics is claimed, " in (
+        remainder(partly)
+    )
+    assert remainder(partly).endswith("leaves the kinematic error at 1.2 times its floor.")
+    assert remainder(replace(base, ratios_named=by_names)).endswith(f"{said}.")
+    assert remainder(base) == ""
+    assert (partly.by_names["theta_l"], base.by_names) == (2.15, base.ratios_after)

@@ -45,6 +45,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "lives_in": trace.lives_in,
             "over_floor_before": trace.ratios_before,
             "over_floor_after": trace.ratios_after,
+            "over_floor_named": trace.by_names,
             "law": trace.law,
             "curves": [asdict(curve) for curve in trace.added_curves],
             "ripple": [r.document() for r in trace.ripple],

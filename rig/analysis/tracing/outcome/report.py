@@ -83,6 +83,7 @@ def report(
         unexplained=unexplained(p, before),
         ratios_before=ratios(p, before),
         ratios_after=ratios(p, final),
+        ratios_named=ratios(p, after),
         lives_in=lives,
         candidates=tried,
         verdict=conclusion.verdict,

@@ -101,6 +101,12 @@ class Trace:
     ripple: tuple[Ripple, ...] = ()  # of torques by order, where a channel is missing
     mean_drift: tuple[MeanDrift, ...] = ()  # of torques from day to day, where a channel is missing
     added_curves: tuple[Curve, ...] = ()  # without a name, in the order in which they were added
+    ratios_named: dict[str, float] = field(default_factory=dict)  # as `ratios_after`, without those curves
     law: tuple[str, ...] = ()  # the laws without a name that were, for people
     read: int = 0  # runs of the campaign that were read, standstill among them
     left_out: tuple[str, ...] = ()  # runs that were not, by folder; the notes say why
+
+    @property
+    def by_names(self) -> dict[str, float]:
+        """Held-out RMS over floor by channel, with effects and laws alone: without curves that have no name."""
+        return self.ratios_named or self.ratios_after

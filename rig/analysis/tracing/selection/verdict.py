@@ -82,7 +82,7 @@ def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
     if asked.p.own.line is not None or not (asked.names and sure and mostly):
         return None
     conclusion = _settled(asked.p, asked.names, asked.found, first, total)
-    return Conclusion(conclusion.verdict, None, _lives(where), conclusion.next_run)
+    return Conclusion(conclusion.verdict, where[0], _lives(where), conclusion.next_run)
 
 
 def _done(asked: Asked) -> float:
