@@ -1,8 +1,9 @@
 """What a trace begins with, the torque sensor's own delay taken off.
 
 Strain gauges are read through a low-pass, often of 100 or 200 Hz: at 60 Hz what it lets through is a twelfth of a turn
-behind. To the first order, as a column of the equations, that is right up to some 1 ms; beyond it a second inertia or a
-compliance takes what is left. A delay that is at the end of what the column may have is taken off the reading itself.
+behind. A column of the load's equation takes that to the first order. But the motor's equation goes by the same
+reading, and beyond some 1 ms a second inertia or a compliance takes what is left. A delay that is longer than most
+sensors' is taken off the reading itself.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from rig.analysis.tracing.fit.parameters import baseline
 from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
 from rig.analysis.tracing.runs.look import Look
-from rig.analysis.tracing.thresholds import LATEST
+from rig.analysis.tracing.thresholds import LAG
 from rig.core.errors import UsageError
 from rig.core.units import TURN
 
-AT_ITS_END: Final = 0.999  # of LATEST
+PLAINLY: Final = 500.0  # nats by which it must be likelier: rows of a sensor with noise of its own are a tenth as many
 ROUNDS: Final = 6  # each leaves a tenth of what the one before left
 SETTLED: Final = 2e-5  # s
 LONGEST: Final = 5e-3  # s, a low-pass of 45 Hz: what is later than that is no filter, and is left to be named
@@ -34,11 +35,11 @@ def aligned(campaign: Campaign, hold_out: Sequence[str]) -> tuple[Campaign, Prep
     """The campaign and what is prepared of it: as they are, or with the torque brought forward by its delay, which a
     note tells."""
     p = prepare(campaign, hold_out)
-    if p.baseline.value("lag") < AT_ITS_END * LATEST or not _all_read(p):
+    if p.baseline.value("lag") < LAG or not _all_read(p):
         return campaign, p
     found = _brought_forward(campaign, hold_out, _late(p))
     # a load angle that is early looks the same beside the load
-    if found is None or _left(found) > min(_left(p), _with_a_later_load(campaign, hold_out, _late(found))):
+    if found is None or _left(found) > min(_left(p) - PLAINLY, _with_a_later_load(campaign, hold_out, _late(found))):
         return campaign, p
     note = _told(found)
     read = replace(found.campaign, notes=(*found.campaign.notes, note))
