@@ -55,6 +55,7 @@ UNSTEADY: Final = 1 / 3  # relative, how much an effect's size may differ from r
 APART: Final = 0.5  # the same within one channel, where there is less of it to tell by
 FAIR: Final = 0.04  # of an effect's work, in a channel: a fifth of its size; with less it is not asked how steady it is
 FAINT: Final = 0.05  # of the floor, RMS: what a run has less of is its columns' own sensor noise, and wants no size
+LESS: Final = 0.97  # RMS over the baseline's where names act, that must be left where the baseline is at the floor
 ALL: Final = 0.95  # of the excess: with so much explained, sizes may be LOOSELY times as unsteady
 LOOSELY: Final = 2.0  # because little is left of the run to tell a size by
 # one-way analysis of variance of the sizes that runs want, where the baseline alone is at the floor

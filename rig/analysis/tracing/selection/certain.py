@@ -9,7 +9,7 @@ from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, by_speed, is_loud
 from rig.analysis.tracing.selection.sizes import is_hardly_known
-from rig.analysis.tracing.thresholds import ALL, MISSING, PLAIN_TO_SEE, QUIET, SEEN, VOUCHED_FOR
+from rig.analysis.tracing.thresholds import ALL, LESS, MISSING, PLAIN_TO_SEE, QUIET, SEEN, VOUCHED_FOR
 
 
 def is_certain(selected: Selected, floors: HeldOut) -> bool:
@@ -19,7 +19,16 @@ def is_certain(selected: Selected, floors: HeldOut) -> bool:
     ones that are measured beside it small effects of others may stand out."""
     loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
     plain = selected.scores and not confounders_in(selected.solution) and not loud
-    return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
+    return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores) and _foretell(selected)
+
+
+def _foretell(selected: Selected) -> bool:
+    """Whether all of them together leave less of unseen runs where they act than the baseline alone: a gap and a spring
+    that is stiffer about zero each take away what the other one makes, and nothing else."""
+    p, acts = selected.p, sorted({key for score in selected.scores for key in score.ground})
+    before = p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out))
+    after = p.held_out.residuals(selected.solution, selected.held)
+    return not acts or p.held_out.ratio(after, acts) < LESS * p.held_out.ratio(before, acts)
 
 
 def _is_plain_to_see(selected: Selected, score: HeldOutScore) -> bool:
