@@ -143,14 +143,14 @@ def by_the_clock(
     """
     r = h.rest
     t, e = r.at["time"], r.e * r.worth * sense(r)
-    size = int(4 * _longest(r) / STEP)  # to a quarter of what the longest run can tell apart
+    size = int(4 * longest(r) / STEP)  # to a quarter of what the longest run can tell apart
     hz = np.fft.rfftfreq(size, STEP)
     runs = np.unique(r.run)
     power = np.stack([np.abs(np.fft.rfft(_stepped(t[r.run == run], e[r.run == run]), size)) ** 2 for run in runs])
     place = int(np.argmax(np.where((hz >= SLOWEST) & (hz < 2 * LOWEST), power.sum(0), 0.0)))
     f = float(hz[place])
     speeds = np.array([float(np.mean(np.abs(r.at["speed"][r.run == run]))) for run in runs])
-    if _as_the_motor_turns(f, speeds, power[:, place], 1 / _longest(r)):
+    if _as_the_motor_turns(f, speeds, power[:, place], 1 / longest(r)):
         return None
 
     def phase(rest: Rest) -> Index:
@@ -206,6 +206,6 @@ def _phase(t: Array, e: Array, f: float) -> float:
     return float(np.angle(np.exp(-1j * TURN * f * at) @ mean))
 
 
-def _longest(r: Rest) -> float:
+def longest(r: Rest) -> float:
     """Of the runs, s."""
     return max(float(np.ptp(r.at["time"][r.run == run])) for run in np.unique(r.run)) + r.dt

@@ -19,7 +19,8 @@ def is_certain(selected: Selected, floors: HeldOut) -> bool:
     ones that are measured beside it small effects of others may stand out."""
     loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
     plain = selected.scores and not confounders_in(selected.solution) and not loud
-    return bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores) and _foretell(selected)
+    to_see = bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
+    return to_see and (len(selected.scores) == 1 or _foretell(selected))
 
 
 def _foretell(selected: Selected) -> bool:
