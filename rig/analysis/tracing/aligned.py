@@ -41,7 +41,7 @@ def aligned(campaign: Campaign, hold_out: Sequence[str]) -> tuple[Campaign, Prep
     # a load angle that is early looks the same beside the load
     if found is None or _left(found) > min(_left(p) - PLAINLY, _with_a_later_load(campaign, hold_out, _late(found))):
         return campaign, p
-    note = _told(found)
+    note = delay_told(found)
     read = replace(found.campaign, notes=(*found.campaign.notes, note))
     return read, replace(found, campaign=read)
 
@@ -92,7 +92,7 @@ def _left(p: Prepared) -> float:
     return float(sum(x.size * np.log(np.mean(x**2)) for x in e))
 
 
-def _told(p: Prepared) -> str:
+def delay_told(p: Prepared) -> str:
     """How late, and which low-pass would make it so."""
     lag = next(q for q in baseline(p.baseline) if q.name == "lag")
     corner = np.sqrt(2.0) / TURN / lag.value  # of the second order, Butterworth's

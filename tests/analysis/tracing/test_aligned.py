@@ -66,3 +66,21 @@ def test_a_load_angle_that_is_early_and_a_torque_that_is_not_late_are_left_as_th
     assert read is campaign
     assert p.campaign.runs[0].look.late_torque == 0.0
     assert next(q for q in baseline(p.baseline) if q.name == "lag").value < 1.1e-3
+
+
+def teeth_and_a_late_torque(c: Columns, began: float) -> Columns:
+    """Teeth that are seen in all channels at a slow speed, and a shaft torque read 0.15 ms late."""
+    waves = 5e-6 * np.cos(102 * c["theta_m"] + 0.4)
+    late = np.interp(c["t"] - 0.15e-3, c["t"], c["tau_l"])
+    lever = 5e-6 * 102 * np.sin(102 * c["theta_m"] + 0.4) * late
+    return {"theta_l": c["theta_l"] - waves, "tau_l": late, "tau_m": c["tau_m"] + lever}
+
+
+@pytest.mark.slow
+def test_a_torque_sensor_that_is_a_little_late_is_no_missing_effect_beside_another(
+    tmp_path: Path, shared: Path
+) -> None:
+    found = trace(change(tmp_path / "teeth", shared / "cases" / "open-1", teeth_and_a_late_torque, RUNS))
+    assert found.verdict.effects == ("tooth_mesh_error",)
+    late_by = next(p for p in found.baseline_after if p.name == "lag")
+    assert late_by.ci95[0] < 1.5e-4 < late_by.ci95[1] + 3e-5
