@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.fit.equations import Bare, Equations, Noise, Term
 from rig.analysis.tracing.fit.model import Design, Part, fit, normal
 from rig.analysis.tracing.fit.parameters import Told, joined
+from rig.analysis.tracing.runs.look import Look
 from rig.model.effect import Fit
 from rig.model.effects import CATALOGUE
 from rig.model.effects.support_compliance import ON_GROUND, SupportCompliance
@@ -20,7 +21,7 @@ from rig.model.fourier import FourierSeries
 
 K, B_SP = 7160.0, 7.0
 HZ = (13.3, 6.7)
-RUN: Any = SimpleNamespace(locked=False, look=SimpleNamespace(inertia=False), pieces=())
+RUN: Any = SimpleNamespace(locked=False, look=Look(), pieces=())
 
 
 def waves(derivative: int) -> np.ndarray:
