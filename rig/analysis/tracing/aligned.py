@@ -19,8 +19,7 @@ from rig.analysis.tracing.fit.channels import INDEX, WHOLE
 from rig.analysis.tracing.fit.model import solve
 from rig.analysis.tracing.fit.parameters import baseline
 from rig.analysis.tracing.prepared import Prepared, prepare
-from rig.analysis.tracing.runs.campaign import Campaign, read_campaign
-from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.runs.campaign import Campaign, read_again
 from rig.analysis.tracing.thresholds import LAG
 from rig.core.errors import UsageError
 from rig.core.units import TURN
@@ -62,7 +61,7 @@ def _late(p: Prepared) -> float:
 def _brought_forward(campaign: Campaign, hold_out: Sequence[str], late: float) -> Prepared | None:
     """Read again until nothing of the delay is left; None where it is no filter's, or the runs are others then."""
     for _ in range(ROUNDS):
-        found = _again(campaign, hold_out, Look(late_torque=late)) if 0 < late < LONGEST else None
+        found = _again(campaign, hold_out, late_torque=late) if 0 < late < LONGEST else None
         if found is None or abs(_late(found) - late) < SETTLED:
             return found
         late = _late(found)
@@ -71,15 +70,19 @@ def _brought_forward(campaign: Campaign, hold_out: Sequence[str], late: float) -
 
 def _with_a_later_load(campaign: Campaign, hold_out: Sequence[str], late: float) -> float:
     """What is left where it is the load angle that comes early by as much."""
-    other = _again(campaign, hold_out, Look(late_load=-late))
+    other = _again(campaign, hold_out, late_load=-late)
     return float("inf") if other is None else _left(other)
 
 
-def _again(campaign: Campaign, hold_out: Sequence[str], look: Look) -> Prepared | None:
+def _again(campaign: Campaign, hold_out: Sequence[str], **changed: float) -> Prepared | None:
+    read = read_again(campaign, **changed)
+    return None if read is None else _prepared(read, hold_out)
+
+
+def _prepared(read: Campaign, hold_out: Sequence[str]) -> Prepared | None:
+    """None where they cannot be fitted so."""
     try:
-        read = read_campaign(campaign.folder, look)
-        same = [run.name for run in read.runs] == [run.name for run in campaign.runs]
-        return prepare(read, hold_out) if same else None
+        return prepare(read, hold_out)
     except UsageError:
         return None
 

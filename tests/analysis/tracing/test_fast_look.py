@@ -14,6 +14,7 @@ from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.looks import fast
 from rig.analysis.tracing.rest.above_the_band import Line, _from_speed_to_speed, rings_above
+from rig.analysis.tracing.runs import campaign as campaign_module
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.cannot import cannot
 from rig.analysis.tracing.runs.look import Look
@@ -154,7 +155,7 @@ def test_laws_of_a_mode_are_tried_in_their_turn_where_one_shows(
         return prepared
 
     monkeypatch.setattr(fast, "_prepared", made)
-    monkeypatch.setattr(fast, "_read_again", lambda first: SimpleNamespace(runs=()))
+    monkeypatch.setattr(fast, "read_again", lambda first, **changed: SimpleNamespace(runs=()))
     monkeypatch.setattr(fast, "split", lambda runs, asked, swapped: SimpleNamespace(held_out=(repeated and swapped,)))
     monkeypatch.setattr(fast, "still", lambda start, floors: False)
     monkeypatch.setattr(fast, "replace", lambda found, **changed: found)
@@ -181,9 +182,9 @@ def test_what_was_told_stands_where_fast_rows_cannot_be_fitted_or_are_of_other_r
     monkeypatch: pytest.MonkeyPatch, names: list[str], prepare: Any
 ) -> None:
     now = SimpleNamespace(runs=[SimpleNamespace(name=name) for name in names])
-    monkeypatch.setattr(fast, "read_campaign", lambda folder, look: now)
-    monkeypatch.setattr(fast, "looking", lambda campaign, looks: campaign)
-    monkeypatch.setattr(fast, "replace", lambda look, **changed: look)
+    monkeypatch.setattr(campaign_module, "read_campaign", lambda folder, look: now)
+    monkeypatch.setattr(campaign_module, "looking", lambda campaign, looks: campaign)
+    monkeypatch.setattr(campaign_module, "replace", lambda look, **changed: look)
     monkeypatch.setattr(fast, "prepare", prepare)
     monkeypatch.setattr(fast, "split", lambda runs, asked, swapped: SimpleNamespace(held_out=(swapped,)))
     before = standing()

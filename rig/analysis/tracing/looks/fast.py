@@ -15,7 +15,7 @@ from rig.analysis.tracing.fit.search import Found, Scored, settled, still
 from rig.analysis.tracing.fit.some import ranking_of_some, some
 from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.rest.above_the_band import has_fast_rows, rings_above
-from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
+from rig.analysis.tracing.runs.campaign import Campaign, read_again
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.searched import Tried, beside
 from rig.analysis.tracing.selection.certain import is_calm, is_certain
@@ -49,7 +49,7 @@ def wanted(selected: Selected) -> bool:
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """A mode beside all else that has a name, with a low-pass twice as wide. One order meets it at one speed or two,
     whose runs may all be fitted ones: then other repeats are held out."""
-    again = _read_again(so_far.p.campaign)
+    again = read_again(so_far.p.campaign, fast=True)
     if again is None:
         return so_far, found
     ways = [split(again.runs, hold_out, swapped).held_out for swapped in (False, True)]
@@ -76,16 +76,6 @@ def _beside(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Foun
         if _counts(other, so_far) and not (calm and not is_certain(other, p.held_out)):
             return other, replace(found, ranking=_together(found.ranking, ranked))
     return None
-
-
-def _read_again(first: Campaign) -> Campaign | None:
-    """The same runs at fast rows; None where these are others now: what was told stands."""
-    try:
-        again = read_campaign(first.folder, replace(first.runs[0].look, fast=True))
-    except UsageError:
-        return None
-    same = [run.name for run in again.runs] == [run.name for run in first.runs]
-    return looking(again, [replace(run.look, fast=True) for run in first.runs]) if same else None
 
 
 def _prepared(again: Campaign, hold_out: Sequence[str], swapped: bool) -> Prepared | None:

@@ -13,11 +13,10 @@ from typing import Final
 from rig.analysis.tracing.aligned import LONGEST, delay_told
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
-from rig.analysis.tracing.runs.campaign import Campaign, looking, read_campaign
+from rig.analysis.tracing.runs.campaign import Campaign, read_again
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import AS_WELL
-from rig.core.errors import UsageError
 from rig.model.effects.channel_time_skew import TORQUE, ChannelTimeSkew
 
 LATE: Final = ChannelTimeSkew.name
@@ -39,7 +38,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     """The same with the torque brought forward by so much. It counts where no channel is late then, and as little is
     left."""
     late = so_far.solution.design.forward + _delay(so_far)
-    again = _read_again(so_far.p.campaign, late)
+    again = read_again(so_far.p.campaign, late_torque=late)
     if again is None:
         return so_far, found
     other, ranked = searched(prepare(again, hold_out))
@@ -47,13 +46,3 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
         return so_far, found
     told = replace(other.p.campaign, notes=(*other.p.campaign.notes, delay_told(other.p)))
     return replace(other, p=replace(other.p, campaign=told)), ranked
-
-
-def _read_again(first: Campaign, late: float) -> Campaign | None:
-    """The same runs, the torque brought forward when it is read; None where these are others now."""
-    try:
-        again = read_campaign(first.folder, replace(first.runs[0].look, late_torque=late))
-    except UsageError:
-        return None
-    same = [run.name for run in again.runs] == [run.name for run in first.runs]
-    return looking(again, [replace(run.look, late_torque=late) for run in first.runs]) if same else None

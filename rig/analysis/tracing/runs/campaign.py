@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -115,6 +116,17 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     return Campaign(
         name, folder, _with_past(runs), any(run.simulated for run in opened), tuple(notes), tuple(sorted(left))
     )
+
+
+def read_again(first: Campaign, **changed: Any) -> Campaign | None:
+    """The same runs, read once more and looked at as before but for what is `changed` of the looks; None where these
+    are others now, or cannot be read so: what was told of them stands."""
+    try:
+        again = read_campaign(first.folder, replace(first.runs[0].look, **changed))
+    except UsageError:
+        return None
+    same = [run.name for run in again.runs] == [run.name for run in first.runs]
+    return looking(again, [replace(run.look, **changed) for run in first.runs]) if same else None
 
 
 def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
