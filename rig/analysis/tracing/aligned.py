@@ -61,7 +61,7 @@ def _late(p: Prepared) -> float:
 def _brought_forward(campaign: Campaign, hold_out: Sequence[str], late: float) -> Prepared | None:
     """Read again until nothing of the delay is left; None where it is no filter's, or the runs are others then."""
     for _ in range(ROUNDS):
-        found = _again(campaign, hold_out, late_torque=late) if 0 < late < LONGEST else None
+        found = prepared_again(campaign, hold_out, late_torque=late) if 0 < late < LONGEST else None
         if found is None or abs(_late(found) - late) < SETTLED:
             return found
         late = _late(found)
@@ -70,19 +70,16 @@ def _brought_forward(campaign: Campaign, hold_out: Sequence[str], late: float) -
 
 def _with_a_later_load(campaign: Campaign, hold_out: Sequence[str], late: float) -> float:
     """What is left where it is the load angle that comes early by as much."""
-    other = _again(campaign, hold_out, late_load=-late)
+    other = prepared_again(campaign, hold_out, late_load=-late)
     return float("inf") if other is None else _left(other)
 
 
-def _again(campaign: Campaign, hold_out: Sequence[str], **changed: float) -> Prepared | None:
+def prepared_again(campaign: Campaign, hold_out: Sequence[str], **changed: float) -> Prepared | None:
+    """The same runs, looked at as before but for what is `changed` of the looks; None where they are others then, or
+    cannot be fitted so."""
     read = read_again(campaign, **changed)
-    return None if read is None else _prepared(read, hold_out)
-
-
-def _prepared(read: Campaign, hold_out: Sequence[str]) -> Prepared | None:
-    """None where they cannot be fitted so."""
     try:
-        return prepare(read, hold_out)
+        return None if read is None else prepare(read, hold_out)
     except UsageError:
         return None
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from rig.analysis.tracing import looks
 from rig.analysis.tracing.looks.reversals import _adds
 from rig.analysis.tracing.selection.score import HeldOutScore
 
@@ -37,3 +38,27 @@ def test_it_counts_where_it_is_named_and_leaves_no_more() -> None:
     assert not _adds(selected(SMALL), selected(SMALL))
     assert not _adds(selected(BUILT, loud=True), selected())
     assert _adds(selected(BUILT, loud=True), selected(loud=True))
+
+
+@pytest.mark.parametrize("late", [0.0, 1e-4])
+def test_later_looks_are_at_the_torque_as_it_was_brought_forward(late: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    def campaign(name: str, late_torque: float) -> Any:
+        return SimpleNamespace(name=name, runs=[SimpleNamespace(look=SimpleNamespace(late_torque=late_torque))])
+
+    def standing(of: Any) -> Any:
+        return SimpleNamespace(p=SimpleNamespace(campaign=of))
+
+    asked: list[str] = []
+    first = SimpleNamespace(
+        wanted=lambda s: True, taken=lambda s, found, of, hold_out: (standing(campaign("anew", late)), found)
+    )
+
+    def second(s: Any, found: Any, of: Any, hold_out: Any) -> tuple[Any, Any]:
+        asked.append(of.name)
+        return s, found
+
+    monkeypatch.setattr(looks, "LOOKS", (first, SimpleNamespace(wanted=lambda s: True, taken=second)))
+    before: Any = campaign("as read", 0.0)
+    nothing: Any = None
+    looks.second_looks(standing(before), nothing, before, ())
+    assert asked == ["anew" if late else "as read"]

@@ -24,4 +24,11 @@ def second_looks(
     for look in LOOKS:
         if look.wanted(selected):
             selected, found = look.taken(selected, found, campaign, hold_out)
+            campaign = _as_read(selected.p.campaign, campaign)
     return selected, found
+
+
+def _as_read(now: Campaign, before: Campaign) -> Campaign:
+    """The campaign that later looks are at: the one that was read anew, where a look brought its torque forward."""
+    late = [c.runs[0].look.late_torque for c in (now, before)]
+    return now if late[0] != late[1] else before

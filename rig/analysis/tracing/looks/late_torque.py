@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from rig.analysis.tracing.aligned import LONGEST, delay_told
+from rig.analysis.tracing.aligned import LONGEST, delay_told, prepared_again
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.prepared import prepare
-from rig.analysis.tracing.runs.campaign import Campaign, read_again
+from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import AS_WELL
@@ -38,10 +37,10 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     """The same with the torque brought forward by so much. It counts where no channel is late then, and as little is
     left."""
     late = so_far.solution.design.forward + _delay(so_far)
-    again = read_again(so_far.p.campaign, late_torque=late)
+    again = prepared_again(so_far.p.campaign, hold_out, late_torque=late)
     if again is None:
         return so_far, found
-    other, ranked = searched(prepare(again, hold_out))
+    other, ranked = searched(again)
     if LATE in other.names or (other.loud and other.left > AS_WELL * so_far.left):
         return so_far, found
     told = replace(other.p.campaign, notes=(*other.p.campaign.notes, delay_told(other.p)))

@@ -109,7 +109,8 @@ def _notes(
     """What goes with the effects that are named, with torques by order and by day, and with the campaign."""
     mine = [p.own.notes[found.effect] for found in effects if found.effect in p.own.notes]
     torques = [*(r.sentence() for r in ripple), *(mean.sentence() for mean in drift)]
-    return [*beside_the_numbers(effects), *mine, *([one_way] if one_way else []), *torques, *p.campaign.notes]
+    told = [*beside_the_numbers(effects), *mine, *([one_way] if one_way else []), *torques, *p.campaign.notes]
+    return list(dict.fromkeys(told))  # what is prepared again is told again
 
 
 def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:
