@@ -122,5 +122,5 @@ def test_a_clean_campaign_asked_for_speeds_it_was_not_fitted_at_is_no_unknown_ef
     assert made.verdict.status is Status.AMBIGUOUS
     assert "3 of 3 held-out runs (" in made.verdict.sentence
     assert "lie outside what the 4 fitted runs" in made.verdict.sentence
-    assert not made.curve
+    assert (made.added_curves, made.law) == ((), ())
     assert made.ratios_after == made.ratios_before
