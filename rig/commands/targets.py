@@ -60,9 +60,14 @@ def refuse_other_than_json(path: Path, option: str) -> None:
     """Raises UsageError when what is at `path` is a file of something else than an object in JSON, which a program
     writes anew each time."""
     with writing(path, option):
-        other = path.is_file() and path.read_bytes()[:1] not in (b"", b"{")
+        other = path.is_file() and _first(path) not in (b"", b"{")
     if other:
         raise UsageError(f"{option} {path} exists already and is no JSON; nothing else is overwritten")
+
+
+def _first(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(1)
 
 
 @contextlib.contextmanager

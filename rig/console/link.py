@@ -25,8 +25,8 @@ LOOK = 0.001  # s between two looks whether the loop has seen a switch
 SEEN = 0.25  # s after which nobody waits any longer for that
 REAPED = 0.2  # s until a process whose line is gone has ended as well
 STARTING = "starting the control process"
-GONE = "the control process has ended: nobody looks after the rig, and nobody confirms that its torque is off"
-WHAT_NOW = "Use the hard-wired stop. Then end hdrig serve with Ctrl-C and start it again{rest}."
+ALONE = "nobody looks after the rig, and nobody confirms that its torque is off"
+GONE = f"the control process has ended: {ALONE}"
 DEAF = f"nobody hears it: {GONE}. Use the hard-wired stop"
 
 
@@ -105,9 +105,9 @@ class Link:
                     waiting.set_result(str(message.get("why", "")))
 
     def _gone(self) -> None:
+        self.what_now = self._advice()
         if not self._asked_to_end:
             self.lost(self._post_mortem())
-        self.what_now = WHAT_NOW.format(rest=self._rest())
         known = Status(bench=self.picture["bench"], state="fault", fault=GONE, last_run=self.picture["last_run"])
         self.picture = known.picture()
         for waiting in self._replies.values():
@@ -121,16 +121,14 @@ class Link:
         assert self._process is not None
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(REAPED)
-        return (
-            f"the control process {self.pid} has ended{ended_by(self._process.returncode)}: nobody looks after the "
-            "rig, and nobody confirms that its torque is off. Use the hard-wired stop. Then end this with Ctrl-C and "
-            f"start hdrig serve again{self._rest()}"
-        )
+        how = ended_by(self._process.returncode)
+        return f"the control process {self.pid} has ended{how}: {ALONE}. {self.what_now}"
 
-    def _rest(self) -> str:
-        """How the run that died with the station is made readable; "" where none ran."""
+    def _advice(self) -> str:
+        """What to do, and how the run that died with the station is made readable, where one did."""
         run = self.picture["run"]
-        return f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
+        rest = f"; then what there is of its run: hdrig recover {run['folder']}" if run is not None else ""
+        return f"Use the hard-wired stop. Then end hdrig serve with Ctrl-C and start it again{rest}"
 
     async def act(self, message: Mapping[str, Any]) -> str:
         """Hand an act on; why the station refuses it, or ""."""

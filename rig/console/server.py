@@ -55,6 +55,7 @@ class Serving:
         self.console.link.lost = _tell
         self._asked = 0  # times somebody asked for the end
         self._ending: asyncio.Task[None] | None = None
+        self._run: dict[str, Any] | None = None  # that which went on when the end was asked for
 
     @property
     def lines(self) -> list[str]:

@@ -1,9 +1,9 @@
 """What a trace begins with, the torque sensor's own delay taken off.
 
-Strain gauges are read through a low-pass, often of 100 or 200 Hz: at 60 Hz what it lets through is a twelfth of a turn
-behind. A column of the load's equation takes that to the first order. But the motor's equation goes by the same
-reading, and beyond some 1 ms a second inertia or a compliance takes what is left. A delay that is longer than most
-sensors' is taken off the reading itself.
+Strain gauges are read through a low-pass, often of 100 or 200 Hz: at 60 Hz what it lets through is a seventh or a
+fifteenth of a turn behind. A column of the load's equation takes that to the first order. But the motor's equation goes
+by the same reading, and beyond some 1 ms a second inertia or a compliance takes what is left. A delay that is longer
+than most sensors' is taken off the reading itself.
 """
 
 from __future__ import annotations

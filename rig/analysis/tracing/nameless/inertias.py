@@ -41,7 +41,7 @@ class UnevenInertia(Nameless):
         return {Port.LOAD_TORQUE: np.hstack(made)}
 
     def plausible(self, fit: Fit) -> bool:
-        """At no angle is less than nothing left of the load's inertia."""
+        """Neither wave takes more than all there is of the load's inertia, which is nowhere less than nothing."""
         return bool(np.all(np.hypot(fit.coefficients[0::2], fit.coefficients[1::2]) < fit.known.J_l))
 
     def amount(self, fit: Fit) -> Amount:

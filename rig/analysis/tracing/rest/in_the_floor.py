@@ -36,7 +36,9 @@ HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the 
 FEWEST: Final = 4  # runs
 LARGEST: Final = 2.0  # order of a two-lobed wave generator, the largest of its kinematic error
 BESIDE_ZEROS: Final = 0.05  # of the square of the floor: less than that zeros of runs may leave by chance
-SLOW_FORETOLD: Final = 0.6  # of four right ones the least had 0.66, two of scattering friction 0.54 and 0.57
+SLOW_FORETOLD: Final = (
+    0.6  # scattering friction had 0.54 and 0.57 (902 and 519 s); ten right ones of 6 to 98 s 0.66 and more
+)
 ALIKE: Final = 1.5  # highest over lowest speed of runs that are told by each other
 
 SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (
