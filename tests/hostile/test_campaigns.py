@@ -109,3 +109,10 @@ def test_what_was_left_out_is_named_whatever_was_wrong_with_it(tmp_path: Path) -
     found = read_campaign(folder)
     assert found.left_out == tuple(names[:4])
     assert {run.name for run in found.runs} == set(names[4:])
+
+
+def test_a_lock_test_said_to_be_free_is_taken_for_locked_and_said_to_be(tmp_path: Path) -> None:
+    at_rest = {"procedure": "stiffness_lock", "conditions": {"output_locked": False}}
+    found = read_campaign(campaign(tmp_path, lambda c: {**c, "theta_l": 0.0 * c["theta_l"]}, **at_rest))
+    assert all(run.locked for run in found.runs)
+    assert any("its output is taken for locked" in note for note in found.notes)

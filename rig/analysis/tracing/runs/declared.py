@@ -13,12 +13,20 @@ from rig.core import numbers
 from rig.model.effect import Known
 from rig.model.fourier import FourierSeries
 
+LOCK_TEST = "stiffness_lock"
 UNKNOWN = Known(K=7160.0, B_sp=0.0, J_m=1e-3, J_l=0.5, kinematic_error=FourierSeries((), ()))
 
 
 def is_locked(run: Source) -> bool:
     """Whether the output is held."""
-    return bool(run.conditions.get("output_locked")) or run.procedure == "stiffness_lock"
+    return bool(run.conditions.get("output_locked")) or run.procedure == LOCK_TEST
+
+
+def locked_all_the_same(run: Source) -> tuple[str, ...]:
+    """A sentence on a lock test whose output is said to be free."""
+    if run.procedure != LOCK_TEST or run.conditions.get("output_locked") is not False:
+        return ()
+    return ("it says its output is not locked, and it is a stiffness lock test: its output is taken for locked",)
 
 
 def believed(run: Source) -> Known:

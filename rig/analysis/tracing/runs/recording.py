@@ -12,7 +12,7 @@ from rig.analysis.motion.smallest_step import smallest_step
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.tame import Tame
 from rig.analysis.tracing.runs.clocked import is_clocked, slowed
-from rig.analysis.tracing.runs.declared import believed, is_locked, stated, states
+from rig.analysis.tracing.runs.declared import believed, is_locked, locked_all_the_same, stated, states
 from rig.analysis.tracing.runs.grid import grid, is_even, joined, refuse_other_time, refuse_sparse, uniform
 from rig.analysis.tracing.runs.holes import without_holes
 from rig.analysis.tracing.runs.late import earlier
@@ -182,7 +182,13 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         rate=1 / dt,
         thinned=factor,
         noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(*run.notes, *(motion.notes if motion else ()), *([holes] if holes else ()), *computed_torque(whole_run)),
+        notes=(
+            *run.notes,
+            *locked_all_the_same(run),
+            *(motion.notes if motion else ()),
+            *([holes] if holes else ()),
+            *computed_torque(whole_run),
+        ),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
