@@ -129,15 +129,13 @@ def _seen(s: Solution, run: int) -> tuple[npt.NDArray[np.int64], dict[str, Array
         "spring": curve * torque[:, None],
     }
     step = TOGETHER * float(np.median(np.diff(t)))
-    when, place, count = np.unique(np.floor(since / step + 0.25).astype(int), return_inverse=True, return_counts=True)
-    return when, {by: _means(x, place, count) for by, x in made.items()}
+    when, first, count = np.unique(np.floor(since / step + 0.25).astype(int), return_index=True, return_counts=True)
+    return when, {by: _means(x, first, count) for by, x in made.items()}
 
 
-def _means(x: Array, place: npt.NDArray[np.int64], count: npt.NDArray[np.int64]) -> Array:
-    """Of the rows at each place, (n, …)."""
-    out = np.zeros((count.size, *x.shape[1:]))
-    np.add.at(out, place, x)
-    return np.asarray(out / count.reshape(-1, *[1] * (x.ndim - 1)))
+def _means(x: Array, first: npt.NDArray[np.int64], count: npt.NDArray[np.int64]) -> Array:
+    """Of so many rows from each first one on, (n, …)."""
+    return np.asarray(np.add.reduceat(x, first) / count.reshape(-1, *[1] * (x.ndim - 1)))
 
 
 def _without(q: Array, x: Array) -> Array:

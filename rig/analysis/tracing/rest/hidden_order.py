@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
+import numpy as np
+
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.binned import Halves, folds
@@ -25,6 +27,7 @@ from rig.model.effect import Array
 
 WHOLE_ORDER: Final = 0.05  # how far from a whole number
 SOME: Final = 0.5  # of the runs: with fewer that were repeated, neighbouring turns make the floor of most
+PLAIN: Final = LOUD_LINE / 2  # of what is left of the fitted runs, what one half of them must foretell of the other
 NOTHING: Final = 0.01  # mean square over the floor's, of what is rounding alone: made-up numbers have no noise
 
 
@@ -61,6 +64,10 @@ def _in_channel(
     tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
     # both angles are nearly one: what comes back with a turn of the output comes back a whole number of times in it
     tried += [home for sense in SENSES if _is_whole(home := best_order(h, "load_angle", channel, sense))]
+    enough = PLAIN * float(np.mean(r.e**2)) / h.total
+    plain = [home for home in tried if home is not None and home.share > enough]
+    if not plain:  # in most campaigns: the unseen runs need not be asked
+        return []
     beside = unseen_beside(eq, fitted, unseen, floors, channel)
 
     def left(home: Home) -> float:
@@ -69,7 +76,7 @@ def _in_channel(
     bare = left(Home("motor_angle", channel, 0.0, read=in_columns(nothing)))
     if bare < NOTHING * sum(unseen[key].size for key in keys):
         return []
-    return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in tried if home is not None]
+    return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in plain]
 
 
 def _is_whole(home: Home | None) -> bool:
