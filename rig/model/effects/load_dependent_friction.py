@@ -15,7 +15,8 @@ class LoadDependentFriction(Effect):
     """τ_f gains μ_L·T_0/N·|T/T_0|^p·sgn ω_m, T_0 = 20 N·m; with p = 1 the load-only efficiency is 1/(1 + μ_L)
 
     Friction of a mixed film grows less than the load, of teeth that dig in more: p is fitted. Teeth that slide
-    otherwise when the load drives have another μ_L then: one for either flow of power.
+    otherwise when the load drives have another μ_L then: one for either flow of power. Contacts that bear on all their
+    area have no more to gain: (1 − exp(−|T|/T_s))/(1 − exp(−T_0/T_s)) in the place of the power then.
     """
 
     name: ClassVar[str] = "load_dependent_friction"
@@ -25,11 +26,15 @@ class LoadDependentFriction(Effect):
         "mu_L_driving": "μ_L where the motor drives, friction over the torque through the gear, at 20 N·m",
         "mu_L_driven": "μ_L where the load drives, friction over the torque through the gear, at 20 N·m",
         "exponent": "p, power of the load by which the friction grows",
+        "T_s": "T_s, torque through the gear over which the friction saturates",
     }
     source: ClassVar[str] = "tuttle1992"
-    shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent")
-    loose: ClassVar[tuple[bool, ...]] = (False, True)
-    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"exponent": (1.0,)})
+    shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent", "law")  # T_s/T_0 in its place
+    loose: ClassVar[tuple[bool, ...]] = (False, True, False)
+    POWER, SATURATING = 0.0, 1.0
+    usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType(
+        {"exponent": (1.0,), "law": (POWER, SATURATING)}
+    )
     AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
     UNSURE: Final = 0.25  # of the larger μ_L, how negative noise may make the other
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
@@ -38,16 +43,19 @@ class LoadDependentFriction(Effect):
         """One μ_L, or one for either flow of power: where the motor's torque alone tells how heavy the load is, a load
         that is heavier and loses more when it drives is the same."""
         told = "tau_l" in reach.has or reach.weights > 1
-        return ((0.0, 1.0), (1.0, 1.0)) if told else ((0.0, 1.0),)
+        one = ((0.0, 1.0, self.POWER), (0.0, 0.5, self.SATURATING))
+        return (*one, (1.0, 1.0, self.POWER)) if told else one
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
-        """The flow is chosen, not fitted."""
-        return (0.0, 1.0), self.EXPONENTS
+        """The flow and the law are chosen, not fitted."""
+        return (0.0, 1.0), self.EXPONENTS, (self.POWER, self.SATURATING)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, or two: motor driving, load driving."""
-        by_flow, exponent = shape
-        loss = self.AT / signals.ratio * np.abs(signals.torque / self.AT) ** exponent * signals.way
+        by_flow, exponent, law = shape
+        load = np.abs(signals.torque / self.AT)
+        grown = np.expm1(-load / exponent) / np.expm1(-1 / exponent) if law == self.SATURATING else load**exponent
+        loss = self.AT / signals.ratio * grown * signals.way
         if not by_flow:
             return {Port.MOTOR_TORQUE: loss[:, None]}
         driving = signals.torque * signals.way > 0
@@ -58,7 +66,10 @@ class LoadDependentFriction(Effect):
         names = ("mu_L_driving", "mu_L_driven") if fit.shape[0] else ("mu_L",)
         unit = np.eye(fit.covariance.shape[0])
         shares = (parameter(name, fit.coefficients[i], fit.half_width(unit[i]), "1") for i, name in enumerate(names))
-        return (*shares, parameter("exponent", fit.shape[1], fit.half_width(unit[-1]), "1"))
+        half = fit.half_width(unit[len(names) + 1])
+        if fit.shape[2] == self.SATURATING:
+            return (*shares, parameter("T_s", self.AT * fit.shape[1], self.AT * half, "N·m"))
+        return (*shares, parameter("exponent", fit.shape[1], half, "1"))
 
     def plausible(self, fit: Fit) -> bool:
         """Losses grow with the load and give no energy back, whichever way the power flows."""

@@ -148,7 +148,7 @@ def test_how_a_wave_generator_turns_is_read_from_the_load() -> None:
 
 def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
     s = motion()
-    column = LoadDependentFriction().columns(s, (0.0, 1.0))[Port.MOTOR_TORQUE][:, 0]
+    column = LoadDependentFriction().columns(s, (0.0, 1.0, 0.0))[Port.MOTOR_TORQUE][:, 0]
     np.testing.assert_allclose(column, np.abs(s.torque) / N * s.way, atol=1e-15)
 
 
@@ -329,7 +329,7 @@ def test_no_housing_swings_in_a_slow_run_and_none_is_shaken_when_a_motor_speeds_
 
 @pytest.mark.parametrize(("driven", "can_be"), [(0.03, True), (-0.002, True), (-0.02, False)])
 def test_a_loss_gives_no_energy_back_when_the_load_drives(driven: float, can_be: bool) -> None:
-    fit = Fit(np.array([0.03, driven]), (1.0, 1.0), np.zeros((4, 4)), KNOWN, N)
+    fit = Fit(np.array([0.03, driven]), (1.0, 1.0, 0.0), np.zeros((5, 5)), KNOWN, N)
     assert LoadDependentFriction().plausible(fit) is can_be
 
 

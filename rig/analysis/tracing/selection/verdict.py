@@ -140,7 +140,9 @@ def _in_the_floor_too(
     traces."""
     if where[0].coordinate == "time":
         wave = in_the_floor(p.eq, left, after, floors)
-        return [wave, *where] if wave is not None and wave.frequency_hz else where
+        if wave is None or not wave.frequency_hz or (where[0].first and where[0].share > wave.share):
+            return where  # what settles anew in every run comes back with the runs
+        return [wave, *where]
     if where[0].share < HALF:
         order = hidden_order(p.eq, left, after, floors)
         return [order, *where] if order is not None and order.share > where[0].share else where
