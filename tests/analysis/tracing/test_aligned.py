@@ -68,6 +68,16 @@ def test_a_load_angle_that_is_early_and_a_torque_that_is_not_late_are_left_as_th
     assert next(q for q in baseline(p.baseline) if q.name == "lag").value < 1.1e-3
 
 
+def test_a_torque_that_is_later_than_a_sensor_makes_it_is_left_to_be_named(tmp_path: Path, shared: Path) -> None:
+    def much_later(c: Columns, began: float) -> Columns:
+        return {"tau_l": np.interp(c["t"] - 5e-3, c["t"], c["tau_l"])}
+
+    campaign = read_campaign(change(tmp_path / "later", shared / "cases" / "open-1", much_later, RUNS))
+    read, p = aligned(campaign, ())
+    assert read is campaign
+    assert p.campaign.runs[0].look.late_torque == 0.0
+
+
 LATE = 0.28e-3  # s
 MORE = (*RUNS, "speed_60rpm_1", "speed_60rpm_2", "speed_200rpm_1", "speed_minus400rpm_1")
 

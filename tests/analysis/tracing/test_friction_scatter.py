@@ -18,10 +18,10 @@ ROWS, NOISE, SCATTERS = 2000, 2e-3, 2e-3  # N·m
 BOTH = np.repeat([1.0, -1.0], ROWS // 2)
 
 
-def run(way: np.ndarray, start: float, locked: bool = False) -> Any:
+def run(way: np.ndarray, start: float, locked: bool = False, wound: bool = False) -> Any:
     piece = SimpleNamespace(way=way, t=np.arange(float(way.size)))
     smoother = SimpleNamespace(centres=lambda n: slice(0, n))
-    return SimpleNamespace(pieces=(piece,), smoother=smoother, start=start, locked=locked)
+    return SimpleNamespace(pieces=(piece,), smoother=smoother, start=start, locked=locked, is_wound=wound)
 
 
 def pairs(
@@ -88,12 +88,14 @@ def test_of_too_few_pairs_or_of_none_that_go_both_ways_nothing_is_said(
     assert evened(s, found, NOISE**2) == (found, Scattering())
 
 
-def test_the_share_of_a_floor_is_none_of_locked_runs_and_of_those_that_go_one_way() -> None:
+def test_the_share_of_a_floor_is_none_of_runs_that_go_one_way_or_have_a_friction_of_their_own() -> None:
+    """As lock tests without a torque sensor do."""
     friction = Scattering(SCATTERS**2, 6)
     floor = float(np.hypot(NOISE, SCATTERS))
     assert friction.share(run(BOTH, 0.0), floor) == pytest.approx(0.5)
     assert friction.share(run(BOTH, 0.0), SCATTERS / 2) == 1.0
-    assert friction.share(run(BOTH, 0.0, locked=True), floor) == 0.0
+    assert friction.share(run(BOTH, 0.0, locked=True), floor) == pytest.approx(0.5)
+    assert friction.share(run(BOTH, 0.0, locked=True, wound=True), floor) == 0.0
     assert friction.share(run(np.ones(ROWS), 0.0), floor) == 0.0
 
 

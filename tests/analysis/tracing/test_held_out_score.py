@@ -169,3 +169,13 @@ def test_a_term_that_does_nothing_on_unseen_runs_has_no_share(monkeypatch: pytes
     found = held_out_score.score(cast(Any, None), cast(Any, d), cast(Any, at), {key: np.ones(9)}, "gap")
     assert (found.share, found.size, found.ground) == (0.0, 0.0, ())
     assert not found.named
+
+
+def test_what_is_large_and_all_there_is_in_its_channels_is_no_part_of_a_rest() -> None:
+    """Friction with a long tail: of one size, but of which single runs tell it hardly."""
+    fall = HeldOutScore("stribeck_friction", 1.0, 4.8, 1.0, 0.97, (), unsteady=0.36, apart=0.36, anywhere=1.1)
+    assert fall.all_there_is
+    assert not fall.whatever_the_floor
+    assert not replace(fall, size=2.4).all_there_is
+    assert not replace(fall, anywhere=1.5).all_there_is
+    assert not replace(fall, true=0.7).all_there_is

@@ -152,6 +152,19 @@ def test_mesh_friction_of_exponent_one_is_a_share_of_the_torque() -> None:
     np.testing.assert_allclose(column, np.abs(s.torque) / N * s.way, atol=1e-15)
 
 
+def test_mesh_friction_that_saturates_is_told_at_the_same_torque_and_by_where_it_does() -> None:
+    s = dataclasses.replace(motion(), torque=np.full(4000, 20.0))
+    law = LoadDependentFriction()
+    column = law.columns(s, (0.0, 0.45, 1.0))[Port.MOTOR_TORQUE][:, 0]
+    np.testing.assert_allclose(column, 20.0 / N * s.way)
+    flat = law.columns(dataclasses.replace(s, torque=np.full(4000, 200.0)), (0.0, 0.45, 1.0))[Port.MOTOR_TORQUE][:, 0]
+    np.testing.assert_allclose(flat, column / (1 - np.exp(-1 / 0.45)))
+    told = law.parameters(Fit(np.array([0.05]), (0.0, 0.45, 1.0), 1e-4 * np.eye(4), KNOWN, N))
+    assert [(p.name, p.unit) for p in told] == [("mu_L", "1"), ("T_s", "N·m")]
+    assert told[1].value == pytest.approx(9.0)
+    assert told[1].ci95[1] > 9.1
+
+
 def test_a_hub_that_swings_on_the_torque_sensor_by_itself_loads_no_gear() -> None:
     """With the load at rest and the torque at the hub's own frequency the gear is not wound up, damper or not."""
     inertia, hz = 0.05, 4.0

@@ -40,7 +40,15 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [
-            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=work[name])
+            SimpleNamespace(
+                name=name,
+                as_repeats=False,
+                fairly=False,
+                plain=False,
+                all_there_is=False,
+                share=0.7,
+                overall=work[name],
+            )
             for name in names
         ]
         effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
@@ -70,7 +78,15 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
     def with_(names: set[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
         scores = [
-            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=work[name])
+            SimpleNamespace(
+                name=name,
+                as_repeats=False,
+                fairly=False,
+                plain=False,
+                all_there_is=False,
+                share=0.7,
+                overall=work[name],
+            )
             for name in names
         ]
         return SimpleNamespace(scores=scores, words=words, loud=True, names=names, solution=s, p=prepared())
@@ -100,7 +116,7 @@ def test_a_law_that_takes_nearly_all_plainly_stands_though_its_size_at_one_speed
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in sorted(names)))
         scores = [
             SimpleNamespace(
-                name=name, as_repeats=False, fairly=False, plain=plain, share=share,
+                name=name, as_repeats=False, fairly=False, plain=plain, all_there_is=False, share=share,
                 overall=30.0 if name == "eccentricity" else 20.0,
             )
             for name in sorted(names)
@@ -112,13 +128,15 @@ def test_a_law_that_takes_nearly_all_plainly_stands_though_its_size_at_one_speed
     assert needless.without_insignificant(with_({"eccentricity", "drag"}), (), nothing).names == left
 
 
-@pytest.mark.parametrize(("loud", "speed", "left"), [
-    (True, (-0.2, 1.6), ["play"]), (False, (-0.2, 1.6), ["play", "stribeck"]), (True, (0.2, 1.6), ["play", "stribeck"]),
+@pytest.mark.parametrize(("loud", "speed", "all_there_is", "left"), [
+    (True, (-0.2, 1.6), "", ["play"]), (False, (-0.2, 1.6), "", ["play", "stribeck"]),
+    (True, (0.2, 1.6), "", ["play", "stribeck"]), (True, (-0.2, 1.6), "stribeck", ["play", "stribeck"]),
 ])  # fmt: skip
 def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
-    monkeypatch: pytest.MonkeyPatch, loud: bool, speed: tuple[float, float], left: list[str]
+    monkeypatch: pytest.MonkeyPatch, loud: bool, speed: tuple[float, float], all_there_is: str, left: list[str]
 ) -> None:
-    """Its size may be as sure as it likes: any law that lifts the same runs has that."""
+    """Its size may be as sure as it likes: any law that lifts the same runs has that. But where it leaves nothing of
+    the channels it acts in, the rest is in another one."""
     words = {
         "stribeck": (Parameter("dF", 0.9, (0.8, 1.0), "N·m"), Parameter("w_s", 0.7, speed, "rad/s")),
         "play": (Parameter("b", 1e-4, (0.9e-4, 1.1e-4), "rad"),),
@@ -139,6 +157,7 @@ def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
                 as_repeats=False,
                 fairly=False,
                 plain=False,
+                all_there_is=name == all_there_is,
                 share=0.7,
                 overall=9.0 if name == "play" else 5.0,
             )
@@ -165,7 +184,9 @@ def test_beside_counts_that_runs_lose_no_name_stands_whose_size_is_hardly_known(
     def with_(names: list[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
         scores = [
-            SimpleNamespace(name=name, as_repeats=False, fairly=False, plain=False, share=0.7, overall=3.0)
+            SimpleNamespace(
+                name=name, as_repeats=False, fairly=False, plain=False, all_there_is=False, share=0.7, overall=3.0
+            )
             for name in names
         ]
         return SimpleNamespace(scores=scores, words=words, loud=False, names=set(names), solution=s, p=prepared(*own))

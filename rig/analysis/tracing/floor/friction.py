@@ -51,8 +51,8 @@ class Scattering:
         return f"; friction differs by {1e3 * np.sqrt(self.square):.2g} mN·m RMS from run to run"
 
     def of(self, run: Recording) -> float:
-        """Square of it [N²·m²] in what is left of a run: none where its mean is its own."""
-        if run.locked or abs(mean_way(run)) > ONE_WAY:
+        """Square of it [N²·m²] in what is left of a run: none where its mean is its own, or its friction."""
+        if run.is_wound or abs(mean_way(run)) > ONE_WAY:
             return 0.0
         return (1.0 - mean_way(run) ** 2) * self.square
 

@@ -29,7 +29,7 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
     the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
-    vague = unscaled(selected.solution, selected.words) if selected.scores and selected.loud else []
+    vague = _vague(selected) if selected.scores and selected.loud else set()
     insignificant = [
         score
         for score in selected.scores
@@ -51,6 +51,11 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
         if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
             return without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _vague(selected: Selected) -> set[str]:
+    """Names of a law that may be any, and they a part of an unknown rest."""
+    return set(unscaled(selected.solution, selected.words)) - {x.name for x in selected.scores if x.all_there_is}
 
 
 def _says_nothing(selected: Selected, names: set[str]) -> bool:

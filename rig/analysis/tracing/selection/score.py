@@ -96,7 +96,13 @@ class HeldOutScore:
     def whatever_the_floor(self) -> bool:
         """Whether it is so large, and so wholly what there is in every channel it acts in, that a floor no repeats tell
         may be twice what it is taken for: what is left stands in other channels."""
-        return self.size > WHATEVER and self._explains_all and self.anywhere < MISSING
+        return self.size > WHATEVER and self.all_there_is
+
+    @property
+    def all_there_is(self) -> bool:
+        """Whether it is large, of the size that it should be, and next to nothing is left in any channel it acts in:
+        what may be left is another channel's, and it no part of that."""
+        return self.size > WHATEVER / 2 and self._explains_all and self.anywhere < MISSING
 
     @property
     def _explains_all(self) -> bool:

@@ -77,7 +77,7 @@ def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
     first, total = asked.worst
     left = max((score.left for score in asked.scores), default=0.0)
     mostly = _done(asked) > MOSTLY and total < 2 * EXPLAINED and left < AMISS
-    all_plain = bool(asked.plain) and all(score.name in asked.plain for score in asked.scores)
+    all_plain = bool(asked.plain) and all(x.name in asked.plain or x.all_there_is for x in asked.scores)
     sure = asked.has_repeats or all_plain
     if asked.p.own.line is not None or not (asked.names and sure and mostly):
         return None
