@@ -31,7 +31,7 @@ def run_at(speed: float, load: float) -> Any:
     pieces = (SimpleNamespace(torque=np.full(9, load)),)
     said = f"speed {speed} load {load}"
     motion = {"turning": speed, "mean_torque": load}
-    return SimpleNamespace(procedure="speed", said=said, **motion, locked=False, has=(), pieces=pieces)
+    return SimpleNamespace(procedure="speed", said=said, **motion, locked=False, is_wound=False, has=(), pieces=pieces)
 
 
 def campaign() -> Any:
