@@ -151,14 +151,8 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     refuse_sparse(rows, dt)
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     uneven = None if is_even(t, dt) else t
-    often = FASTER if look.fast else 1.0
-    factor = max(1, round(1 / dt / (often * RATE)))
-    work = dt * factor
     encoders = run.manifest.get("encoders") or {}
-    sigma, of_the_motor = (
-        min(TAMEST / work, quiet(channels["theta_m"], encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
-    )
-    smoother = Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
+    factor, smoother = _smoothing(channels["theta_m"], dt, encoders, FASTER if look.fast else 1.0)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     whole = {name: _forward(name, x, look, dt) for name, x in whole.items()}
     made = [
@@ -182,13 +176,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         rate=1 / dt,
         thinned=factor,
         noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(
-            *run.notes,
-            *locked_all_the_same(run),
-            *(motion.notes if motion else ()),
-            *([holes] if holes else ()),
-            *computed_torque(whole_run),
-        ),
+        notes=(*run.notes, *locked_all_the_same(run), *_noted(motion, holes), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
@@ -197,6 +185,22 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
         look=look,
     )
+
+
+def _smoothing(theta_m: Array | None, dt: float, encoders: Mapping[str, float], often: float) -> tuple[int, Smoother]:
+    """One of how many rows, `dt` apart, is worked with, and the low-pass: `often` times as many and as wide as usual,
+    and narrower where the motor's encoder is coarse."""
+    factor = max(1, round(1 / dt / (often * RATE)))
+    work = dt * factor
+    sigma, of_the_motor = (
+        min(TAMEST / work, quiet(theta_m, encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
+    )
+    return factor, Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
+
+
+def _noted(motion: Motion | None, holes: str) -> list[str]:
+    """What was noted of a run's motion and of rows that are missing."""
+    return [*(motion.notes if motion else ()), *([holes] if holes else ())]
 
 
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
