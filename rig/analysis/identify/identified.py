@@ -224,11 +224,21 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
         found["omega_s"] = Parameter(friction.omega_s, runs=runs, note="chosen from a grid, no interval")
     elif friction.doubt:
         cannot.append(friction.doubt)
-    if fits.motor is not None:
-        running = tuple(dict.fromkeys(w.run for w in fits.windows))
-        found["J_m"] = _measured(fits.motor.coefficients[J_M], fits.motor.u(J_M), fits.motor, running)
-    else:
+    _motor_inertia(found, cannot, fits)
+
+
+def _motor_inertia(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
+    """J_m, where the motor speeds up and slows down by more than its encoder's noise seems to make it."""
+    if fits.motor is None:
         cannot.append(f"J_m: it takes {NEEDS['J_m']}.")
+        return
+    running = tuple(dict.fromkeys(w.run for w in fits.windows))
+    J_m = _measured(fits.motor.coefficients[J_M], fits.motor.u(J_M), fits.motor, running)
+    if J_m.interval[0] <= 0.0 <= J_m.interval[1]:
+        why = "its 95 % interval holds zero, the motor hardly speeds up or slows down in these runs"
+        cannot.append(f"J_m cannot be told: {why}; it takes {NEEDS['J_m']}.")
+        return
+    found["J_m"] = J_m
 
 
 def _series(fits: Fits, cannot: list[str]) -> MeasuredSeries:

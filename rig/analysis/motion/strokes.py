@@ -64,10 +64,11 @@ def turning_points(theta: Array, threshold: float) -> list[int]:
     return pivots
 
 
-def _moving_at(theta: Array, lo: int, hi: int, end: int) -> bool:
-    """Whether the motor was already (or still) moving at the row `end` of lo..hi: rows per angle as in the middle."""
-    progress = np.abs(theta[lo : hi + 1] - theta[end])
+def _moving_at(theta: Array, lo: int, hi: int, end: int, outer: int) -> bool:
+    """Whether the motor was already (or still) moving at the row `end` of lo..hi: rows per angle as in the middle. A
+    rest may go on as far as the row `outer`: where in it noise is highest is chance."""
     sixteenth = TURN / 16
+    progress = np.abs(theta[min(lo, outer) : max(hi, outer) + 1] - theta[end])
     near = int(np.count_nonzero(progress <= sixteenth))
     usual = (hi - lo) * sixteenth / max(abs(float(theta[hi] - theta[lo])), sixteenth)
     return near <= 1.5 * usual + 2
@@ -104,8 +105,8 @@ def find_strokes(motion: Motion) -> list[Stroke]:
             continue
         pivots = [begin + p for p in turning_points(theta[begin:end], REVERSAL)]
         for k, (lo, hi) in enumerate(pairwise(pivots)):
-            first = CUT if k > 0 or not _moving_at(theta, lo, hi, lo) else 0.0
-            last = CUT if k < len(pivots) - 2 or not _moving_at(theta, lo, hi, hi) else 0.0
+            first = CUT if k > 0 or not _moving_at(theta, lo, hi, lo, begin) else 0.0
+            last = CUT if k < len(pivots) - 2 or not _moving_at(theta, lo, hi, hi, end - 1) else 0.0
             stroke = _stroke(theta, lo, hi, first, last)
             if stroke.revolutions >= 1:
                 found.append(stroke)

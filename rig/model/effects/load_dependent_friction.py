@@ -22,9 +22,9 @@ class LoadDependentFriction(Effect):
     name: ClassVar[str] = "load_dependent_friction"
     in_short: ClassVar[str] = "friction grows with transmitted torque"
     glosses: ClassVar[Mapping[str, str]] = {
-        "mu_L": "μ_L, friction over the torque through the gear, at 20 N·m",
-        "mu_L_driving": "μ_L where the motor drives, friction over the torque through the gear, at 20 N·m",
-        "mu_L_driven": "μ_L where the load drives, friction over the torque through the gear, at 20 N·m",
+        "mu_L": "μ_L, N times the friction of the motor over the torque through the gear, at 20 N·m",
+        "mu_L_driving": "μ_L where the motor drives, N times the friction of the motor over that torque, at 20 N·m",
+        "mu_L_driven": "μ_L where the load drives, N times the friction of the motor over that torque, at 20 N·m",
         "exponent": "p, power of the load by which the friction grows",
         "T_s": "T_s, torque through the gear over which the friction saturates",
     }

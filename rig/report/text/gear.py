@@ -94,6 +94,9 @@ def comparison(rows: Sequence[Prediction]) -> list[str]:
             f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {p.predicted:10.1f} {p.pure:9.1f} "
             f"{p.rms:12.2f}"
         )
+    lines.append(
+        "    predicted at a torque of the motor that is constant: a loop that holds the speed bends the waveform"
+    )
     return lines
 
 

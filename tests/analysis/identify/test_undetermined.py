@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from rig.analysis.identify.fit import fit
-from rig.analysis.identify.identified import Identified, identified
+from rig.analysis.identify.identified import Identified, _motor_inertia, identified
 from rig.analysis.identify.recording import Recording, recording
 from rig.analysis.identify.undetermined import NOTHING, WANTED
 from rig.bench import read, twin_parameters
@@ -116,3 +118,15 @@ def test_a_damping_below_zero_is_declared_and_open_and_the_gear_file_can_be_read
     assert any(sentence.startswith("B_sp cannot be told: it comes out at -") for sentence in single.cannot)
     file = gearfile.loads(gearfile.dumps(single.gear_file("A1", True, "a test")), "gear.toml")
     assert min(p.value for p in file.parameters.values()) >= 0.0
+
+
+@pytest.mark.parametrize(("u", "told"), [(3.8e-4, False), (2e-6, True)])
+def test_an_inertia_whose_interval_holds_zero_is_not_measured(u: float, told: bool) -> None:
+    """A servo that holds the speed leaves nothing of ω̇_m but the noise of the encoder: (230 ± 760)·10⁻⁶ for 1500."""
+    motor = SimpleNamespace(coefficients=np.array([2.3e-4, 0.0]), u=lambda place: u, dof=50)
+    fits: Any = SimpleNamespace(motor=motor, windows=[])
+    found: dict[str, gearfile.Parameter] = {}
+    cannot: list[str] = []
+    _motor_inertia(found, cannot, fits)
+    assert ("J_m" in found) is told
+    assert [text.split(":")[0] for text in cannot] == ([] if told else ["J_m cannot be told"])

@@ -74,6 +74,16 @@ def test_a_run_that_begins_at_rest_is_cut_there() -> None:
     assert theta[stroke.edges[0]] >= 0.49 * TURN
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_where_in_a_rest_noise_is_highest_does_not_tell_whether_it_was_one(seed: int) -> None:
+    still, turning = np.zeros(2000), np.linspace(0.0, 20.3 * TURN, 20_000)
+    theta = np.concatenate((still, turning, still + turning[-1]))
+    noisy = theta + 2e-4 * np.random.default_rng(seed).standard_normal(theta.size)
+    (stroke,) = find_strokes(motion(noisy))
+    assert 0.49 * TURN < theta[stroke.start] < 0.51 * TURN
+    assert 0.49 * TURN < turning[-1] - theta[stroke.stop - 1] < 0.51 * TURN
+
+
 def test_angles_are_not_joined_across_a_new_reference_of_an_encoder() -> None:
     theta = np.linspace(0.0, 20.0 * TURN, 20_000)
     strokes = find_strokes(motion(theta, breaks=(10_000,)))

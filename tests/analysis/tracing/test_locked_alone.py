@@ -1,4 +1,4 @@
-"""The floor of an angle that nobody read, in a lock test that was done once."""
+"""The floor where nothing is compared: an angle nobody read, in a lock test that was done once; one short run."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor.noise import _locked_alone
+from rig.analysis.tracing.floor.noise import _locked_alone, _of_one_run
 
 
 def test_all_that_is_left_of_lock_tests_that_were_done_once_counts_as_noise(rng: np.random.Generator) -> None:
@@ -23,3 +23,17 @@ def test_all_that_is_left_of_lock_tests_that_were_done_once_counts_as_noise(rng:
     assert _locked_alone(eq, e | {(1, "A"): np.ones(100)}, "A") is None
     assert _locked_alone(eq, e | {(2, "A"): np.ones(100)}, "A") is None
     assert _locked_alone(eq, {}, "A") is None
+
+
+def test_all_that_is_left_of_one_short_run_counts_as_noise(rng: np.random.Generator) -> None:
+    def run(name: str, locked: bool = False, procedure: str = "kinematic_error") -> Any:
+        return SimpleNamespace(name=name, locked=locked, procedure=procedure)
+
+    e = {(0, "A"): 1e-6 * rng.standard_normal(4000), (1, "M"): rng.standard_normal(4000)}
+    both, still = run("slow (part held out)"), run("still", procedure="standstill")
+    one: Any = SimpleNamespace(runs=[run("slow"), both, still])
+    assert _of_one_run(one, e, "A") == pytest.approx(1e-6, rel=0.05)
+    assert _of_one_run(one, e, "L") is None
+    for other in (run("fast"), run("lock", locked=True)):
+        several: Any = SimpleNamespace(runs=[run("slow"), other])
+        assert _of_one_run(several, e, "A") is None

@@ -17,12 +17,14 @@ from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
 from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
 
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
 OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
 NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left counts as noise"
+TOO_SHORT = "one run of too few turns to compare them: all that is left counts as noise"
 BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
@@ -75,6 +77,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
                 sigma[channel], how[channel] = max(sigma[channel], left), NEVER_COMPARED
+            elif (left := _of_one_run(eq, e, channel)) is not None:
+                sigma[channel], how[channel] = max(sigma[channel], left), TOO_SHORT
             continue
         if channel == "M":
             found, friction = evened(solution, found, sigma["M"] ** 2 * kappa["M"])
@@ -110,6 +114,16 @@ def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float 
     keys = [key for key in e if key[1] == channel]
     unread = all(eq.runs[i].locked and "theta_l" not in eq.runs[i].has for i, _ in keys)
     if channel != "A" or not keys or not unread:
+        return None
+    return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
+
+
+def _of_one_run(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
+    """RMS of all that is left of a channel where there is one run alone, and its output turned; None elsewhere. What is
+    rough in it is a part of its noise, and the whole would be many times that."""
+    keys = [key for key in e if key[1] == channel]
+    turning = [run for run in eq.runs if run.procedure != "standstill"]
+    if not keys or len({whole_run(run.name) for run in turning}) > 1 or any(run.locked for run in turning):
         return None
     return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
 

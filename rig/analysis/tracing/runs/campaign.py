@@ -31,6 +31,7 @@ from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.copies import once
+from rig.runfile.doubt import refuse_changed
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
@@ -166,8 +167,16 @@ def _nameless(folder: Path) -> list[Said]:
 
 def _closed(folder: Path) -> list[Said]:
     """Folders nobody may look into: whether they hold a run is not known."""
-    closed = [p.name for p in sorted(folder.iterdir()) if p.is_dir() and not os.access(p, os.R_OK | os.X_OK)]
+    closed = [p.name for p in sorted(folder.iterdir()) if p.is_dir() and not _opens(p)]
     return [left_out(name, "it cannot be read: permission denied") for name in closed]
+
+
+def _opens(folder: Path) -> bool:
+    """Whether it can be looked into: what a system would allow, and what it does, are not always the same."""
+    try:
+        return os.access(folder, os.X_OK) and os.listdir(folder) is not None
+    except PermissionError:
+        return False
 
 
 def _record(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
@@ -179,9 +188,10 @@ def _record(run: Run, start: float, hz: float | None = None, look: Look = FIRST)
 def _read(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
     """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
+        refuse_changed(run.path, run.manifest)
         return record(run, start, hz, look)
     except (HdrigError, ValueError) as error:
-        return left_out(run.name, error)
+        return left_out(run.name, str(error).replace(f"{run.path}/", ""))
 
 
 def _unfit(made: Recording) -> str:
