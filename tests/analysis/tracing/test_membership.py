@@ -51,7 +51,7 @@ def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
     piece = SimpleNamespace(theta_m=np.linspace(0.0, 2 * np.pi * turns, 50))
     made = SimpleNamespace(pieces=(piece,), locked=locked, procedure="kinematic_error", has=frozenset[str]())
     monkeypatch.setattr(campaign, "record", lambda run, start, hz, look: made)
-    found = campaign._record(cast(Any, SimpleNamespace(name="jog")), 0.0)
+    found = campaign._record(cast(Any, SimpleNamespace(name="jog", path=Path("jog"), manifest={})), 0.0)
     assert (
         found == left_out_of("jog", "its motor went 0.40 of a turn, a kinematic error needs a whole one")
     ) is left_out
