@@ -39,16 +39,22 @@ def quick_doubt(folder: Path, about: Mapping[str, Any]) -> str:
 def refuse_changed(folder: Path, about: Mapping[str, Any]) -> None:
     """What is made of samples that are not those the run was closed with would be worth nothing. Raises DataError when
     they are others, or cannot be read."""
+    if said := changed(folder, about):
+        raise DataError(f"{folder / SAMPLES} {said}")
+
+
+def changed(folder: Path, about: Mapping[str, Any]) -> str:
+    """That the samples are not those the run was closed with; "" where they are, or nobody took a hash of them. Raises
+    DataError when they cannot be read."""
     from rig.runfile.finalise import describe
     from rig.runfile.manifest import told
 
     path, said = folder / SAMPLES, _sha256(about, SAMPLES)
     if not said or not path.exists():
-        return
+        return ""
     with told(DataError, f"{path} cannot be read"):
         same = describe(path)["sha256"] == said
-    if not same:
-        raise DataError(f"{path} is not the file this run was closed with (its SHA-256 differs): see hdrig verify")
+    return "" if same else "is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
 
 
 def _unreadable(folder: Path) -> str:
