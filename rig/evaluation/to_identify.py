@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rig.core.errors import DataError, HdrigError, said_of
 from rig.runfile.copies import once
+from rig.runfile.doubt import changed
 from rig.runfile.misfits import notes
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     if not found:
         raise DataError(f"no run is left to identify from: {'; '.join(said)[:300]}")
     refuse_other_zeros(found)
+    said += [f"{run.name}: samples.parquet {why}" for run in runs if (why := changed(run.path, run.manifest))]
     return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
 
 
