@@ -29,7 +29,7 @@ class LoadDependentFriction(Effect):
         "T_s": "T_s, torque through the gear over which the friction saturates",
     }
     source: ClassVar[str] = "tuttle1992"
-    shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent", "law")  # T_s/T_0 in its place
+    shape_names: ClassVar[tuple[str, ...]] = ("by_flow", "exponent", "law")  # exponent: T_s/T_0 where it saturates
     loose: ClassVar[tuple[bool, ...]] = (False, True, False)
     POWER, SATURATING = 0.0, 1.0
     usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType(
