@@ -20,6 +20,12 @@ def prepared(*own: str) -> Any:
     return SimpleNamespace(own=SimpleNamespace(made=dict.fromkeys(own), parameters={}))
 
 
+def scored(name: str, overall: float, **said: Any) -> Any:
+    """A score of which nothing speaks for the name, but for what is said."""
+    so_far = {"as_repeats": False, "fairly": False, "plain": False, "all_there_is": False, "share": 0.7}
+    return SimpleNamespace(name=name, overall=overall, **(so_far | said))
+
+
 @pytest.fixture(autouse=True)
 def repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Enough was repeated, where a test says no other."""
@@ -39,18 +45,7 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
 
     def with_(names: list[str], loud: bool) -> Any:
-        scores = [
-            SimpleNamespace(
-                name=name,
-                as_repeats=False,
-                fairly=False,
-                plain=False,
-                all_there_is=False,
-                share=0.7,
-                overall=work[name],
-            )
-            for name in names
-        ]
+        scores = [scored(name, work[name]) for name in names]
         effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
         s = solution("eq", *terms)
@@ -77,18 +72,7 @@ def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_kn
 
     def with_(names: set[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [
-            SimpleNamespace(
-                name=name,
-                as_repeats=False,
-                fairly=False,
-                plain=False,
-                all_there_is=False,
-                share=0.7,
-                overall=work[name],
-            )
-            for name in names
-        ]
+        scores = [scored(name, work[name]) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=True, names=names, solution=s, p=prepared())
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
@@ -115,9 +99,8 @@ def test_a_law_that_takes_nearly_all_plainly_stands_though_its_size_at_one_speed
     def with_(names: set[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in sorted(names)))
         scores = [
-            SimpleNamespace(
-                name=name, as_repeats=False, fairly=False, plain=plain, all_there_is=False, share=share,
-                overall=30.0 if name == "eccentricity" else 20.0,
+            scored(
+                name, 30.0 if name == "eccentricity" else 20.0, plain=plain, share=share,
             )
             for name in sorted(names)
         ]  # fmt: skip
@@ -151,18 +134,7 @@ def test_beside_an_unknown_rest_no_law_is_named_whose_scale_may_be_zero(
             for name in names
         }
         terms = [SimpleNamespace(name=name, effect=effect[name]) for name in names]
-        scores = [
-            SimpleNamespace(
-                name=name,
-                as_repeats=False,
-                fairly=False,
-                plain=False,
-                all_there_is=name == all_there_is,
-                share=0.7,
-                overall=9.0 if name == "play" else 5.0,
-            )
-            for name in names
-        ]
+        scores = [scored(name, 9.0 if name == "play" else 5.0, all_there_is=name == all_there_is) for name in names]
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
 
@@ -183,12 +155,7 @@ def test_beside_counts_that_runs_lose_no_name_stands_whose_size_is_hardly_known(
 
     def with_(names: list[str]) -> Any:
         s = solution("eq", *(SimpleNamespace(name=name, effect=effect) for name in names))
-        scores = [
-            SimpleNamespace(
-                name=name, as_repeats=False, fairly=False, plain=False, all_there_is=False, share=0.7, overall=3.0
-            )
-            for name in names
-        ]
+        scores = [scored(name, 3.0) for name in names]
         return SimpleNamespace(scores=scores, words=words, loud=False, names=set(names), solution=s, p=prepared(*own))
 
     monkeypatch.setattr(needless, "_without", lambda of, name, runs, reach: with_([n for n in of.names if n != name]))

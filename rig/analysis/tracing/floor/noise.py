@@ -115,7 +115,7 @@ def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float 
     unread = all(eq.runs[i].locked and "theta_l" not in eq.runs[i].has for i, _ in keys)
     if channel != "A" or not keys or not unread:
         return None
-    return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
+    return _rms(e, keys)
 
 
 def _of_one_run(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
@@ -125,6 +125,10 @@ def _of_one_run(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | 
     turning = [run for run in eq.runs if run.procedure != "standstill"]
     if not keys or len({whole_run(run.name) for run in turning}) > 1 or any(run.locked for run in turning):
         return None
+    return _rms(e, keys)
+
+
+def _rms(e: Mapping[Key, Array], keys: Sequence[Key]) -> float:
     return float(np.sqrt(np.mean(np.concatenate([e[key] for key in keys]) ** 2)))
 
 

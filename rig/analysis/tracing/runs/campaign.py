@@ -174,25 +174,29 @@ def _closed(folder: Path) -> list[Said]:
 def _opens(folder: Path) -> bool:
     """Whether it can be looked into: what a system would allow, and what it does, are not always the same."""
     try:
-        return os.access(folder, os.X_OK) and os.listdir(folder) is not None
+        os.listdir(folder)
     except PermissionError:
         return False
+    return os.access(folder, os.X_OK)
 
 
 def _record(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
     """What the tracer reads of `run`, or why it cannot use it."""
     made = _read(run, start, hz, look)
-    return made if isinstance(made, Said) or not (why := _unfit(made)) else left_out(run.name, why)
+    if isinstance(made, Said):
+        return made
+    if why := _unfit(made):
+        return left_out(run.name, why)
+    said = changed(run.path, run.manifest)  # somebody may have put something in on purpose: told, and read
+    return replace(made, notes=(*made.notes, f"samples.parquet {said}")) if said else made
 
 
 def _read(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording | Said:
     """`run` as read, or why nothing can be read of it, whatever for: the rule of traces and of identification."""
     try:
-        made = record(run, start, hz, look)
-        said = changed(run.path, run.manifest)  # somebody may have put something in on purpose: told, and read
-        return replace(made, notes=(*made.notes, f"samples.parquet {said}")) if said else made
+        return record(run, start, hz, look)
     except (HdrigError, ValueError) as error:
-        return left_out(run.name, str(error).replace(f"{run.path}/", ""))
+        return left_out(run.name, error)
 
 
 def _unfit(made: Recording) -> str:
