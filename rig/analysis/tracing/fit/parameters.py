@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.learnt import damping_of
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
 from rig.analysis.tracing.fit.refine import nudged
+from rig.analysis.tracing.fit.returning import by_what_returns
 from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
 from rig.model.effect import Array, Effect, Fit, Parameter, parameter
@@ -34,9 +35,16 @@ STEP = 1e-4  # relative, of a coefficient or shape: figures are smooth in them
 LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms would tell
 
 
-def baseline(s: Solution) -> tuple[Parameter, ...]:
-    """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured."""
-    c, out = covariance(s), []
+def inertias_by_what_returns(s: Solution) -> tuple[Parameter, ...]:
+    """`baseline`, with inertias that know nothing of what scatters within a run, and all others beside them."""
+    moved = by_what_returns(s)
+    return baseline(replace(s, x=moved.x), covariance(s) + moved.more)
+
+
+def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
+    """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured; `spread` is the
+    covariance (p, p) of the coefficients."""
+    c, out = covariance(s) if spread is None else spread, list[Parameter]()
     seen = np.diag(s.gram) > UNSEEN
     compliance, by = _of_the_gear(s, c)
     stiff = 1 / compliance if compliance > 0 else np.nan
