@@ -3,7 +3,7 @@
 Friction that scatters within a run, and whatever else no sensor reads, is left of a balance and accelerates what it
 acts on: acceleration and residual go against each other, and least squares find an inertia that is too small, by 0.1 to
 3 % in runs at speed, however many there are. What makes the kinematic error come back with every turn is no such
-torque, so the mean acceleration by motor angle is an instrument: by it the estimate is right      [fuller1987, sec. 1.4]
+torque, so the mean acceleration by motor angle is an instrument: by it the estimate is right  [fuller1987, sec. 1.4]
 """
 
 from __future__ import annotations
