@@ -177,7 +177,8 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
     first, said = found[0], []
     for other in found[1:]:
         if other.gear != first.gear:
-            said.append(f"{other.path.name} is of gear {other.gear or '?'}, {first.path.name} of {first.gear or '?'}")
+            gears = [f"gear {row.gear}" if row.gear else "a gear that nobody named" for row in (other, first)]
+            said.append(f"{other.path.name} is of {gears[0]}, {first.path.name} of {gears[1]}")
         if other.simulated != first.simulated:
             said.append(f"one of {first.path.name} and {other.path.name} is simulated, the other is not")
         if point(other)[1:] != point(first)[1:]:

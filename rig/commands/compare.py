@@ -57,7 +57,8 @@ def lines(found: Comparison) -> list[str]:
 def named(row: Row) -> str:
     """A run in one line."""
     mark = "SIMULATED " if row.simulated else ""
-    return f"{mark}{row.path.name}  {words(point(row))}, gear {row.gear or '?'}, {row.started_utc[:16] or '?'}"
+    gear, when = row.gear or "not stated", row.started_utc[:16] or "not dated"
+    return f"{mark}{row.path.name}  {words(point(row))}, gear {gear}, {when}"
 
 
 def _of_runs(line: Line) -> list[str]:

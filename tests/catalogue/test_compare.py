@@ -72,6 +72,12 @@ def test_runs_at_other_conditions_or_of_another_origin_are_no_repeats_and_it_is_
     assert "speed 9.6 rpm and 300 rpm" in found.remarks[1]
 
 
+def test_a_gear_that_nobody_named_is_told_as_such(tmp_path: Path) -> None:
+    named, unnamed = run(tmp_path, DAYS[0]), run(tmp_path, DAYS[1], gear={})
+    remark, *_ = compare([named, unnamed]).remarks
+    assert f"{unnamed.name} is of a gear that nobody named, {named.name} of gear " in remark
+
+
 def test_rounding_is_no_difference(tmp_path: Path) -> None:
     a, b = many(tmp_path, [0.9579, 0.9579 * (1 + 1e-11)], DAYS[0])
     d = compare([a, b]).lines[0].differences[1]

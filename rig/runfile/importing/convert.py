@@ -55,15 +55,13 @@ def convert(table: Table, mapping: Mapping, file: str) -> Converted:
     table = _without_holes(table, mapping, file)
     result = Converted({}, list(table.notes), simulated=table.simulated)
     keep = np.ones(refuse.same_length(table.columns, file), dtype=bool)
+    decimal = mapping.csv.decimal if table.text else ""
     if clock := mapping.channels.get("t"):
-        keep = _time(result, table, clock, file, mapping.csv.decimal)
+        keep = _time(result, table, clock, file, decimal)
     skip = np.diff(result.channels["t"].values) > timing.GAP * result.time["period_median"] if clock else None
     for name, channel in mapping.channels.items():
         if name != "t":
-            raw = [
-                _numbers(table.columns[term.column], term.column, file, mapping.csv.decimal)[keep]
-                for term in channel.terms
-            ]
+            raw = [_numbers(table.columns[term.column], term.column, file, decimal)[keep] for term in channel.terms]
             _add(result, channel, raw, skip, file)
     if result.utc is None and table.started is not None and table.started.tzinfo is not None:
         result.utc = table.started + timedelta(seconds=result.time.get("first", 0.0))

@@ -22,6 +22,7 @@ PERIOD = (9e-6, 0.5)  # s: above 111 Hz stamped in s and read as ms; up to 2 kHz
 SPAN = 3.2e7  # s: a year; one wrong stamp at the end of a run is not a gap
 ANGLE = 1e9  # rad: beyond it a float64 no longer holds a fiftieth of an arcsec
 SPEED = 20_000.0  # rpm: above the input speed of any strain-wave gear on sale (14 000 rpm, size 5)
+OTHER = 2.0  # times: a speed that was stated is another one when nearly all rows turn so much faster or slower
 WINDOW = 50  # rows over which a speed is taken: stamps jitter, so two neighbours say little
 TORQUE = {"tau_m": 300.0, "tau_l": 20_000.0, "tau_ask": 300.0, "tau_applied": 300.0}  # N·m: twice a size 100's peak
 BALANCE = 100.0  # tau_l over N·tau_m, both rms, of a turning gear: a lossless one has 1
@@ -55,6 +56,7 @@ def check(run: Converted, mapping: Mapping, file: str) -> None:
             if name not in mapping.accept:
                 raise UsageError(f"{file}: {complaint}")
             run.notes.append(f"accepted ({mapping.accept[name]}): {complaint}")
+    run.notes += _stated(run, mapping)
 
 
 def _epoch(run: Converted, mapping: Mapping) -> str:
@@ -97,6 +99,27 @@ def _angle(run: Converted, mapping: Mapping) -> str:
     return ""
 
 
+def _stated(run: Converted, mapping: Mapping) -> list[str]:
+    """A motor speed that was stated and is none the run turns at for long: runs are grouped by it."""
+    said, t = mapping.conditions.get("speed_rpm"), run.values("t")
+    angles = ((run.values(name), gear) for name, gear in (("theta_m", 1.0), ("theta_l", mapping.gear["ratio"])))
+    theta, gear = next(((theta, gear) for theta, gear in angles if theta is not None), (None, 1.0))
+    if not said or t is None or theta is None:
+        return []
+    slow, usual, fast = np.quantile(_rpm(theta, t, min(WINDOW, len(t) - 1)) * gear, (0.05, 0.5, 0.95))
+    if slow <= OTHER * abs(said) and fast >= abs(said) / OTHER:
+        return []
+    return [
+        f"conditions.speed_rpm = {said:g} rpm was stated, and the motor turns at {usual:.4g} rpm in the median: is it "
+        "the output's speed, or another run's?"
+    ]
+
+
+def _rpm(theta: Array, t: Array, window: int) -> Array:
+    """How fast an angle turns over so many rows, either way."""
+    return np.asarray(np.abs((theta[window:] - theta[:-window]) / (t[window:] - t[:-window])) * 60 / (2 * np.pi))
+
+
 def _speed(run: Converted, mapping: Mapping) -> str:
     t = run.values("t")
     for name, gear in (("theta_m", 1.0), ("theta_l", mapping.gear["ratio"])):
@@ -104,7 +127,7 @@ def _speed(run: Converted, mapping: Mapping) -> str:
         if t is None or theta is None:
             continue
         window = min(WINDOW, len(t) - 1)
-        rpm = np.abs((theta[window:] - theta[:-window]) / (t[window:] - t[:-window])) * gear * 60 / (2 * np.pi)
+        rpm = _rpm(theta, t, window) * gear
         if rpm.max() > SPEED:
             row = int(np.argmax(rpm))
             return (

@@ -39,8 +39,12 @@ def enough(rows: int, file: str) -> None:
 
 def not_numbers(raw: Array, column: str, file: str, decimal: str = ".") -> UsageError:
     """The sentence for a column of text, dates or the like, showing the first cell that is no number where the mapping
-    says that `decimal` divides."""
+    says that `decimal` divides; "" is of a file that is no text: [csv] cannot mend it."""
     cells = raw.tolist()
+    if not decimal:
+        shown = next((f": row {row} holds {cell!r}" for row, cell in enumerate(cells, 1) if isinstance(cell, str)), "")
+        kind = "text" if shown else raw.dtype
+        return UsageError(f"{file}: column '{column}' holds {kind}{shown}; expected whole numbers or floats")
     if said := _two_decimals(cells):
         return UsageError(f"{file}: column '{column}' is not numbers: {said}; expected one decimal character in all")
     for row, cell in enumerate(cells):

@@ -25,6 +25,7 @@ class Table(NamedTuple):
     started: datetime | None = None  # when t = 0 was, where the file states it
     notes: tuple[str, ...] = ()  # what the reader noticed and let pass
     simulated: bool = False  # the file says so: it is the export of a run on the twin
+    text: bool = False  # the file is text, which [csv] says how to read
 
 
 Reader = Callable[[Path, Sequence[str], Dialect], Table]

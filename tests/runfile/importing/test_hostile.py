@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from rig.runfile.extra import how_to_install
@@ -52,6 +54,16 @@ def test_a_file_under_another_suffix_is_recognised(foreign: Foreign, name: str, 
     said = foreign.refused(foreign.bytes(content, f"y{other}"))
     assert "as its suffix says: it is " in said
     assert f"expected the suffix {Path(name).suffix}" in said
+
+
+def test_text_in_a_file_that_is_none_is_nothing_that_a_dialect_would_mend(foreign: Foreign) -> None:
+    made: dict[str, Any] = dict(columns())
+    made["time"] = [f"{x:.3f}".replace(".", ",") for x in made["time"]]
+    path = foreign.folder / "run.parquet"
+    pq.write_table(pa.table(made), path)
+    said = foreign.refused(path)
+    assert "run.parquet: column 'time' holds text: row 1 holds '5000,000'; expected whole numbers or floats" in said
+    assert "[csv]" not in said
 
 
 @pytest.mark.slow

@@ -72,6 +72,21 @@ def test_a_stamp_far_after_the_others_is_no_gap(foreign: Foreign) -> None:
     assert "t spans 1e+11 s; expected less than a year" in foreign.refused(foreign.file(data))
 
 
+def notes(foreign: Foreign, stated: float) -> str:
+    """Of a run for which a motor speed [rpm] was stated."""
+    run = foreign.imported(foreign.file(), MAPPING + f"[conditions]\nspeed_rpm = {stated}\n")
+    return " | ".join(run.manifest["notes"])
+
+
+def test_a_speed_that_was_stated_and_is_another_is_told(foreign: Foreign) -> None:
+    t, theta_m = truth()["t"], truth()["theta_m"]
+    rpm = float(np.ptp(theta_m) / np.ptp(t)) * 60 / (2 * np.pi)
+    assert "was stated" not in notes(foreign, rpm)
+    said = notes(foreign, rpm / 50)
+    assert "rpm was stated, and the motor turns at " in said
+    assert "is it the output's speed" in said
+
+
 def test_a_motor_faster_than_any(foreign: Foreign) -> None:
     data = with_column("time", lambda t: t / 30)
     said = foreign.refused(foreign.file(data))

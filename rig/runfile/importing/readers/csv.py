@@ -55,6 +55,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         {name: stated[full] for name, full in found.items() if stated.get(full)},
         notes=() if ends_a_line(path) else ("the last line has no line end: the file may be cut short in it",),
         simulated=SIMULATED in names,
+        text=True,
     )
 
 
