@@ -15,7 +15,7 @@ from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.model.effect import Parameter
 from rig.model.effects import CATALOGUE
-from rig.report.numbers import ABSENT, join, plain
+from rig.report.numbers import ABSENT, estimate, join, plain
 from rig.report.trace import words
 from rig.report.trace.channels import CHANNELS
 from rig.report.trace.sizes import said, three
@@ -121,14 +121,15 @@ def _capital(text: str) -> str:
 
 
 def floors(trace: Trace) -> list[tuple[str, str, str]]:
-    """(channel, RMS, how it was measured)."""
+    """(channel, RMS and what is known of it, how it was measured)."""
     by = {c.sensor: c for c in CHANNELS}
     out = []
     for f in trace.floors:
         channel = by.get(f.channel)
-        value = join(three(f.rms), f.unit)
-        if channel is not None:
-            value = join(three(f.rms * channel.factor), channel.unit)
+        factor, unit = (channel.factor, channel.unit) if channel is not None else (1.0, f.unit)
+        value = join(three(f.rms * factor), unit)
+        if f.ci95 is not None:
+            value = estimate(f.rms * factor, (f.ci95[0] * factor, f.ci95[1] * factor), unit)
         out.append((f"{channel.name} {channel.short}" if channel else f.channel, value, humanise(f.how)))
     return out
 

@@ -82,7 +82,7 @@ def explained() -> Trace:
         held_out=(*RUNS, "lock_60_2"),
         held_out_how="whole repeats, and whole loads and speeds between others",
         floors=(
-            Floor("theta_l", 4.4e-6, "rad", "5 pairs of repeats compared at equal motor angle"),
+            Floor("theta_l", 4.4e-6, "rad", "5 pairs of repeats compared at equal motor angle", (4.1e-6, 4.8e-6)),
             Floor("tau_m", 0.002, "N·m", "5 pairs of repeats compared at equal motor angle"),
         ),
         baseline=(*baseline, order),

@@ -19,6 +19,7 @@ from rig.report.trace import words as in_words
 from rig.report.trace.campaign import Provenance, provenance
 from rig.report.trace.cards import cards
 from rig.report.trace.figures import home
+from rig.report.trace.tables import floors
 from tests.report.test_page import HOSTILE, Reader
 from tests.report.trace import made_up
 
@@ -71,6 +72,12 @@ def test_orders_beside_a_load_that_shrinks_them_say_at_which_load_they_hold(page
 
 def test_the_floors_of_the_page_are_told_apart(pages: dict[str, Reader]) -> None:
     assert "A held-out run is judged by the floor of its own condition" in pages["explained"].words
+
+
+def test_a_floor_stands_with_its_interval_where_it_has_one() -> None:
+    angle, motor = floors(made_up.explained())
+    assert angle[1] == "0.908 (0.846 to 0.990)\xa0arcsec"
+    assert motor[1] == "2.00\xa0mN·m"
 
 
 def test_what_each_run_has_to_itself_is_said_of_vibrations_and_steps_alone() -> None:

@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.friction import Scattering, evened
 from rig.analysis.tracing.floor.homed import about_a_line
+from rig.analysis.tracing.floor.known import known
 from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
@@ -41,6 +42,7 @@ class Measured:
     freedom: dict[Key, float]  # degrees of freedom of the RMS of a pair of repeats
     apart: frozenset[Key] = frozenset()  # whose repeats differ by more than noise: no other condition's floor
     friction: Scattering = field(default_factory=Scattering)
+    interval: dict[str, tuple[float, float]] = field(default_factory=dict)  # 95 %, of the RMS of a channel
 
 
 def guess(eq: Equations) -> Noise:
@@ -71,6 +73,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     free: dict[Key, float] = {}
     how: dict[str, str] = {}
     apart: set[Key] = set()
+    interval: dict[str, tuple[float, float]] = {}
     friction = Scattering()
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
@@ -91,6 +94,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         among_them = float(np.sqrt(np.average([s.rms**2 for s in usual], weights=n)))
         sigma[channel] = max(among_them, least)
         how[channel] += BY_COUNTS if among_them < least else ""
+        interval |= {channel: known(usual)} if among_them >= least else {}
         kappa[channel] = effective(np.average([s.rho / max(s.rho[0], least**2) for s in usual], axis=0, weights=n))
         apart |= {(i, channel) for s in far for i in s.pair}
         compared = [*_alone(eq, e, channel, among, found), *found]
@@ -105,7 +109,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
-    return Measured(noise, by_run, white, how, free, frozenset(apart), friction)
+    return Measured(noise, by_run, white, how, free, frozenset(apart), friction, interval)
 
 
 def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
@@ -171,7 +175,8 @@ def quieter(one: Measured, other: Measured) -> Measured:
     how = {c: m.how[c] for c, m in best.items() if c in m.how}
     free = {key: nu for c, m in best.items() for key, nu in m.freedom.items() if key[1] == c}
     apart = frozenset(key for c, m in best.items() for key in m.apart if key[1] == c)
-    return Measured(noise, by_run, white, how, free, apart, best["M"].friction)
+    interval = {c: m.interval[c] for c, m in best.items() if c in m.interval}
+    return Measured(noise, by_run, white, how, free, apart, best["M"].friction, interval)
 
 
 def _alone(

@@ -33,7 +33,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "read": trace.read,
             "left_out": trace.left_out,
         },
-        "noise_floor": {f.channel: {"rms": f.rms, "unit": f.unit, "how": f.how} for f in trace.floors},
+        "noise_floor": {f.channel: {"rms": f.rms, "ci95": f.ci95, "unit": f.unit, "how": f.how} for f in trace.floors},
         "baseline": {
             "parameters": _parameters(trace.baseline),
             "after_refit": _parameters(trace.baseline_after),

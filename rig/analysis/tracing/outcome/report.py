@@ -123,8 +123,10 @@ def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[d
 
 def _floors(p: Prepared) -> tuple[Floor, ...]:
     """Of the channels in which one was measured."""
-    noise, how = p.measured.noise, p.measured.how
-    return tuple(Floor(CHANNEL[c].key, noise.sigma[c], CHANNEL[c].unit, how[c]) for c in WHOLE if c in how)
+    noise, how, known = p.measured.noise, p.measured.how, p.measured.interval
+    return tuple(
+        Floor(CHANNEL[c].key, noise.sigma[c], CHANNEL[c].unit, how[c], known.get(c)) for c in WHOLE if c in how
+    )
 
 
 def _shown(

@@ -19,6 +19,7 @@ class Floor:
     rms: float
     unit: str
     how: str
+    ci95: tuple[float, float] | None = None  # of the RMS; None of one that is rounding, or all that is left
 
 
 @dataclass(frozen=True)
