@@ -123,3 +123,13 @@ def test_what_the_balance_of_the_load_does_not_show_is_not_laid_on_the_torque_se
     drift = found(monkeypatch, list(zeros), of_the_torque=list(0.5 * rng.standard_normal(RUNS)))
     assert drift
     assert drift.sentence().startswith("The zeros of the angles drift")
+
+
+def test_a_drift_of_the_torque_sensor_is_seen_beside_friction_of_the_load_that_scatters(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    zero = 0.98 * (1 - np.exp(-TIMES / TAU))
+    in_the_load = zero + 0.15 * rng.standard_normal(RUNS)
+    drift = found(monkeypatch, list(wander(rng) - SOFT * zero), of_the_torque=list(in_the_load))
+    assert drift
+    assert drift.torque == pytest.approx(np.ptp(zero), rel=0.05)

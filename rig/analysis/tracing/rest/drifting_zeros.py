@@ -25,7 +25,7 @@ PLAINER: Final = 0.5  # of what any other thing leaves that may shift a zero: sp
 SHORTEST: Final = 0.03  # time constant, of the whole time
 LONGEST: Final = 3.0  # beyond, it is a straight line
 TRIED: Final = 24  # of them
-OWN: Final = 0.5  # of a drift, which must be the angles': the zero of the torque sensor is known to a part of it
+OWN: Final = 0.5  # of a drift: with more of it in the load's balance it is the torque sensor's
 SENSOR: Final = 2.5e-3  # of the largest torque: so much a sensor's zero may drift in half an hour
 WAY: Final = 0.1  # of the scatter of all speeds, torques: less of it is no condition
 
@@ -71,14 +71,18 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     seen, soft = drift(lambda run: offset(s, run, "A")), s.value("compliance")
     if seen is None or any((i, "L") not in eq.rows for i in (*mine, *others)):
         return seen
-    angles = drift(lambda run: offset(s, run, "A") + soft * offset(s, run, "L"))
-    if angles is not None and abs(angles.size) > OWN * abs(seen.size):
-        return angles
-    if abs(seen.size) < SENSOR * soft * _largest(eq):
-        return None
-    sensor = drift(lambda run: offset(s, run, "L"))
-    shown = sensor is not None and abs(soft * sensor.size) > OWN * abs(seen.size)
-    return replace(seen, torque=abs(sensor.size)) if sensor is not None and shown else seen
+    if _shown_by_the_load(s, (*mine, *others)) < OWN:
+        return seen
+    much = abs(seen.size) > SENSOR * soft * _largest(eq)
+    return replace(seen, torque=abs(seen.size) / soft) if much else None
+
+
+def _shown_by_the_load(s: Solution, runs: Sequence[int]) -> float:
+    """What share of θ̃'s zeros stands in the load's balance as a torque that winds the gear up by as much: 1 of a torque
+    sensor's zero, 0 of an angle's. There friction differs from run to run, so that a drift of its own is hard to see."""
+    angle, torque = (np.array([offset(s, run, channel) for run in runs]) for channel in "AL")
+    angle = angle - angle.mean()
+    return float(-s.value("compliance") * (angle @ torque) / max(float(angle @ angle), 1e-300))
 
 
 def _largest(eq: Equations) -> float:
