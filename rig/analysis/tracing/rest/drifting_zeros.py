@@ -79,7 +79,8 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
 
 def _shown_by_the_load(s: Solution, runs: Sequence[int]) -> float:
     """What share of θ̃'s zeros stands in the load's balance as a torque that winds the gear up by as much: 1 of a torque
-    sensor's zero, 0 of an angle's. There friction differs from run to run, so that a drift of its own is hard to see."""
+    sensor's zero, 0 of an angle's. Friction differs there from run to run, so that a drift of its own is hard to see.
+    """
     angle, torque = (np.array([offset(s, run, channel) for run in runs]) for channel in "AL")
     angle = angle - angle.mean()
     return float(-s.value("compliance") * (angle @ torque) / max(float(angle @ angle), 1e-300))
