@@ -10,26 +10,37 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.floor import between_runs as module
+from rig.analysis.tracing.floor import offsets
 from rig.analysis.tracing.floor.between_runs import Between, find_between
 from rig.analysis.tracing.floor.offsets import own_angle
 
 ARCSEC = np.pi / 180 / 3600
 RUNS, LASTS, EVERY, AT = 20, 10.0, 40.0, 9  # s
+SOFT = 1.4e-4  # rad/(N·m)
 STEP, WANDER = 9.0 * ARCSEC, 0.3 * ARCSEC
 
 
 def found(
-    monkeypatch: pytest.MonkeyPatch, zeros: Sequence[float], pause: float = 0.0, conditions: int = 5
+    monkeypatch: pytest.MonkeyPatch,
+    zeros: Sequence[float],
+    pause: float = 0.0,
+    conditions: int = 5,
+    of_the_torque: Sequence[float] | None = None,
 ) -> Between | None:
-    """Of runs with those zeros [rad], one every EVERY s and a `pause` before run AT; conditions come in turn."""
+    """Of runs with those zeros [rad], one every EVERY s and a `pause` before run AT; conditions come in turn. And with
+    zeros of the load's balance [N·m]."""
     begun = [EVERY * i + (pause if i >= AT else 0.0) for i in range(len(zeros))]
     runs = [
         SimpleNamespace(start=t, locked=False, said=i % conditions, pieces=[SimpleNamespace(t=[t, t + LASTS])])
         for i, t in enumerate(begun)
     ]
-    rows = {(i, "A"): SimpleNamespace(y=np.zeros(50)) for i in range(len(zeros))}
-    s: Any = SimpleNamespace(design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)))
-    monkeypatch.setattr(module, "offset", lambda _, run, channel: zeros[run])
+    known = {"A": zeros} if of_the_torque is None else {"A": zeros, "L": of_the_torque}
+    rows = {(i, channel): SimpleNamespace(y=np.zeros(50)) for i in range(len(zeros)) for channel in known}
+    s: Any = SimpleNamespace(
+        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)), value=lambda name: {"compliance": SOFT}[name]
+    )
+    for where in (module, offsets):
+        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
     monkeypatch.setattr(module, "alike", lambda a, b: a.said == b.said)
     return find_between(s, range(len(zeros)))
 
@@ -99,3 +110,12 @@ def test_a_step_of_ten_times_what_zeros_wander_by_is_found_and_one_beside_a_quic
     assert all(found(monkeypatch, stepped(rng, 10 * WANDER)) for _ in range(20))
     quick = STEP * np.exp(-np.arange(40) / 1.5)  # forty runs, of which the first three stand apart
     assert not any(found(monkeypatch, quick + 0.2 * WANDER * rng.standard_normal(40)) for _ in range(20))
+
+
+def test_a_torque_sensor_that_was_tared_anew_is_no_lost_count(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    zeros = stepped(rng)
+    assert found(monkeypatch, zeros, of_the_torque=0.2 * rng.standard_normal(RUNS))
+    tared = -(zeros - zeros.mean()) / SOFT + 0.1 * rng.standard_normal(RUNS)
+    assert found(monkeypatch, zeros, of_the_torque=tared) is None

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.tracing.floor import offsets
 from rig.analysis.tracing.rest import drifting_zeros as module
 from rig.analysis.tracing.rest.drifting_zeros import DriftingZeros, drifting_zeros
 from rig.model.effect import MEASURED
@@ -48,7 +49,8 @@ def found(
         design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)), value=lambda name: {"compliance": SOFT}[name]
     )
     known = {"A": zeros, "L": of_the_torque or ()}
-    monkeypatch.setattr(module, "offset", lambda _, run, channel: known[channel][run])
+    for where in (module, offsets):
+        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
     unseen = range(1, RUNS, 3)
     return drifting_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
 from rig.analysis.tracing.runs.alike import alike
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
@@ -60,6 +60,8 @@ def find_between(s: Solution, whole: Sequence[int]) -> Between | None:
     at = min(range(FEWEST, len(runs) - FEWEST + 1), key=lambda k: _scatter(zeros, k))
     size, scatter = float(zeros[at:].mean() - zeros[:at].mean()), _scatter(zeros, at)
     if scatter > PLAINER * _beside_a_drift(np.array([eq.runs[i].start for i in runs]), zeros):
+        return None
+    if of_the_torque_sensor(s, runs):  # which was tared anew
         return None
     if abs(size) < CLEAR * scatter or not _gap_as_ever(eq, runs, at) or not _repeated(eq, runs, at):
         return None

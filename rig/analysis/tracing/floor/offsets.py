@@ -11,6 +11,7 @@ from rig.analysis.tracing.floor.repeats import Scatter
 from rig.analysis.tracing.thresholds import ZERO
 
 LEAST = 0.2  # of what a zero is believed to wander by: no wander that repeats show is smaller
+SHOWN = 0.5  # of it: all of a torque's, none of an angle's
 ENOUGH = 3  # pairs of repeats: of fewer, a spread is not known to a factor of two
 
 
@@ -49,6 +50,17 @@ def offset(s: Solution, run: int, channel: str) -> float:
     own = own[:, np.ptp(own, axis=0) > 0]
     z = np.hstack([np.ones((r.y.size, 1)), own])
     return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
+
+
+def of_the_torque_sensor(s: Solution, runs: Sequence[int]) -> bool:
+    """Whether it is the torque sensor's zero that makes those runs' zeros of θ̃ differ: the load's balance shows it as a
+    torque that winds the gear up by as much, and of an angle's zero nothing. Friction differs there from run to run, so
+    that how its own zeros differ is hard to see."""
+    if any((run, "L") not in s.design.eq.rows for run in runs):
+        return False
+    angle, torque = (np.array([offset(s, run, channel) for run in runs]) for channel in "AL")
+    angle = angle - angle.mean()
+    return bool(-s.value("compliance") * (angle @ torque) > SHOWN * (angle @ angle))
 
 
 def _on_one_side(s: Solution, a: int, b: int) -> bool:

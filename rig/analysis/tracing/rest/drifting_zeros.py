@@ -6,7 +6,7 @@ and zeros that drift are foretold by the time: those of unseen runs by a curve t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
 from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
 
@@ -25,7 +25,6 @@ PLAINER: Final = 0.5  # of what any other thing leaves that may shift a zero: sp
 SHORTEST: Final = 0.03  # time constant, of the whole time
 LONGEST: Final = 3.0  # beyond, it is a straight line
 TRIED: Final = 24  # of them
-OWN: Final = 0.5  # of a drift: with more of it in the load's balance it is the torque sensor's
 SENSOR: Final = 2.5e-3  # of the largest torque: so much a sensor's zero may drift in half an hour
 WAY: Final = 0.1  # of the scatter of all speeds, torques: less of it is no condition
 
@@ -65,25 +64,11 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
 
-    def drift(zero: Callable[[int], float]) -> DriftingZeros | None:
-        return _drift(eq, mine, others, [np.array([zero(i) for i in runs]) for runs in (mine, others)])
-
-    seen, soft = drift(lambda run: offset(s, run, "A")), s.value("compliance")
-    if seen is None or any((i, "L") not in eq.rows for i in (*mine, *others)):
+    seen = _drift(eq, mine, others, [np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others)])
+    if seen is None or not of_the_torque_sensor(s, (*mine, *others)):
         return seen
-    if _shown_by_the_load(s, (*mine, *others)) < OWN:
-        return seen
-    much = abs(seen.size) > SENSOR * soft * _largest(eq)
-    return replace(seen, torque=abs(seen.size) / soft) if much else None
-
-
-def _shown_by_the_load(s: Solution, runs: Sequence[int]) -> float:
-    """What share of θ̃'s zeros stands in the load's balance as a torque that winds the gear up by as much: 1 of a torque
-    sensor's zero, 0 of an angle's. Friction differs there from run to run, so that a drift of its own is hard to see.
-    """
-    angle, torque = (np.array([offset(s, run, channel) for run in runs]) for channel in "AL")
-    angle = angle - angle.mean()
-    return float(-s.value("compliance") * (angle @ torque) / max(float(angle @ angle), 1e-300))
+    torque = abs(seen.size) / s.value("compliance")
+    return replace(seen, torque=torque) if torque > SENSOR * _largest(eq) else None
 
 
 def _largest(eq: Equations) -> float:
