@@ -15,13 +15,13 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import searched
-from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.selected import Selected
 from rig.core.quantiles import Z95
 
-LEAST: Final = 0.01  # less is a torque sensor's own drift, or a loss
+LEAST: Final = 0.005  # less is a torque sensor's own drift, or a loss
 MOST: Final = 0.2  # more is another motor, or another unit
-SURE: Final = 5.0  # times half its 95 % interval
+SURE: Final = 3.0  # times half its 95 % interval
 TORQUES: Final = {"tau_m", "tau_l"}
 
 
@@ -37,8 +37,9 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     nothing is left: then what had a name stays, or less does, for a gain looks like a loss from one side."""
     looks = [replace(run.look, gain=True) for run in so_far.p.campaign.runs]
     p = prepare(looking(campaign, looks), hold_out)
-    named = so_far.solution.design.terms  # beside which the gain may be seen, or which stand in for it
-    if not any(_is_a_gain(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), named)):
+    terms = so_far.solution.design.terms  # beside which the gain may be seen, or which stand in for it
+    named = tuple(term for term in terms if term.name not in CONFOUNDERS)
+    if not any(_is_a_gain(fit(design(p.eq, some, p.split.fitted))) for some in ((), named, terms)):
         return so_far, found
     other, ranked = searched(p)
     one_in_the_other = so_far.names <= other.names or other.names <= so_far.names
