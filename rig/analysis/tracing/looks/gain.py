@@ -21,7 +21,7 @@ from rig.core.quantiles import Z95
 
 LEAST: Final = 0.005  # less is a torque sensor's own drift, or a loss
 MOST: Final = 0.2  # more is another motor, or another unit
-SURE: Final = 3.0  # times half its 95 % interval
+SURE: Final = 2.0  # times half its 95 % interval
 TORQUES: Final = {"tau_m", "tau_l"}
 
 
