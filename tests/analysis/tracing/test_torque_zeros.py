@@ -72,3 +72,15 @@ def test_each_run_loses_its_own_zero_and_one_that_was_split_the_mean_of_its_part
     np.testing.assert_allclose(slow.pieces[0].torque, [3.7, 5.7])
     np.testing.assert_allclose(fast.pieces[0].tau_l, [4.6, 5.6])
     assert lock == replace(campaign.runs[2])
+
+
+def test_a_line_that_is_little_beside_what_was_taken_off_is_the_balance_of_the_load(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A sensor that was tared anew before the fast runs: the drag of the load has taken on a tenth of that."""
+    tared = 0.35 * (np.abs(SPEEDS) > 20)
+    s = solution(monkeypatch, tared)
+    drag = 0.1 * 0.35 * SPEEDS / 50.0
+    monkeypatch.setattr(homed, "torque_zero", lambda s, run: float(tared[run] + drag[run]))
+    monkeypatch.setattr(homed, "offset", lambda s, run, channel: float(-SOFT * tared[run]))
+    assert about_a_line(s) is None

@@ -16,6 +16,8 @@ from rig.model.effect import MEASURED
 
 RUNS: Final = 5  # that turn freely
 CLEAR: Final = 12.0  # standard deviations of the slope: delays have 20 and more
+# of what a torque sensor's zeros shift them by: one that was tared anew halfway makes a line of a twelfth of it
+SHOWS: Final = 0.5
 LEFT: Final = 0.35  # of their scatter, beside the line: what goes with the way alone leaves half
 
 
@@ -28,7 +30,8 @@ def about_a_line(s: Solution) -> float | None:
     if len(runs) < RUNS or any(not eq.runs[i].has >= MEASURED for i in runs):
         return None
     speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs]) / eq.runs[0].ratio
-    zeros = np.array([offset(s, i, "A") + s.value("compliance") * torque_zero(s, i) for i in runs])
+    taken_off = s.value("compliance") * np.array([torque_zero(s, i) for i in runs])
+    zeros = np.array([offset(s, i, "A") for i in runs]) + taken_off
     z = np.stack([np.ones(speed.size), speed], 1)
     gram = z.T @ z
     if np.linalg.cond(gram) > 1e12:
@@ -37,6 +40,7 @@ def about_a_line(s: Solution) -> float | None:
     left = zeros - z @ x
     deviation = float(np.sqrt(left @ left / (len(runs) - 2) * np.linalg.inv(gram)[1, 1]))
     on_it = abs(x[1]) > CLEAR * deviation and np.std(left) < LEFT * np.std(zeros)
+    on_it = on_it and np.std(z @ x) > SHOWS * np.std(taken_off)
     return float(np.std(left)) if on_it else None
 
 
