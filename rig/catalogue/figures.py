@@ -66,7 +66,8 @@ def refuse_unknown(word: str, seen: set[str], unanalysed: str) -> None:
         return
     if unanalysed and not seen and names_of(word) != (word,):  # nothing is wrong with the word
         raise UsageError(f"none of the runs has a figure '{word}' yet; {unanalysed}")
-    others = {*WORDS, *seen} - {word}  # a word people use that none of these runs can answer
+    words = {said for said in WORDS if not seen or seen & set(names_of(said))}  # none that no run can answer
+    others = {*words, *seen} - {word}
     more = f"; {unanalysed}" if unanalysed else ""
     raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}{more}")
 
