@@ -172,7 +172,7 @@ def test_a_trend_has_a_series_for_each_gear_procedure_and_point_and_leaves_out_w
     with pytest.raises(UsageError, match="none of the runs has a figure 'K1'; expected one of ") as caught:
         trend(tmp_path, "K1")
     assert "peak-to-peak" in str(caught.value)
-    assert "breakaway" not in str(caught.value), "a word that none of these runs can answer"
+    assert "hysteresis-loss" not in str(caught.value), "a word that none of these runs can answer"
 
 
 def test_a_trend_over_no_runs_says_so_and_blames_no_figure(tmp_path: Path) -> None:
