@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 from collections.abc import Mapping as Dict
@@ -39,6 +40,8 @@ def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, softwa
     finally:
         if not done:
             shutil.rmtree(folder, ignore_errors=True)
+            with contextlib.suppress(OSError):  # the day's, which has other runs in it or was made for this one
+                folder.parent.rmdir()
     return folder
 
 

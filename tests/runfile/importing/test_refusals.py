@@ -187,3 +187,17 @@ def test_a_disk_that_fills_up_leaves_no_half_run(foreign: Foreign, monkeypatch: 
     with pytest.raises(UsageError, match=r"cannot write the imported run to .*: No space left on device"):
         import_file(foreign.file(), foreign.mapping(MAPPING), foreign.out)
     assert not list(foreign.out.rglob("manifest.json"))
+
+
+@pytest.mark.parametrize("other", [False, True], ids=["first of its day", "beside another"])
+def test_ctrl_c_while_it_writes_leaves_nothing(foreign: Foreign, monkeypatch: pytest.MonkeyPatch, other: bool) -> None:
+    kept = [foreign.imported(foreign.file()).path] if other else []
+
+    def halted(*args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rig.runfile.importing.write._close", halted)
+    with pytest.raises(KeyboardInterrupt):
+        foreign.imported(foreign.file())
+    assert [path for day in foreign.out.iterdir() for path in day.iterdir()] == kept
+    assert [day.name for day in foreign.out.iterdir()] == [path.parent.name for path in kept]
