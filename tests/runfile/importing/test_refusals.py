@@ -198,6 +198,6 @@ def test_ctrl_c_while_it_writes_leaves_nothing(foreign: Foreign, monkeypatch: py
 
     monkeypatch.setattr("rig.runfile.importing.write._close", halted)
     with pytest.raises(KeyboardInterrupt):
-        foreign.imported(foreign.file())
+        foreign.imported(foreign.file(), MAPPING.replace("SN7", "SN8"))
     assert [path for day in foreign.out.iterdir() for path in day.iterdir()] == kept
     assert [day.name for day in foreign.out.iterdir()] == [path.parent.name for path in kept]
