@@ -10,6 +10,8 @@ from numba import njit
 
 Array = npt.NDArray[np.float64]
 
+NO_LAG = 0.01  # of the time between samples
+
 
 @njit(cache=True, nogil=True)
 def play(x: Array, half_width: float) -> Array:
@@ -49,9 +51,20 @@ def marched(step: Array, by: Array, by_next: Array, drive: Array, start: Array) 
     return out
 
 
+def lagged(x: Array, lag: float, dt: float) -> Array:
+    """`x` (n,) through a first-order lag of `lag` s, begun in steady state, `x` a straight line between samples. As it
+    is where the lag is nothing beside the time `dt` [s] between them."""
+    if lag < NO_LAG * dt:
+        return x
+    keep = math.exp(-dt / lag)
+    late = lag / dt * (1.0 - keep)
+    return np.asarray(follower(np.ascontiguousarray(x), 1.0 - late, late - keep, keep, float(x[0]) * late))
+
+
 @njit(cache=True, nogil=True)
-def presliding(theta: Array, x0: float, start: float = 0.0) -> Array:
-    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,).
+def presliding(theta: Array, x0: float, start: float = 0.0, springs_back: bool = False) -> Array:
+    """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,). One that
+    `springs_back` does so as a spring, dz/dθ = 1/x0 until it has let go, as Bouc's and Wen's [wen1976].
 
     Where it turns back between two samples it has gone further than either says: to the top of the parabola through
     three of them. Of a way of milliradians that is a twentieth.
@@ -67,23 +80,27 @@ def presliding(theta: Array, x0: float, start: float = 0.0) -> Array:
                 aside = 0.5 * (before - after) / bend
                 top, late = here - 0.25 * (before - after) * aside, aside > 0.0
         if not late:
-            z = _slid(z, top - last, x0)
+            z = _slid(z, top - last, x0, springs_back)
             last = top
-        z = _slid(z, here - last, x0)
+        z = _slid(z, here - last, x0, springs_back)
         out[i] = z
         last = here
         if late:
-            z = _slid(z, top - last, x0)
+            z = _slid(z, top - last, x0, springs_back)
             last = top
     return out
 
 
 @njit(cache=True, nogil=True)
-def _slid(z: float, moved: float, x0: float) -> float:
-    """Dahl's state after `moved` more."""
+def _slid(z: float, moved: float, x0: float, springs_back: bool) -> float:
+    """The state after `moved` more."""
     if moved == 0.0:
         return z
     way = math.copysign(1.0, moved)
+    if springs_back and z * way < 0.0:
+        if abs(moved) <= abs(z) * x0:
+            return z + moved / x0
+        moved, z = moved + z * x0, 0.0
     return way + (z - way) * math.exp(-abs(moved) / x0)
 
 

@@ -33,6 +33,8 @@ REFERENCES: dict[str, str] = {
     "dependency for a motor and harmonic drive gear, IEEE Int. Conf. Robotics and Automation (2018) 783-790",
     "seyfferth1995": "W. Seyfferth, A. J. Maghzal, J. Angeles, Nonlinear modeling and parameter identification of "
     "harmonic drive robotic transmissions, IEEE Int. Conf. Robotics and Automation (1995) 3027-3032",
+    "wen1976": "Y.-K. Wen, Method for random vibration of hysteretic systems, J. Engineering Mechanics Division "
+    "ASCE 102 (1976) 249-263",
     "kuhnen2003": "K. Kuhnen, Modeling, identification and compensation of complex hysteretic nonlinearities: a "
     "modified Prandtl-Ishlinskii approach, European J. Control 9 (2003) 407-418",
     "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",

@@ -21,3 +21,9 @@ class Known:
     tau_cl: float = 0.0  # N·m and N·m·s/rad, the load's, of a torque that nobody read
     B_l: float = 0.0
     torque_zero: float = 0.0  # N·m, what the torque sensor reads without torque; `torque` is without it
+
+    @property
+    def damped_for(self) -> float:
+        """B_sp/K, s, by which the spring follows a torque late that the damper beside it takes at first; 0 while it is
+        not known."""
+        return max(self.B_sp / self.K, 0.0)

@@ -8,11 +8,11 @@ from typing import ClassVar, Final
 import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, Signals, parameter
-from rig.model.memory import play, presliding
+from rig.model.memory import lagged, play, presliding
 
 
 class HystereticStiffness(Effect):
-    """A loop in one of four laws, told by `law`.
+    """A loop in one of five laws, told by `law`.
 
     0: φ gains Σ c_i·(P_{r_i}[T] − T), what play operators stay behind the torque by: a Prandtl-Ishlinskii loop about a
     spring that is 1/K over a large swing      [kuhnen2003]
@@ -25,7 +25,10 @@ class HystereticStiffness(Effect):
 
     3: the plays of law 0, each wider under load, φ gains Σ (c_i + d_i·|T|)·(P_{r_i}[T] − T): a loop between 0 and 2
 
-    All are rate-independent. T_h scales the half widths r_i, and is K·x_0.
+    4: friction as in law 1 that springs back until it has let go, dz/dφ = 1/x_0 while z falls      [wen1976]
+
+    All are rate-independent. Friction holds beside the spring and the damper, so that what it takes of the wind-up is
+    late by B_sp/K, as the spring is that a torque winds up. T_h scales the half widths r_i, and is K·x_0.
     """
 
     name: ClassVar[str] = "hysteretic_stiffness"
@@ -43,9 +46,9 @@ class HystereticStiffness(Effect):
     WIDTHS: Final = (1.5, 4.0, 10.0, 25.0)  # N·m
     SPREAD: Final = (0.25, 0.5, 1.0, 1.5, 2.0, 3.0)  # of T_h: half widths of the plays
     ABOVE_NOISE: Final = 7.0  # times sensor noise in T: by narrower plays it is led, and a fit seems to explain it
-    UNMOVED: Final = 1e-5  # rad, 2 arcsec: noise of encoders goes forth and back and would wipe the memory out
+    UNMOVED: Final = 5e-6  # rad, 1 arcsec: noise of encoders goes forth and back and would wipe the memory out
     SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
-    PLAYS, FRICTION, WEDGE, SWELLING = 0.0, 1.0, 2.0, 3.0
+    PLAYS, FRICTION, WEDGE, SWELLING, SPRINGS_BACK = 0.0, 1.0, 2.0, 3.0, 4.0
     AT: Final = 20.0  # N·m, where the loss of a wedge is told
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -54,7 +57,8 @@ class HystereticStiffness(Effect):
         wide = dict.fromkeys(max(w, self._least(reach)) for w in widths)
         plays, swelling = ([(w, law) for w in wide] for law in (self.PLAYS, self.SWELLING))
         wedges = [(w, self.WEDGE) for w in widths]
-        return (*plays, *((w, self.FRICTION) for w in widths if w < self.SHORT), *wedges, *swelling)
+        friction = [(w, law) for law in (self.FRICTION, self.SPRINGS_BACK) for w in widths if w < self.SHORT]
+        return (*plays, *friction, *wedges, *swelling)
 
     def has_state(self) -> bool:
         """A loop."""
@@ -62,7 +66,7 @@ class HystereticStiffness(Effect):
 
     def moved_by_noise(self, shape: Shape) -> bool:
         """Friction is led by the wind-up of the encoders, and a count of theirs may be half of its reach."""
-        return shape[1] in (self.FRICTION, self.WEDGE)
+        return shape[1] in (self.FRICTION, self.WEDGE, self.SPRINGS_BACK)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """What one operator a half width stays behind by, each once more by the load where it swells; or the friction's
@@ -73,8 +77,9 @@ class HystereticStiffness(Effect):
             behind = np.stack([play(torque, width * share) - torque for share in self.SPREAD], 1)
             by_load = behind * (np.abs(torque) / self.AT)[:, None]
             return {Port.WIND_UP: behind if law == self.PLAYS else np.hstack([behind, by_load])}
-        state = presliding(self._wound(signals), width / signals.gear.K)
-        return {Port.WIND_UP: (state * np.abs(torque) if law == self.WEDGE else state)[:, None]}
+        state = presliding(self._wound(signals), width / signals.gear.K, 0.0, law == self.SPRINGS_BACK)
+        held = state * np.abs(torque) if law == self.WEDGE else state
+        return {Port.WIND_UP: lagged(held, signals.gear.damped_for, signals.dt)[:, None]}
 
     def _wound(self, signals: Signals) -> Array:
         """φ as the encoders show it, without its noise; from the torque where one of them is missing."""
@@ -105,7 +110,7 @@ class HystereticStiffness(Effect):
         width, law = shape
         if law == self.WEDGE:
             return {"loss_at_20_Nm": np.array([-2.0 * self.AT])}
-        if law == self.FRICTION:
+        if law in (self.FRICTION, self.SPRINGS_BACK):
             return dict.fromkeys(("hysteresis_loss", "loss_at_20_Nm"), np.array([-2.0]))
         plays = 2.0 * width * np.array(self.SPREAD)
         if law == self.PLAYS:
@@ -116,7 +121,7 @@ class HystereticStiffness(Effect):
         """Of T_h; the law is chosen, not fitted."""
         widths = [w for w, _ in self.shapes(reach)]
         least = max(min(widths, default=0.0) / 3, self._least(reach))
-        return ((least, max(widths) * 3), (self.PLAYS, self.SWELLING)) if widths else ()
+        return ((least, max(widths) * 3), (self.PLAYS, self.SPRINGS_BACK)) if widths else ()
 
     def _least(self, reach: Reach) -> float:
         """T_h whose narrowest play is as wide as sensor noise lets one be, N·m."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from rig.model.effect import Array, Effect, Fit, Known, Parameter, Port, Reach, Shape, Signals, parameter
 from rig.model.fourier import FourierSeries
-from rig.model.memory import follower
+from rig.model.memory import lagged
 from rig.model.waves import powers
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
@@ -23,9 +23,10 @@ ORDERS = (1, 2, 4)  # the large ones of a strain-wave gear, two lobes and what t
 class LoadDependentKinematicError(Effect):
     """θ̃_p scales by A_∞ + (1 − A_∞)·exp(−(|T̄|/T_c)^δ)      [ghorbel2001, Fig. 9]
 
-    The baseline's own series carries A_∞; the column is the part that goes away. T̄ follows the torque with a lag of
-    the first order, for the mesh settles under a load, it does not jump: |T̄|, or the lagged |T| where the teeth are
-    pressed alike whichever way they push. The two differ where the torque swings through zero within the lag.
+    The baseline's own series carries A_∞; the column is the part that goes away. T̄ follows the torque of the
+    spring, B_sp/K behind that of the shaft, with a lag of the first order, for the mesh settles under a load, it does
+    not jump: |T̄|, or the lagged |T| where the teeth are pressed alike whichever way they push. The two differ where the
+    torque swings through zero within the lag.
 
     The paper's profiles change as they shrink: orders 1, 2 and 4 may each lose a wave of its own, whose size and phase
     are fitted. As shares of what stays they would have no phase where little stays. The rest of them shrinks together,
@@ -66,7 +67,8 @@ class LoadDependentKinematicError(Effect):
         of, t_c, lag, delta = shape
 
         def late(whole: Signals) -> tuple[Array, ...]:
-            return (lagged(np.abs(whole.torque) if of % EACH == SIZE else whole.torque, lag, whole.dt),)
+            torque = lagged(whole.torque, whole.gear.damped_for, whole.dt)
+            return (lagged(np.abs(torque) if of % EACH == SIZE else torque, lag, whole.dt),)
 
         decay = np.exp(-((np.abs(signals.states(late)[0]) / t_c) ** delta))[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
@@ -204,10 +206,3 @@ def _stays_of(fit: Fit, i: int) -> Share:
 
 def _left(fit: Fit, name: str, share: Share) -> Parameter:
     return parameter(name, share[0], fit.half_width(share[1]), "1")
-
-
-def lagged(x: Array, lag: float, dt: float) -> Array:
-    """`x` (n,) through a first-order lag of `lag` s, begun in steady state."""
-    keep = float(np.exp(-dt / lag))
-    straight = 0.5 * (1.0 - keep)  # of this sample and of the one before: a straight line between them
-    return np.asarray(follower(np.ascontiguousarray(x), straight, straight, keep, float(x[0]) * (1.0 - straight)))

@@ -575,6 +575,29 @@ def test_a_field_that_the_current_turns_is_a_ripple_that_grows_with_the_torque()
     assert not TorqueRipple().plausible(dataclasses.replace(fit, coefficients=coefficients[[3, 2, 1, 0]]))
 
 
+@pytest.mark.parametrize("law", [HystereticStiffness.FRICTION, HystereticStiffness.SPRINGS_BACK])
+def test_friction_beside_spring_and_damper_leaves_the_damper_what_it_is(law: float) -> None:
+    """K·φ + B_sp·φ̇ + T_f·z = T, stepped finely with a z of its own: 12 Hz, as near the resonance of a rig at speed."""
+    n, fine, held, x_0 = 8000, 20, 0.7, 1.2e-3  # N·m, rad
+    t = np.arange(n * fine) * 1e-3 / fine
+    torque = 8.0 * np.sin(2 * np.pi * 12.0 * t) + 12.0 * np.sin(2 * np.pi * 1.7 * t)
+    phi, z = np.zeros(t.size), 0.0
+    for i in range(t.size - 1):
+        step = (torque[i] - KNOWN.K * phi[i] - held * z) / KNOWN.B_sp * (t[1] - t[0])
+        falls = law == HystereticStiffness.SPRINGS_BACK and step * z < 0
+        z += (step if falls else step - abs(step) * z) / x_0
+        phi[i + 1] = phi[i] + step
+    torque, phi = torque[::fine], phi[::fine]
+    s = dataclasses.replace(motion(n=n), dt=1e-3, torque=torque, theta_m=np.zeros(n), theta_l=-phi, gear=STRAIGHT)
+    state = HystereticStiffness().columns(s, (x_0 * KNOWN.K, law))[Port.WIND_UP][:, 0]
+    rate, bend = np.gradient(torque, 1e-3), np.gradient(np.gradient(torque, 1e-3), 1e-3)
+    columns = np.stack([torque, rate, bend, state], 1)[100:-100]
+    compliance, damping, _, friction = np.linalg.lstsq(columns, phi[100:-100], rcond=None)[0]
+    assert 1 / compliance == pytest.approx(KNOWN.K, rel=2e-3)
+    assert -damping / compliance**2 == pytest.approx(KNOWN.B_sp, rel=0.02)
+    assert -friction / compliance == pytest.approx(held, rel=0.02)
+
+
 def test_a_wedge_closes_at_no_torque_and_widens_with_it() -> None:
     """Gone round slowly forth and back, the branches lie as far apart as the torque is large."""
     effect, n = HystereticStiffness(), 8000
