@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from rig.analysis.tracing.selection.inseparable import inseparable
+from rig.analysis.tracing.answer import Status, Verdict
+from rig.analysis.tracing.selection.conclusion import Conclusion
+from rig.analysis.tracing.selection.inseparable import HOUSING, SPRING, inseparable, whose_spring
+from rig.analysis.tracing.selection.sentences import lacks
 
 RUNOUT, WEIGHT, CROSSTALK = "output_once_per_rev", "gravity_unbalance", "torque_sensor_crosstalk"
 
@@ -24,3 +27,23 @@ RUNOUT, WEIGHT, CROSSTALK = "output_once_per_rev", "gravity_unbalance", "torque_
 )
 def test_the_channels_there_are_decide(names: set[str], has: set[str], rivals: tuple[str, ...]) -> None:
     assert inseparable(names, has) == rivals
+
+
+def said_of(*names: str) -> Conclusion:
+    return Conclusion(Verdict(Status.EXPLAINED, names, (), None, None, None, lacks(names, 2.6, 1.0)), None, (), None)
+
+
+@pytest.mark.parametrize("names", [(SPRING, HOUSING), (HOUSING, SPRING), (HOUSING, WEIGHT, SPRING)])
+def test_beside_a_housing_nobody_knows_whose_spring_is_not_linear(names: tuple[str, ...]) -> None:
+    verdict = whose_spring(said_of(*names)).verdict
+    assert verdict.effects == tuple(name for name in names if name != SPRING)
+    assert "nonlinear stiffness" not in verdict.sentence
+    assert "(the housing moves)" in verdict.sentence
+    assert "and a spring that is not linear: with them the worst" in verdict.sentence
+    assert verdict.sentence.endswith("no channel tells which.")
+
+
+@pytest.mark.parametrize("names", [(SPRING,), (HOUSING,), (SPRING, WEIGHT), ()])
+def test_of_one_spring_it_is_known(names: tuple[str, ...]) -> None:
+    said = said_of(*(names or (WEIGHT,)))
+    assert whose_spring(said) is said

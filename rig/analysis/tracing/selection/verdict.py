@@ -27,7 +27,7 @@ from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.falls import most, share, share_of_all
 from rig.analysis.tracing.selection.hidden import hidden
-from rig.analysis.tracing.selection.inseparable import inseparable
+from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
 from rig.analysis.tracing.selection.standing import standing
@@ -45,6 +45,10 @@ QUIETER: Final = 0.95  # of what was left before: less than that is no fall to t
 
 def decide(asked: Asked) -> Conclusion:
     """The verdict, from held-out residuals and the effects that may be named."""
+    return whose_spring(_decided(asked))
+
+
+def _decided(asked: Asked) -> Conclusion:
     p, s, names = asked.p, asked.s, asked.names
     if said := _by_a_law(asked):
         return said
