@@ -104,6 +104,34 @@ def test_a_sensor_that_would_be_early_has_no_delay_and_an_interval_as_wide_as_th
     assert 0.3 * alone < lag.ci95[1] < 3 * alone
 
 
+@pytest.mark.parametrize(
+    ("late", "drag", "wider"), [(9e-6, 4e-3, 9e-6 * K), (9e-5, 1e-3, 50.0 * 1e-3), (0.0, 4e-3, 0.0)]
+)
+def test_a_delay_that_may_be_the_drag_of_the_mesh_leaves_the_damping_open_below(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, late: float, drag: float, wider: float
+) -> None:
+    """By as much as K makes of the delay, and no more than N times all the motor's drag."""
+    run: Any = SimpleNamespace(**{**vars(RUN), "ratio": 50.0})
+    inertia, torque = waves(2) / 1e3, waves(0)
+    named = {
+        "A": (("compliance", "damping", "damping_2"), np.stack([waves(d) for d in range(3)], 1), wind_up()),
+        "L": (("J_l", "lag"), np.stack([inertia, -waves(1)], 1), 0.8 * inertia - late * waves(1)),
+        "M": (("B_m",), torque[:, None], drag * torque),
+    }
+    noise = {"A": 1e-8, "L": 1e-3, "M": 1e-6}
+    rows: Any = {(0, "A"): SimpleNamespace(keep=np.ones(torque.size, bool), own=np.zeros((torque.size, 0)))}
+    eq = Equations((run,), rows, Noise(noise, dict.fromkeys("ALM", 1.0), dict.fromkeys("ALM", np.inf)))
+    y = {(0, c): of[2] + noise[c] * rng.standard_normal(torque.size) for c, of in named.items()}
+    parts = {(0, c): (Part(Bare(z), np.array([INDEX[n] for n in names]), None),) for c, (names, z, _) in named.items()}
+    size = len(BASELINE)
+    empty = Design(eq, (), (), y, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right, _ = normal(empty, {key: part[0] for key, part in parts.items()})
+    monkeypatch.setattr(parameters, "third_rate", lambda run: waves(3))
+    (told,) = (p for p in parameters.baseline(fit(Design(eq, (), (), y, {}, parts, gram, right))) if p.name == "B_sp")
+    below, above = told.value - told.ci95[0], told.ci95[1] - told.value
+    assert below - above == pytest.approx(wider, rel=0.05, abs=0.1 * above)
+
+
 def test_two_loops_make_one_loss_with_the_interval_of_their_sum() -> None:
     loop, shape = CATALOGUE["hysteretic_stiffness"], (4.0, 1.0)  # friction beside the spring: one coefficient
     each, known = 1e-5, SimpleNamespace(K=K)

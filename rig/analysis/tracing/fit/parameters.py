@@ -53,7 +53,8 @@ def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
         damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
         both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
         both += by * (2 * s.value("damping") * stiff - lag) * stiff**2
-        out.append(_of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad"))
+        found = _of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad")
+        out.append(_beside_the_mesh(found, stiff * lag, s))
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
     out = [_from_the_reading(p, s.design.forward) if p.name == "lag" else p for p in out]
     if any(run.look.inertia for run in s.design.eq.runs):
@@ -74,6 +75,14 @@ def _of_the_gear(s: Solution, c: Array) -> tuple[float, Array]:
         compliance -= more
         by[s.design.place(i)] -= gradient
     return compliance, by
+
+
+def _beside_the_mesh(damping: Parameter, late: float, s: Solution) -> Parameter:
+    """B_sp, of which `late` (K times the delay of the torque that is left) may not be a delay's: B_ml drags by what the
+    motor swings against the load, which the load's balance has no column for and a delay stands in for. Of B_ml nothing
+    is known but that it is no more than all the motor's drag, and it acts with N times the lever."""
+    most = s.design.eq.runs[0].ratio * max(s.value("B_m"), 0.0) if s.gram[INDEX["B_m"], INDEX["B_m"]] > UNSEEN else 0.0
+    return replace(damping, ci95=(damping.ci95[0] - min(max(late, 0.0), most), damping.ci95[1]))
 
 
 def _from_the_reading(lag: Parameter, forward: float) -> Parameter:
