@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.analysis.tracing.outcome.free_told import free_told
-from rig.analysis.tracing.outcome.result import Before, Trace
+from rig.analysis.tracing.outcome.result import Before, Floor, Trace
 from rig.analysis.tracing.outcome.told import meaning, unmoved, why_unmoved
 from rig.analysis.tracing.outcome.without import ruled
 from rig.model.effect import Parameter
@@ -33,7 +33,7 @@ def document(trace: Trace) -> dict[str, Any]:
             "read": trace.read,
             "left_out": trace.left_out,
         },
-        "noise_floor": {f.channel: {"rms": f.rms, "ci95": f.ci95, "unit": f.unit, "how": f.how} for f in trace.floors},
+        "noise_floor": {f.channel: _floor(f) for f in trace.floors},
         "baseline": {
             "parameters": _parameters(trace.baseline),
             "after_refit": _parameters(trace.baseline_after),
@@ -76,6 +76,11 @@ def write_trace(path: Path, trace: Trace) -> Path:
     else:
         write_atomic(path, text)
     return path
+
+
+def _floor(f: Floor) -> dict[str, Any]:
+    known = {"ci95": f.ci95} if f.ci95 else {}
+    return {"rms": f.rms, **known, "unit": f.unit, "how": f.how}
 
 
 def _parameters(found: Sequence[Parameter], effect: str = "") -> dict[str, Any]:
