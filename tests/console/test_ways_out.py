@@ -21,7 +21,7 @@ from tests.console.client import PATIENCE, Client, until
 from tests.console.hand import FOREVER
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("real time")]
-FAR = ["limits.stale_s=0.5"]  # a loaded machine's twin may be late: that is not what is tried here
+FAR = ["limits.stale_s=0.5", "twin.watchdog=1.0"]  # a loaded machine's twin may be late: that is not what is tried here
 
 
 class Served(Client):
