@@ -67,6 +67,7 @@ class LoadDependentKinematicError(Effect):
         of, t_c, lag, delta = shape
 
         def late(whole: Signals) -> tuple[Array, ...]:
+            # not `spring_torque`: its speed of the wind-up leans on the θ̃_p′ that is without load
             torque = lagged(whole.torque, whole.gear.damped_for, whole.dt)
             return (lagged(np.abs(torque) if of % EACH == SIZE else torque, lag, whole.dt),)
 

@@ -39,7 +39,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     p = prepare(looking(campaign, looks), hold_out)
     terms = so_far.solution.design.terms  # beside which the gain may be seen, or which stand in for it
     named = tuple(term for term in terms if term.name not in CONFOUNDERS)
-    if not any(_is_a_gain(fit(design(p.eq, some, p.split.fitted))) for some in ((), named, terms)):
+    if not any(_is_a_gain(fit(design(p.eq, some, p.split.fitted))) for some in dict.fromkeys(((), named, terms))):
         return so_far, found
     other, ranked = searched(p)
     one_in_the_other = so_far.names <= other.names or other.names <= so_far.names
