@@ -161,7 +161,7 @@ def twist(guard: Guard, sample: Sample, asked: Setpoint) -> Trip | None:
     """
     value = guard.twist_of(sample)
     angles = sample.flags & (Flag.STALE_M | Flag.STALE_L) or not sample.flags & Flag.STALE_TAU  # the oldest is one
-    apart = sample.age if angles else 0.0
+    apart = max(sample.age, 0.0) if angles else 0.0  # a stamp from ahead of the clock allows no less than a new one
     if guard.twist is None or abs(value) <= guard.twist + apart * abs(sample.omega_m) / guard.ratio:
         return None
     return Trip(

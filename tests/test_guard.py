@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rig.core.channels import Flag
@@ -112,6 +112,7 @@ def test_inside_all_limits_nothing_trips(
 
 
 @given(st.lists(st.floats(allow_nan=True, allow_infinity=True), min_size=6, max_size=6))
+@example([0.0, 0.0, 1.0, 0.0, 0.0, -1.0])  # stamped a second ahead of the clock
 def test_the_quick_test_and_the_rules_always_agree(values: list[float]) -> None:
     g = guard()
     theta_m, theta_l, omega, tau_m, tau_l, age = values
