@@ -90,7 +90,7 @@ AT_THE_FLOOR: Final = 1.0  # of what is left: there is no excess to remove
 FREED: Final = 1.05  # times: what a law has to leave less of unseen runs for whose sake every run has a zero of its own
 WORSE: Final = 1.25  # times: laws fitted again that leave so much more of unseen runs foretell them no more
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
-TURNED: Final = 2.0  # the same at reversals beside what was named; presliding that was missed leaves five and more
+TURNED: Final = 3.5  # the same at reversals beside what was named: three, where it builds up within three samples
 # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
 ALONE: Final = 2.0
 IN_ONE_RUN: Final = 2.5  # RMS over floor of a fitted run that is no noise any more, though unseen runs leave nothing

@@ -10,6 +10,7 @@ import pytest
 
 from rig.analysis.tracing.fit import refine
 from rig.analysis.tracing.fit.equations import Term
+from rig.model.effects.presliding_friction import BRISTLE, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
 
 WITHOUT, EFFECT = 1e6, 2e4  # gain of the model without it, and what the effect adds to that
@@ -64,3 +65,17 @@ def test_beside_another_term_of_the_effect_an_exponent_stays_as_it_is(monkeypatc
     d: Any = SimpleNamespace(terms=(Term(StribeckFriction(), (3.0, 1.0, 0.0, 0.0)),))
     refine.refine(d, STRIBECK, (), nothing)
     assert tried == [[0]]
+
+
+@pytest.mark.parametrize("law", [BRISTLE, ELEMENTS])
+def test_in_its_law_only_the_way_is_found(monkeypatch: pytest.MonkeyPatch, law: float) -> None:
+    tried = []
+
+    def refined(d: Any, term: Term, runs: Any, covered: Any, free: list[int]) -> Any:
+        tried.append((term.shape[2], [term.effect.shape_names[i] for i in free]))
+        return d, None
+
+    monkeypatch.setattr(refine, "_refined", refined)
+    nothing: Any = None
+    refine.in_its_law(nothing, Term(PreslidingFriction(), (MOTOR, 0.01, law)), (), nothing)
+    assert tried == [(law, ["x_0"])]

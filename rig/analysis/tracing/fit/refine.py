@@ -27,19 +27,24 @@ def refine(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[
     names, usual = term.effect.shape_names, term.effect.usual
     if any(other.name == term.name for other in d.terms):
         # beside another term of the effect an exponent means little, and two of them run away from each other
-        return _refined(d, term, runs, covered, [i for i in free if names[i] not in usual])
+        return in_its_law(d, term, runs, covered)
     best = _refined(d, term, runs, covered, free)
     if not usual:
         return best
     shape = best[0].terms[-1].shape
     laws = [dict(zip(usual, law, strict=True)) for law in itertools.product(*usual.values())]
     begun = [tuple(law.get(name, v) for name, v in zip(names, shape, strict=True)) for law in laws]
-    held = [i for i in free if names[i] not in usual]
-    made = [_refined(d, replace(term, shape=x), runs, covered, held) for x in begun]
+    made = [in_its_law(d, replace(term, shape=x), runs, covered) for x in begun]
     plain = max(made, key=lambda one: one[1].gain)
     rows = sum(y.size / d.eq.noise.kappa[channel] for (_, channel), y in d.y.items())
     least = max(2 * EVIDENCE, OTHER_LAW * min(plain[1].gain - fit(d).gain, rows))
     return plain if best[1].gain - plain[1].gain < least else best
+
+
+def in_its_law(d: Design, term: Term, runs: Sequence[int], covered: Reach) -> tuple[Design, Solution]:
+    """The same in the law that the term has, whatever the runs tell of others."""
+    names, usual = term.effect.shape_names, term.effect.usual
+    return _refined(d, term, runs, covered, [i for i, x in enumerate(term.effect.loose) if x and names[i] not in usual])
 
 
 def _refined(

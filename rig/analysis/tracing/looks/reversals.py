@@ -8,8 +8,8 @@ from typing import Final
 
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import design, extended, fit
-from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit
+from rig.analysis.tracing.fit.refine import in_its_law, refine
 from rig.analysis.tracing.fit.search import Found, reduced, settled
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.building_up import builds_up
@@ -20,7 +20,7 @@ from rig.analysis.tracing.selection.select import select
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import SHADOW
 from rig.model.effect import Reach
-from rig.model.effects.presliding_friction import MOTOR, PreslidingFriction
+from rig.model.effects.presliding_friction import BRISTLE, MOTOR, PreslidingFriction
 
 BUILDS_UP: Final = PreslidingFriction()
 
@@ -41,11 +41,22 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     if not shapes:
         return so_far, found
     first = max(shapes, key=lambda term: fit(extended(d, term, runs)).gain)
-    p, s = beside(p, settled(refine(d, first, runs, covered)[1], runs, covered), covered)
-    other = select(p, Found(s, found.ranking), runs, covered)
-    if not _adds(other, so_far):
-        return so_far, found
-    return _out_of_its_shadow(other, found, runs, covered), found
+    best = settled(refine(d, first, runs, covered)[1], runs, covered)
+    for built in (best, *_of_one_bristle(d, best, runs, covered)):
+        again, s = beside(p, built, covered)
+        other = select(again, Found(s, found.ranking), runs, covered)
+        if _adds(other, so_far):
+            return _out_of_its_shadow(other, found, runs, covered), found
+    return so_far, found
+
+
+def _of_one_bristle(d: Design, best: Solution, runs: Sequence[int], covered: Reach) -> tuple[Solution, ...]:
+    """The plain law, where several elements or bristles fit better: over less than the motor goes between two samples
+    nothing tells them from each other, and what cannot be told has no name."""
+    term = best.design.terms[-1]
+    if term.shape[2] == BRISTLE:
+        return ()
+    return (in_its_law(d, replace(term, shape=(MOTOR, term.shape[1], BRISTLE)), runs, covered)[1],)
 
 
 def _out_of_its_shadow(other: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:

@@ -89,12 +89,19 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     if came.isdisjoint(term.name for term in again[0].design.terms):
         return as_it_was
     freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
-    if left_over(p, again) * (FREED if freed else 1.0) < left_over(p, as_it_was):
+    if _left_where_it_slides(p, again) * (FREED if freed else 1.0) < _left_where_it_slides(p, as_it_was):
         return again
     short = [law for name, law in CONFOUNDERS.items() if name in came and law.short]
     mimicked = frozenset().union(*(law.mimics for law in short))
     amiss = any(score.name in mimicked and score.left > MISSING for score in as_it_was[2])
     return again if amiss and len(short) == len(came) else as_it_was
+
+
+def _left_where_it_slides(p: Prepared, kept: Kept) -> float:
+    """RMS over floor of the worst channel on unseen runs but at reversals: what friction that builds up leaves there is
+    most of it, whatever else it stands beside."""
+    left = p.held_out.residuals(kept[0], kept[1])
+    return p.held_out.worst({key: e for key, e in left.items() if key[1] != "R"} or left)[0]
 
 
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
