@@ -27,7 +27,8 @@ def backward_elimination(s: Solution, at: HeldOut) -> tuple[Solution, Design, li
             return s, d, scored
         # what spoils a channel spoils the others' sizes with it
         worst = min(failing, key=lambda score: (-max(score.harm, HARMFUL), min(score.share, 1.0) * score.size))
-        gone = [i for i, t in enumerate(d.terms) if t.name == worst.name]
+        gone = _impossible(s, worst.name) if _may_stand(worst, scored) and _comes_round(d, worst) else []
+        gone = gone or [i for i, t in enumerate(d.terms) if t.name == worst.name]
         s, d = fit(reduced(s.design, gone)), reduced(d, gone)
         if (again := _put_right(s)) is not s:
             s, d = again, unseen(again, at)
@@ -77,6 +78,15 @@ def _can_be(s: Solution, name: str) -> bool:
     if len(found) > 1 and not found[0][0].effect.plausible_together([as_fit(s, t, c) for t, c in found]):
         return False
     return sum(sums) > 0 if len(found) > 1 and sums else all(possible(s, t, c) for t, c in found)
+
+
+def _impossible(s: Solution, name: str) -> list[int]:
+    """Those of several terms of an effect, not all of them, that cannot be by themselves: what a first law had wrong a
+    second one may take away again, and the effect is what is left without the first."""
+    d = s.design
+    mine = [i for i, t in enumerate(d.terms) if t.name == name]
+    wrong = [i for i in mine if not possible(s, d.terms[i], s.x[d.place(i)])]
+    return wrong if len(wrong) < len(mine) else []
 
 
 def unresolved(s: Solution, words: Mapping[str, Sequence[Parameter]], covered: Reach) -> list[str]:
