@@ -7,13 +7,11 @@ from dataclasses import replace
 from typing import Final
 
 from rig.analysis.tracing.selection.conclusion import Conclusion
-from rig.analysis.tracing.selection.sentences import in_words
+from rig.analysis.tracing.selection.sentences import HOUSING, SPRING
 
 TORQUES: Final = frozenset({"tau_m", "tau_l"})
 WIND_UP: Final = frozenset({"theta_m", "theta_l"})
 RUNOUT, WEIGHT, CROSSTALK = "output_once_per_rev", "gravity_unbalance", "torque_sensor_crosstalk"
-HOUSING, SPRING = "support_compliance", "nonlinear_stiffness"
-WHOSE: Final = "It is the gear's spring, or the housing's mount behind it: no channel tells which."
 
 
 def inseparable(names: Collection[str], has: Collection[str]) -> tuple[str, ...]:
@@ -29,11 +27,9 @@ def inseparable(names: Collection[str], has: Collection[str]) -> tuple[str, ...]
 
 def whose_spring(said: Conclusion) -> Conclusion:
     """Of a housing that gives way, with a spring that is not linear: its mount may be that spring, and the gear then
-    has none such (exam 63, case 20; 65, 19)."""
+    has none such (exam 63, case 20; 65, 19). Its sentence says so."""
     verdict = said.verdict
     if not {HOUSING, SPRING} <= set(verdict.effects):
         return said
     named = tuple(name for name in verdict.effects if name != SPRING)
-    told = verdict.sentence.replace(in_words(verdict.effects), f"{in_words(named)} and a spring that is not linear")
-    sentence = f"{told} {WHOSE}"
-    return replace(said, verdict=replace(verdict, effects=named, sentence=sentence))
+    return replace(said, verdict=replace(verdict, effects=named))

@@ -10,6 +10,8 @@ from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effects import LIBRARY
 
+HOUSING, SPRING = "support_compliance", "nonlinear_stiffness"
+OF_EITHER: Final = "a spring that is not linear (the gear's, or the housing's mount: no channel tells which)"
 FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
 
 
@@ -58,8 +60,14 @@ def how_often(home: Home) -> str:
 
 
 def in_words(names: Sequence[str]) -> str:
-    """Effects, each with what it is in short."""
-    return _listed([f"{name.replace('_', ' ')} ({LIBRARY[name].in_short})" for name in names])
+    """Effects, each with what it is in short; last a spring whose owner no channel tells."""
+    of_whom = HOUSING in names
+    told = [_name(name) for name in names if not (of_whom and name == SPRING)]
+    return _listed(told + [OF_EITHER] * (of_whom and SPRING in names))
+
+
+def _name(name: str) -> str:
+    return f"{name.replace('_', ' ')} ({LIBRARY[name].in_short})"
 
 
 def _listed(words: Sequence[str]) -> str:
