@@ -20,8 +20,10 @@ STEP = 6.3e-4  # rad, of a motor encoder of 10 000 counts
 def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Equations of runs whose clocks are given by `times`."""
     times: dict[Any, np.ndarray] = {}
+    speeds: dict[Any, np.ndarray] = {}
     monkeypatch.setattr(bursts, "clock", lambda eq, key: times[key])
-    return SimpleNamespace(times=times, runs=[SimpleNamespace(ratio=50.0, step_m=STEP, step_l=0.0)] * 3)
+    monkeypatch.setattr(bursts, "at_rows", lambda eq, key, name: speeds.get(key, np.full(times[key].size, 10.0)))
+    return SimpleNamespace(times=times, speeds=speeds, runs=[SimpleNamespace(ratio=50.0, step_m=STEP, step_l=0.0)] * 3)
 
 
 def noise(eq: Any, rng: np.random.Generator, seconds: float, key: tuple[int, str] = KEY) -> np.ndarray:
@@ -42,6 +44,16 @@ def test_noise_that_swells_a_little_and_drifts_is_no_burst(eq: Any, rng: np.rand
     e = noise(eq, rng, 100.0)
     t = eq.times[KEY] - 300.0
     assert burst(eq, KEY, e * (1 + 0.3 * np.sin(t / 9)) + 1e-5 * t) is None
+
+
+@pytest.mark.parametrize(("stays", "told"), [(False, False), (True, True)])
+def test_a_log_is_louder_where_it_is_fast(eq: Any, rng: np.random.Generator, stays: bool, told: bool) -> None:
+    """Of a log that creeps and jogs the jogs leave six times as much; at one speed that is a burst."""
+    e = noise(eq, rng, 100.0)
+    jogs = (eq.times[KEY] - 300.0) % 10.0 < 2.0
+    e[jogs] *= 6.0
+    eq.speeds[KEY] = np.where(jogs & (not stays), -170.0, 16.0) + rng.standard_normal(e.size)
+    assert (burst(eq, KEY, e) is not None) is told
 
 
 def test_one_loud_half_second_of_a_long_run_is_too_little(eq: Any, rng: np.random.Generator) -> None:

@@ -2,7 +2,8 @@
 
 It raises what repeats, or neighbouring turns, differ by, and with them the floor it is held against; the usual half
 second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.5 times the usual
-one, and no run more than 1.23 times.
+one, and no run more than 1.23 times. Usual is what half seconds of a like speed have: a log of jogs and sweeps is louder
+where it is fast.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.floor.local import clock
+from rig.analysis.tracing.floor.local import at_rows, clock
 from rig.analysis.tracing.thresholds import BURST, BURST_RUN
 from rig.model.effect import Array
 
 LENGTH: Final = 0.5  # s
 FEWEST: Final = 12  # half seconds in a run: of fewer the usual one is not known
+LIKE: Final = 1.5  # times another speed: what either leaves is about the same
+SLOW: Final = 0.5  # rad/s of the motor: below that speeds are all alike
 
 
 @dataclass(frozen=True)
@@ -40,15 +43,30 @@ def loudest_burst(eq: Equations, e: Mapping[Key, Array]) -> Burst | None:
 
 def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
     """From the first to the last half second that stands out; None where none does, or the run is too short."""
-    t, levels = half_seconds(eq, key, e)
+    t, levels, speeds = half_seconds(eq, key, e)
     if levels.size < FEWEST:
         return None
-    usual = float(np.median(levels))
-    over = float(np.sqrt(np.mean(e**2))) / max(usual, 1e-300)
-    loud = np.flatnonzero(levels > max(BURST * usual, _rounded(eq, key)))
+    usual = _usual(levels, speeds)
+    over = float(np.sqrt(np.mean(e**2) / max(np.mean(usual**2), 1e-300)))
+    loud = np.flatnonzero(levels > np.maximum(BURST * usual, _rounded(eq, key)))
     if over < BURST_RUN or not loud.size:
         return None
     return Burst(key, float(t[loud[0]]), float(t[loud[-1]]) + LENGTH, over)
+
+
+def _usual(levels: Array, speeds: Array) -> Array:
+    """Of each half second the usual level (k,) of those at a like speed [rad/s], or of the nearest few: what grabs slows
+    a motor down too."""
+    scale = np.log(np.maximum(speeds, SLOW)) / np.log(LIKE)
+    near = np.round(scale)
+    out = np.empty(levels.size)
+    for step in np.unique(near):
+        mine = near == step
+        if np.count_nonzero(mine) >= FEWEST:
+            out[mine] = np.median(levels[mine])
+        for i in np.flatnonzero(mine) if np.count_nonzero(mine) < FEWEST else ():
+            out[i] = np.median(levels[np.argsort(np.abs(scale - scale[i]))[:FEWEST]])
+    return out
 
 
 def _rounded(eq: Equations, key: Key) -> float:
@@ -57,16 +75,17 @@ def _rounded(eq: Equations, key: Key) -> float:
     return 0.5 * (run.step_m / run.ratio + run.step_l) if channel == "A" else 0.0
 
 
-def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array]:
-    """When each begins, since the run did [s], and RMS of `e` (n,) in it."""
+def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array, Array]:
+    """When each begins, since the run did [s], RMS of `e` (n,) in it, and how fast the motor turns [rad/s]."""
     t = clock(eq, key)
     if t.size == 0:
-        return t, t
+        return t, t, t
     place = np.floor((t - t[0]) / LENGTH).astype(int)
     count = np.bincount(place)
     full = count > 0.5 * np.median(count[count > 0])
-    square = np.bincount(place, e**2)
-    return np.asarray(LENGTH * np.flatnonzero(full)), np.asarray(np.sqrt(square[full] / count[full]))
+    levels = np.sqrt(np.bincount(place, e**2)[full] / count[full])
+    speeds = np.bincount(place, np.abs(at_rows(eq, key, "omega_m")))[full] / count[full]
+    return LENGTH * np.flatnonzero(full), levels, speeds
 
 
 def usual_levels(eq: Equations, e: Mapping[Key, Array]) -> dict[Key, float]:
