@@ -2,7 +2,7 @@
 
 It raises what repeats, or neighbouring turns, differ by, and with them the floor it is held against; the usual half
 second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.5 times the usual
-one, and no run more than 1.23 times. Usual is what half seconds of a like speed have: a log of jogs and sweeps is louder
+one, and no run more than 1.23 times. Usual is what half seconds of a like speed have: a log of jogs is louder
 where it is fast.
 """
 
@@ -55,7 +55,7 @@ def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
 
 
 def _usual(levels: Array, speeds: Array) -> Array:
-    """Of each half second the usual level (k,) of those at a like speed [rad/s], or of the nearest few: what grabs slows
+    """Of each half second the usual level (k,) of those at like speeds [rad/s], or of the nearest few: what grabs slows
     a motor down too."""
     scale = np.log(np.maximum(speeds, SLOW)) / np.log(LIKE)
     near = np.round(scale)
