@@ -47,7 +47,7 @@ def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
     if levels.size < FEWEST:
         return None
     usual = _usual(levels, speeds)
-    over = float(np.sqrt(np.mean(e**2) / max(np.mean(usual**2), 1e-300)))
+    over = float(np.sqrt(np.mean(e**2) / max(float(np.mean(usual**2)), 1e-300)))
     loud = np.flatnonzero(levels > np.maximum(BURST * usual, _rounded(eq, key)))
     if over < BURST_RUN or not loud.size:
         return None
@@ -85,7 +85,7 @@ def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array, Array
     full = count > 0.5 * np.median(count[count > 0])
     levels = np.sqrt(np.bincount(place, e**2)[full] / count[full])
     speeds = np.bincount(place, np.abs(at_rows(eq, key, "omega_m")))[full] / count[full]
-    return LENGTH * np.flatnonzero(full), levels, speeds
+    return LENGTH * np.flatnonzero(full), np.asarray(levels), np.asarray(speeds)
 
 
 def usual_levels(eq: Equations, e: Mapping[Key, Array]) -> dict[Key, float]:
