@@ -60,6 +60,28 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     assert needless.without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == set(left)
 
 
+@pytest.mark.parametrize(("plain", "needed", "left"), [
+    (True, True, {"stribeck"}), (False, True, set()), (True, False, set()),
+])  # fmt: skip
+def test_a_fall_that_is_all_there_is_stays_whatever_it_is_at_rest(
+    monkeypatch: pytest.MonkeyPatch, plain: bool, needed: bool, left: set[str]
+) -> None:
+    """Runs at three speeds tell that friction falls, and not how large it is where none of them was (exam 67, 42)."""
+    monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: True)
+
+    def with_(names: list[str], loud: bool) -> Any:
+        scores = [scored(name, 9.0, all_there_is=plain) for name in names]
+        effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
+        terms = [SimpleNamespace(name=name, effect=effect) for name in names]
+        words = {name: (SimpleNamespace(holds_zero=True),) for name in names}
+        s = solution("eq", *terms)
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
+
+    monkeypatch.setattr(needless, "_without", lambda of, name, runs, covered: with_([], needed))
+    nothing: Any = None
+    assert needless.without_insignificant(with_(["stribeck"], False), (), nothing).names == left
+
+
 @pytest.mark.parametrize(("known", "left"), [(False, {"weight"}), (True, {"weight", "runout", "spring"})])
 def test_beside_an_unknown_rest_two_sizes_that_lean_on_each_other_and_are_not_known_go_together(
     monkeypatch: pytest.MonkeyPatch, known: bool, left: set[str]

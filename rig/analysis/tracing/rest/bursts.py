@@ -83,9 +83,9 @@ def half_seconds(eq: Equations, key: Key, e: Array) -> tuple[Array, Array, Array
     place = np.floor((t - t[0]) / LENGTH).astype(int)
     count = np.bincount(place)
     full = count > 0.5 * np.median(count[count > 0])
-    levels = np.sqrt(np.bincount(place, e**2)[full] / count[full])
-    speeds = np.bincount(place, np.abs(at_rows(eq, key, "omega_m")))[full] / count[full]
-    return LENGTH * np.flatnonzero(full), np.asarray(levels), np.asarray(speeds)
+    levels: Array = np.sqrt(np.bincount(place, e**2)[full] / count[full])
+    speeds: Array = np.bincount(place, np.abs(at_rows(eq, key, "omega_m")))[full] / count[full]
+    return np.asarray(LENGTH * np.flatnonzero(full)), levels, speeds
 
 
 def usual_levels(eq: Equations, e: Mapping[Key, Array]) -> dict[Key, float]:

@@ -43,11 +43,14 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
     needless = {score.name for score in insignificant}
     nothing = {name for name in needless if may_be_nothing(effect[name], selected.words.get(name, ()))}
     few = _few_repeats(selected.p, runs)
+    plain = {score.name for score in selected.scores if score.all_there_is}
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
         empty = gone <= nothing and _says_nothing(selected, gone)
+        if gone <= plain and fewer.loud:
+            continue  # its size at rest, where no run was, may be any: that there is a fall is plain
         if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
             return without_insignificant(fewer, runs, covered)
     return selected
