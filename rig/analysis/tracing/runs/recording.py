@@ -21,6 +21,7 @@ from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.resolution import noise_of, quiet
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
+from rig.analysis.tracing.runs.stamped import evened
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing, substituted
 from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER, RATE
 from rig.core.drivetrain import RATIOS
@@ -149,6 +150,8 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
     t, dt, steady = grid(channels["t"], rows, run)
     refuse_sparse(rows, dt)
+    t, stamps = evened(t, channels["theta_m"] if channels["theta_m"] is not None else channels["theta_l"], dt)
+    dt = float(np.median(np.diff(t))) if stamps else dt
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     uneven = None if is_even(t, dt) else t
     encoders = run.manifest.get("encoders") or {}
@@ -176,7 +179,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         rate=1 / dt,
         thinned=factor,
         noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(*run.notes, *locked_all_the_same(run), *_noted(motion, holes), *computed_torque(whole_run)),
+        notes=(*run.notes, *locked_all_the_same(run), *_noted(motion, holes, stamps), *computed_torque(whole_run)),
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
@@ -198,9 +201,9 @@ def _smoothing(theta_m: Array | None, dt: float, encoders: Mapping[str, float], 
     return factor, Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
 
 
-def _noted(motion: Motion | None, holes: str) -> list[str]:
-    """What was noted of a run's motion and of rows that are missing."""
-    return [*(motion.notes if motion else ()), *([holes] if holes else ())]
+def _noted(motion: Motion | None, *said: str) -> list[str]:
+    """What was noted of a run's motion, and what is `said` of rows that are missing and of its time, if anything."""
+    return [*(motion.notes if motion else ()), *filter(None, said)]
 
 
 def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
