@@ -32,7 +32,7 @@ def evened(t: Array, angle: Array | None, dt: float) -> tuple[Array, str]:
     if jitter < JITTERS * dt or by_count * SMOOTHER > by_stamps or np.any(np.diff(even) <= 0):
         return t, ""
     note = (
-        f"its time stamps jitter by {1e3 * jitter:.2g} ms, and its rows were taken evenly, one every {1e3 * dt:.3g} ms: "
+        f"its time stamps jitter by {1e3 * jitter:.2g} ms, its rows were taken evenly, one every {1e3 * dt:.3g} ms: "
         f"over their count the angle is {by_stamps / by_count:.1f} times smoother, and that is taken for their time"
     )
     return even, note
