@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from functools import cached_property
-from typing import Any, Self, TypeVar, cast
+from typing import Any, Final, Self, TypeVar, cast
 
 Made = TypeVar("Made")
+FEW: Final = 3  # kept lately: a shape, and the same a little off to either side
 
 
 class Once:
@@ -20,6 +21,16 @@ class Once:
         """This copy with what was made of `before` and will be: for copies that differ in nothing of it."""
         self.__dict__["_made"] = before._made
         return self
+
+    def lately(self, name: str, by: Hashable, make: Callable[[], Made]) -> Made:
+        """What `make` gave for `by` under that `name`, of the last few that were asked for; else it is made."""
+        recent: tuple[tuple[Hashable, Any], ...] = self._made.get("lately", ())
+        for key, made in recent:
+            if key == (name, by):
+                return cast(Made, made)
+        made = make()
+        self._made["lately"] = (((name, by), made), *recent[: FEW - 1])
+        return made
 
     def once(self, name: str, make: Callable[[], Made]) -> Made:
         """What `make` gave when `name` was first asked for."""

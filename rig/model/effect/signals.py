@@ -118,9 +118,13 @@ class Signals(Once):
             return self.torque - self.gear.B_sp * (wound - self.series_slope * self.omega_m)
         return self.torque - self.gear.B_sp / self.gear.K * self.torque_rate
 
-    def states(self, make: Callable[[Signals], tuple[Array, ...]]) -> tuple[Array, ...]:
-        """What `make` gives of the whole piece, in these rows (n,): a state remembers what was before the first."""
-        return make(self) if self.cut is None else tuple(self.cut.of(x) for x in make(self.cut.whole))
+    def states(self, make: Callable[[Signals], tuple[Array, ...]], *by: float) -> tuple[Array, ...]:
+        """What `make` gives of the whole piece `by` those numbers, in these rows (n,): a state remembers what was before
+        the first. Of the parts of one whole the first that asks has it made."""
+        if self.cut is None:
+            return make(self)
+        whole = self.cut.whole
+        return tuple(self.cut.of(x) for x in whole.lately(make.__qualname__, by, lambda: make(whole)))
 
     def part(self, rows: slice | Rows) -> Signals:
         """Some rows of it: a slice, or their numbers (m,) in rising order, stretches side by side."""

@@ -71,7 +71,7 @@ class LoadDependentKinematicError(Effect):
             torque = lagged(whole.torque, whole.gear.damped_for, whole.dt)
             return (lagged(np.abs(torque) if of % EACH == SIZE else torque, lag, whole.dt),)
 
-        decay = np.exp(-((np.abs(signals.states(late)[0]) / t_c) ** delta))[:, None]
+        decay = np.exp(-((np.abs(signals.states(late, of % EACH, lag)[0]) / t_c) ** delta))[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
         if of >= EACH:
             values, slopes = signals.once(self.name, lambda: _by_orders(signals, values, slopes))

@@ -138,7 +138,7 @@ class TorsionalMode(Effect):
             return (shaken(whole, alpha - swung(whole, alpha, omega, zeta)[1] / omega**2),)  # H·ω̇
 
         port = Port.MOTOR_TORQUE if side == MOTOR else Port.LOAD_TORQUE
-        return {port: signals.states(swinging)[0][:, None]}
+        return {port: signals.states(swinging, side, frequency, zeta)[0][:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Inertia, frequency and damping; of a coupling its compliance, of a hub no damping."""

@@ -44,7 +44,7 @@ def flange(s: Signals, omega: float, zeta: float) -> Mapping[Port, Array]:
         after, jerk = swung(whole, torque, omega, zeta)
         return shaken(whole, after - torque), shaken(whole, jerk)
 
-    behind, jerk = s.states(swinging)
+    behind, jerk = s.states(swinging, omega, zeta)
     twist, resists = np.zeros((jerk.size, 3)), np.zeros((jerk.size, 3))
     twist[:, 0], twist[:, 1], resists[:, 2] = behind, -s.alpha_l, jerk
     return {Port.WIND_UP: twist, Port.LOAD_TORQUE: resists}

@@ -45,7 +45,7 @@ class WipedGrease(Nameless):
         def gone(whole: Signals) -> tuple[Array, ...]:
             return (whole.once(f"gone since {since:g}", lambda: _gone(whole, since == SET_OUT)),)
 
-        (s,) = signals.states(gone)
+        (s,) = signals.states(gone, since)
         return {Port.MOTOR_TORQUE: (signals.way * np.exp(-s / d))[:, None]}
 
     def amount(self, fit: Fit) -> Amount:
