@@ -119,7 +119,7 @@ class Signals(Once):
         return self.torque - self.gear.B_sp / self.gear.K * self.torque_rate
 
     def states(self, make: Callable[[Signals], tuple[Array, ...]], *by: float) -> tuple[Array, ...]:
-        """What `make` gives of the whole piece `by` those numbers, in these rows (n,): a state remembers what was before
+        """What `make` gives of the whole piece `by` these numbers, in its rows (n,): a state remembers what was before
         the first. Of the parts of one whole the first that asks has it made."""
         if self.cut is None:
             return make(self)
