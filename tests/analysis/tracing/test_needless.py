@@ -60,20 +60,22 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     assert needless.without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == set(left)
 
 
-@pytest.mark.parametrize(("plain", "needed", "left"), [
-    (True, True, {"stribeck"}), (False, True, set()), (True, False, set()),
+@pytest.mark.parametrize(("plain", "needed", "half", "left"), [
+    (True, True, 0.11, {"stribeck"}), (False, True, 0.11, set()), (True, False, 0.11, set()), (True, True, 4.0, set()),
 ])  # fmt: skip
 def test_a_fall_that_is_all_there_is_stays_whatever_it_is_at_rest(
-    monkeypatch: pytest.MonkeyPatch, plain: bool, needed: bool, left: set[str]
+    monkeypatch: pytest.MonkeyPatch, plain: bool, needed: bool, half: float, left: set[str]
 ) -> None:
-    """Runs at three speeds tell that friction falls, and not how large it is where none of them was (exam 67, 42)."""
+    """Runs at three speeds tell that friction falls, and not how large it is where none of them was (exam 67, 42); of
+    what may be forty times itself, or as much the other way, nothing is told (66, 02)."""
     monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: True)
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [scored(name, 9.0, all_there_is=plain) for name in names]
         effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
-        words = {name: (SimpleNamespace(holds_zero=True),) for name in names}
+        size = Parameter("tau_s_minus_tau_c", 0.1, (0.1 - half, 0.1 + half), "N·m")
+        words = dict.fromkeys(names, (size,))
         s = solution("eq", *terms)
         return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
 
