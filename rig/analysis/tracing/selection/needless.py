@@ -22,8 +22,9 @@ from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MOSTLY, UNKNO
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, Reach
 
-ROUGHLY: Final = 2.0  # times a size: a friction at rest that no run was slow enough for is known to 1.1 (exam 67, 42), a
-# loop that stood in for creep was to forty
+# times a size: a friction at rest that no run was slow enough for is known to 1.1 (exam 67, 42), a loop that stood in
+# for creep was to forty
+ROUGHLY: Final = 2.0
 
 
 def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
