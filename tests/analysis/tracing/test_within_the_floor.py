@@ -206,3 +206,20 @@ def test_every_channel_is_listened_to_whoever_does_it(monkeypatch: pytest.Monkey
     conclusion = hidden._in_the_floor(p, nothing, {}, {})
     assert conclusion is not None
     assert CHANNEL[loudest].name in conclusion.verdict.sentence
+
+
+@pytest.mark.parametrize(("coordinate", "order", "claims"), [
+    ("load_angle", 1.0, False), ("load_angle", 2.01, False), ("load_angle", 0.4, True), ("motor_angle", 1.0, True),
+])  # fmt: skip
+def test_what_comes_back_with_the_outputs_turn_is_not_said_to_be_no_effects(
+    monkeypatch: pytest.MonkeyPatch, coordinate: str, order: float, claims: bool
+) -> None:
+    """A runout and a weight do, and no order is above a floor that has it."""
+    monkeypatch.setattr(hidden, "ticking", lambda *_: None)
+    monkeypatch.setattr(hidden, "in_the_floor", lambda *_: Home(coordinate, "A", 0.5, order=order))
+    monkeypatch.setattr(hidden, "repeats", lambda *_: [])
+    nothing: Any = SimpleNamespace(runs=(), fitted=(), floors={}, keys=())
+    p: Any = SimpleNamespace(eq=nothing, split=nothing, held_out=nothing)
+    conclusion = hidden._in_the_floor(p, nothing, {}, {})
+    assert conclusion is not None
+    assert ("no effect of the library explains it" in conclusion.verdict.sentence) is claims

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 
@@ -30,6 +31,8 @@ from rig.analysis.tracing.selection.sentences import how_often, of_the_rest
 from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING, NOTEWORTHY
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
+
+SAME_ORDER: Final = 0.05  # of a turn
 
 
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:
@@ -71,10 +74,18 @@ def _in_the_floor(
     differing = "Repeats" if repeats(p.eq.runs, p.split.fitted) else "Neighbouring turns"
     sentence = (
         f"{differing} differ in {CHANNEL[home.channel].name} because of {what} "
-        f"({min(home.share, 1.0):.0%} of {of_what}); it is in the floor, and no effect of the library explains it."
+        f"({min(home.share, 1.0):.0%} of {of_what}); it is in the floor, and {_and_no_name(home)}."
     )
     verdict = Verdict(Status.UNKNOWN, (), (), home.coordinate, home.order, home.frequency_hz, sentence)
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
+
+
+def _and_no_name(home: Home) -> str:
+    """That nothing is named for it: a runout and a weight come back so too, and are above no floor that has them."""
+    order = home.order or 0.0
+    if home.coordinate == "load_angle" and any(abs(order - n) < SAME_ORDER for n in (1, 2)):
+        return "whether a runout, a weight or another thing does so these runs do not tell"
+    return "no effect of the library explains it"
 
 
 def _in_the_spring(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conclusion | None:
