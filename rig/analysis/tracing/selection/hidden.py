@@ -16,7 +16,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK
+from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.levels import friction_by_speed
 from rig.analysis.tracing.rest.locks import lock_tests_differ
@@ -80,10 +80,10 @@ def _in_the_floor(
     return Conclusion(verdict, home, (home.coordinate,), along(home.coordinate))
 
 
-def _and_no_name(home: Home) -> str:
+def _and_no_name(found: Home) -> str:
     """That nothing is named for it: a runout and a weight come back so too, and are above no floor that has them."""
-    order = home.order or 0.0
-    if home.coordinate == "load_angle" and any(abs(order - n) < SAME_ORDER for n in (1, 2)):
+    order = found.order or 0.0
+    if found.coordinate == "load_angle" and any(abs(order - n) < SAME_ORDER for n in (1, 2)):
         return "whether a runout, a weight or another thing does so these runs do not tell"
     return "no effect of the library explains it"
 
