@@ -39,4 +39,5 @@ def test_a_spring_far_from_the_declared_one_is_none_where_nobody_read_the_torque
     run = SimpleNamespace(pieces=(SimpleNamespace(gear=KNOWN),), has={"theta_l"}, load_unread=unread, declared=declared)
     design = SimpleNamespace(eq=SimpleNamespace(runs=(run,), noise=SimpleNamespace(sigma={"L": 0.3})))
     s: Any = SimpleNamespace(design=design, values=FITTED, keys=(), residual=lambda key: np.zeros(1))
-    assert learnt(s).K == pytest.approx(stiffness)
+    found = learnt(s).K
+    assert found == pytest.approx(stiffness)
