@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.runs.grid import is_even
 from rig.model.effect import Array
 
 SMOOTHER: Final = 1.5  # times: of even rows noise alone leaves as much either way
@@ -24,7 +25,7 @@ FEWEST: Final = 100  # rows
 def evened(t: Array, angle: Array | None, dt: float) -> tuple[Array, str]:
     """Times of the rows [s] (n,), usually `dt` apart: as they are stamped, or as they were taken, evenly; and a
     sentence on that, "" where they are as stamped."""
-    if angle is None or t.size < FEWEST or not np.isfinite(angle).all():
+    if angle is None or t.size < FEWEST or is_even(t, dt) or not np.isfinite(angle).all():
         return t, ""
     even = _even(t, dt)
     jitter = float(np.std(t - even))
