@@ -54,11 +54,12 @@ def _lost(late: Array, dt: float) -> Array:
     usual = np.median(windows, axis=1)
     step = np.zeros(late.size)
     step[AROUND : late.size - AROUND + 1] = usual[AROUND:] - usual[:-AROUND]
-    lost = np.zeros(late.size)
-    for i in np.flatnonzero(np.abs(step) > STEP * dt):
-        near = np.abs(step[max(0, i - AROUND) : i + AROUND + 1])
-        if abs(step[i]) == near.max():
-            lost[i:] += np.round(step[i] / dt)
+    jumps, lost = np.diff(late, prepend=late[:1]), np.zeros(late.size)
+    found = np.flatnonzero(np.abs(step) > STEP * dt)
+    for near in np.split(found, np.flatnonzero(np.diff(found) > AROUND) + 1) if found.size else ():
+        size = step[near[np.argmax(np.abs(step[near]))]]
+        first = max(near[0] - AROUND, 0)  # stamps in whole milliseconds make several rows as good; one jumps most
+        lost[first + np.argmax(np.sign(size) * jumps[first : near[-1] + AROUND + 1]) :] += np.round(size / dt)
     return lost
 
 
@@ -78,10 +79,10 @@ def _roughness(t: Array, x: Array) -> float:
     """By how much a reading is off the cubic through the two before and the two after it, in the unit of `x`: the
     middle one of all."""
     at = np.stack([t[i : t.size - 4 + i] for i in range(5)])
-    weights = []
-    for i in (0, 1, 3, 4):
-        others = [j for j in (0, 1, 3, 4) if j != i]
-        top = np.prod([at[2] - at[j] for j in others], axis=0)
-        weights.append(top / np.prod([at[i] - at[j] for j in others], axis=0))
-    near = np.stack([x[i : x.size - 4 + i] for i in (0, 1, 3, 4)])
-    return float(np.median(np.abs(x[2:-2] - np.sum(np.stack(weights) * near, axis=0))))
+    off = np.array(x[2:-2])
+    with np.errstate(divide="ignore", invalid="ignore"):  # two rows of one stamp tell nothing
+        for i in (0, 1, 3, 4):
+            others = [j for j in (0, 1, 3, 4) if j != i]
+            far, near = (np.prod([at[k] - at[j] for j in others], axis=0) for k in (2, i))
+            off -= far / near * x[i : x.size - 4 + i]
+    return float(np.median(np.abs(off[np.isfinite(off)]))) if np.isfinite(off).any() else 0.0

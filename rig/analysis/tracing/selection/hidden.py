@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.foretold import smooth_term
-from rig.analysis.tracing.rest.hidden_order import hidden_order
+from rig.analysis.tracing.rest.hidden_order import WHOLE_ORDER, hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.levels import friction_by_speed
@@ -31,8 +30,6 @@ from rig.analysis.tracing.selection.sentences import how_often, of_the_rest
 from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING, NOTEWORTHY
 from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
-
-SAME_ORDER: Final = 0.05  # of a turn
 
 
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:
@@ -83,7 +80,7 @@ def _in_the_floor(
 def _and_no_name(found: Home) -> str:
     """That nothing is named for it: a runout and a weight come back so too, and are above no floor that has them."""
     order = found.order or 0.0
-    if found.coordinate == "load_angle" and any(abs(order - n) < SAME_ORDER for n in (1, 2)):
+    if found.coordinate == "load_angle" and any(abs(order - n) < WHOLE_ORDER for n in (1, 2)):
         return "whether a runout, a weight or another thing does so these runs do not tell"
     return "no effect of the library explains it"
 

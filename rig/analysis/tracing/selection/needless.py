@@ -17,10 +17,10 @@ from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.elimination import backward_elimination, scales, unscaled
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, in_words
-from rig.analysis.tracing.selection.sizes import is_hardly_known, may_be_nothing
+from rig.analysis.tracing.selection.sizes import is_hardly_known, is_known_to, may_be_nothing
 from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MOSTLY, UNKNOWN
 from rig.core.quantiles import Z95
-from rig.model.effect import Array, Parameter, Reach
+from rig.model.effect import Array, Reach
 
 # times a size: a friction at rest that no run was slow enough for is known to 1.1 (exam 67, 42), a loop that stood in
 # for creep was to forty
@@ -65,7 +65,7 @@ def _is_known_roughly(selected: Selected, name: str) -> bool:
     """Whether the figures an effect's size is told with are known to ROUGHLY times themselves."""
     effect = next(term.effect for term in selected.solution.design.terms if term.name == name)
     sizes = effect.sizes(selected.words.get(name, ()))
-    return all(size.ci95[1] - size.ci95[0] < 2 * ROUGHLY * abs(size.value) for size in sizes)
+    return all(is_known_to(ROUGHLY, size) for size in sizes)
 
 
 def _vague(selected: Selected) -> set[str]:
@@ -77,11 +77,7 @@ def _says_nothing(selected: Selected, names: set[str]) -> bool:
     """Whether there are any, and of the law of none of them is anything known, not to ten times itself: what is left
     without such a name is not explained by it either."""
     laws = [scales(selected.solution, name, selected.words) for name in names]
-    return bool(laws) and all(law and all(_is_unknown(scale) for scale in law) for law in laws)
-
-
-def _is_unknown(scale: Parameter) -> bool:
-    return scale.ci95[1] - scale.ci95[0] > 2 * UNKNOWN * abs(scale.value)
+    return bool(laws) and all(law and not any(is_known_to(UNKNOWN, scale) for scale in law) for law in laws)
 
 
 def _few_repeats(p: Prepared, runs: Sequence[int]) -> bool:

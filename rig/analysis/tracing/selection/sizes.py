@@ -17,4 +17,9 @@ def may_be_nothing(effect: Effect, words: Sequence[Parameter]) -> bool:
 def is_hardly_known(size: Parameter) -> bool:
     """Whether a size is known worse than to a third of itself: of 21 right names that stood beside one that did more
     the worst was known to a seventh, the wrong one (exam 30, case 40) to nine tenths."""
-    return size.ci95[1] - size.ci95[0] > 2 * KNOWN * abs(size.value)
+    return not is_known_to(KNOWN, size)
+
+
+def is_known_to(times: float, figure: Parameter) -> bool:
+    """Whether half the 95 % interval of a figure is no more than so many times itself."""
+    return figure.ci95[1] - figure.ci95[0] <= 2 * times * abs(figure.value)
