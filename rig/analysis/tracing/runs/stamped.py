@@ -54,13 +54,20 @@ def _lost(late: Array, dt: float) -> Array:
     usual = np.median(windows, axis=1)
     step = np.zeros(late.size)
     step[AROUND : late.size - AROUND + 1] = usual[AROUND:] - usual[:-AROUND]
-    jumps, lost = np.diff(late, prepend=late[:1]), np.zeros(late.size)
+    lost = np.zeros(late.size)
     found = np.flatnonzero(np.abs(step) > STEP * dt)
     for near in np.split(found, np.flatnonzero(np.diff(found) > AROUND) + 1) if found.size else ():
-        size = step[near[np.argmax(np.abs(step[near]))]]
-        first = max(near[0] - AROUND, 0)  # stamps in whole milliseconds make several rows as good; one jumps most
-        lost[first + np.argmax(np.sign(size) * jumps[first : near[-1] + AROUND + 1]) :] += np.round(size / dt)
+        most = near[np.argmax(np.abs(step[near]))]
+        rows = np.round(step[most] / dt)
+        lost[_since(late, usual[most - AROUND], rows * dt, near[0] - AROUND, near[-1] + AROUND) :] += rows
     return lost
+
+
+def _since(late: Array, before: float, shift: float, first: int, last: int) -> int:
+    """The row from `first` to `last` since which `late` is by `shift` more than `before` [s]: with the least that is
+    off either, as one late stamp jumps further than a lost row."""
+    off = late[first:last] - before
+    return first + int(np.argmin(np.cumsum((np.abs(off - shift) - np.abs(off))[::-1])[::-1]))
 
 
 def _slow(x: Array, rows: int) -> Array:
