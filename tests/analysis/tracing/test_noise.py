@@ -182,3 +182,24 @@ def test_made_up_numbers_and_a_coarse_encoder_have_a_floor_all_the_same() -> Non
     assert finest(eq, "M") == pytest.approx(0.1e-5 / 2**0.5, rel=0.01)
     assert finest(eq, "L") > 0.0
     assert effective(np.zeros(20)) == 1.0
+
+
+def log_at(speed: float) -> Any:
+    """A log that says nothing of how it moved."""
+    t = np.arange(0.0, 20.0, 0.02)
+    piece = SimpleNamespace(t=t, dt=0.02, theta_m=speed * t, omega_m=np.full(t.size, speed), way=np.ones(t.size))
+    run = run_at(speed, 0.0)
+    run.said, run.procedure, run.counts_m = "other []", "other", 0.0
+    piece.torque = run.pieces[0].torque
+    run.pieces = (piece,)
+    return run
+
+
+def test_logs_that_say_nothing_have_the_floor_of_those_that_move_alike() -> None:
+    """A joint's logs have no conditions in their manifests: a fast one is not as quiet as a slow one for that."""
+    runs = [log_at(w) for w in (12.0, 40.0, 12.2, 40.5)]
+    noise = Noise({"M": 5e-4}, {"M": 1.0}, {"M": 1e-3})
+    of = Measured(noise, {(0, "M"): 1e-3, (1, "M"): 5e-3}, {}, {}, {(0, "M"): 500.0, (1, "M"): 500.0})
+    for run, there in ((2, 1e-3), (3, 5e-3)):
+        eq: Any = SimpleNamespace(runs=runs, rows={(run, "M"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool))})
+        assert floor_of(of, eq, (run, "M")) == pytest.approx(there)
