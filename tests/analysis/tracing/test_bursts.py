@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from rig.analysis.tracing.rest import bursts
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst
@@ -86,3 +87,31 @@ def test_reversals_are_left_out_and_the_loudest_is_told(eq: Any, rng: np.random.
     found = loudest_burst(eq, e)
     assert found is not None
     assert found.key == (1, "A")
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_friction_that_wanders_within_a_second_is_no_burst(eq: Any, seed: int) -> None:
+    """Of 20 half seconds one has three and a half times the usual level by chance, where each is of one reading or
+    two: a clean run of exam 69 had."""
+    rng = np.random.default_rng(seed)
+    e = noise(eq, rng, 10.0)
+    keep = np.exp(-1 / (0.6 * RATE))
+    wander = np.zeros(e.size)
+    for i in range(1, e.size):
+        wander[i] = keep * wander[i - 1] + np.sqrt(1 - keep**2) * rng.standard_normal()
+    assert burst(eq, KEY, 0.2 * e + 3e-3 * wander) is None
+
+
+def test_friction_that_wanders_within_a_second_is_no_burst(eq: Any) -> None:
+    """Of 20 half seconds one has 4.5 times the usual level by chance, where each is little more than one reading."""
+    e, slow = dict[tuple[int, str], np.ndarray](), np.exp(-1 / (0.6 * RATE))
+    eq.runs = eq.runs[:1] * 5
+    for run, seed in enumerate((21, 1, 2, 3, 4)):
+        e[run, "M"] = noise(eq, np.random.default_rng(0), 10.0, (run, "M"))
+        rough = np.random.default_rng(seed).standard_normal(e[run, "M"].size + 2000)
+        wander = lfilter([np.sqrt(1 - slow**2)], [1, -slow], rough)[2000:]
+        e[run, "M"] = 0.2 * e[run, "M"] + 3e-3 * wander
+    assert burst(eq, KEY, e[KEY]) is not None
+    assert loudest_burst(eq, e) is None
+    e[KEY][300:420] += 0.02
+    assert loudest_burst(eq, e) is not None

@@ -32,14 +32,16 @@ def repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: False)
 
 
-@pytest.mark.parametrize(("needed", "few", "left"), [
-    ("presliding", False, ["presliding"]), ("both", False, ["stribeck", "presliding"]), ("both", True, []),
+@pytest.mark.parametrize(("needed", "few", "over", "left"), [
+    ("presliding", False, 1.5, ["presliding"]), ("both", False, 1.5, ["stribeck", "presliding"]), ("both", True, 1.5, []),
+    ("both", False, 1.04, ["stribeck"]),
 ])  # fmt: skip
 def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
-    monkeypatch: pytest.MonkeyPatch, needed: str, few: bool, left: list[str]
+    monkeypatch: pytest.MonkeyPatch, needed: str, few: bool, over: float, left: list[str]
 ) -> None:
     """The one that does less is tried first; where that cannot go the other is; where few repeats tell the floor, none
-    is needed for what is left over that."""
+    is needed for what is left over that. Nor is one of them where all runs together leave no more than the floor
+    without it, whatever a single run does."""
     monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: few)
     work = {"stribeck": 900.0, "presliding": 500.0}
     words = {name: (SimpleNamespace(holds_zero=True),) for name in work}
@@ -49,7 +51,8 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
         effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
         terms = [SimpleNamespace(name=name, effect=effect) for name in names]
         s = solution("eq", *terms)
-        return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=prepared())
+        rest = {"left": over if len(names) == 1 else 2.0, "solution": s, "p": prepared()}
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), **rest)
 
     def without(of: Any, name: str, runs: object, covered: object) -> Any:
         rest = [n for n in of.names if n != name]

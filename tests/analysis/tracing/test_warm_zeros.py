@@ -19,6 +19,9 @@ ROOM = 22.0 + 3.0 * np.sin(TIMES / 300.0)  # °C, a room that is aired
 SLOPE, WANDER, SOFT = ARCSEC, 0.4 * ARCSEC, 1.33e-4  # rad/K, rad, rad/(N·m)
 
 
+LARGEST = 20.0  # N·m
+
+
 def found(
     monkeypatch: pytest.MonkeyPatch, zeros: Array, warmth: Array = ROOM, of_the_torque: Array | None = None
 ) -> WarmZeros | None:
@@ -29,7 +32,12 @@ def found(
             has=MEASURED,
             mean_torque=0.5 * (-1) ** i,
             pieces=[
-                SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, speed), temperature=np.full(2, warm))
+                SimpleNamespace(
+                    t=np.array([t, t + 20.0]),
+                    omega_m=np.full(2, speed),
+                    temperature=np.full(2, warm),
+                    torque=np.full(2, LARGEST),
+                )
             ],
         )
         for i, (t, speed, warm) in enumerate(zip(TIMES, np.tile([10.0, 30.0, -20.0], 10), warmth, strict=True))
@@ -68,10 +76,18 @@ def test_without_a_thermometer_or_at_one_temperature_nothing_is_said(monkeypatch
     assert found(monkeypatch, zeros, warmth=22.0 + (ROOM - 22.0) / 20.0) is None
 
 
+@pytest.mark.parametrize(("slope", "told"), [(0.05, True), (0.005, False)])
 def test_a_torque_sensor_whose_zero_follows_the_temperature_is_no_shift_of_the_angles(
-    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, slope: float, told: bool
 ) -> None:
-    torque = 0.05 * (ROOM - 22.0)  # N·m
-    noise = 0.1 * WANDER * rng.standard_normal(RUNS)
-    assert found(monkeypatch, noise - SOFT * torque, of_the_torque=torque) is None
-    assert found(monkeypatch, noise - SOFT * torque + SLOPE * (ROOM - 22.0), of_the_torque=torque)
+    """N·m/K: of 20 N·m a thirtieth of one is what every sensor does."""
+    torque = slope * (ROOM - 22.0)  # N·m
+    noise = 0.1 * SOFT * torque.std() * rng.standard_normal(RUNS)
+    warm = found(monkeypatch, noise - SOFT * torque, of_the_torque=torque)
+    assert (warm is not None) is told
+    if warm:
+        assert warm.torque == pytest.approx(slope, rel=0.1)
+        assert "zero of the torque sensor follows the temperature, by 0.0" in warm.sentence()
+    both = found(monkeypatch, noise - SOFT * torque + SLOPE * (ROOM - 22.0), of_the_torque=torque)
+    assert both
+    assert not both.torque

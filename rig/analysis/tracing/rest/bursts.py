@@ -3,7 +3,8 @@
 It raises what repeats, or neighbouring turns, differ by, and with them the floor it is held against; the usual half
 second of a run does not know of it. On campaigns that lack nothing no half second has more than 2.5 times the usual
 one, and no run more than 1.23 times. Usual is what half seconds of a like speed have: a log of jogs is louder
-where it is fast.
+where it is fast. And friction that wanders from second to second has half seconds of all kinds: what stands out is
+loud beside other runs too.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from rig.model.effect import Array
 LENGTH: Final = 0.5  # s
 FEWEST: Final = 12  # half seconds in a run: of fewer the usual one is not known
 LIKE: Final = 1.5  # times another speed: what either leaves is about the same
+LOUDER: Final = 4.0  # times the RMS of other runs: of noise as slow as half a second one in 16 000 is
+OTHERS: Final = 3  # runs of which the middle one's RMS is known
 SLOW: Final = 0.5  # rad/s of the motor: below that speeds are all alike
 
 
@@ -37,18 +40,26 @@ class Burst:
 
 def loudest_burst(eq: Equations, e: Mapping[Key, Array]) -> Burst | None:
     """Of all residuals (n,) by run and channel, reversals left out; None where nothing stands out."""
-    found = (burst(eq, key, e[key]) for key in e if key[1] != "R")
+    found = (burst(eq, key, e[key], _of_others(key, e)) for key in e if key[1] != "R")
     return max((b for b in found if b is not None), key=lambda b: b.over, default=None)
 
 
-def burst(eq: Equations, key: Key, e: Array) -> Burst | None:
-    """From the first to the last half second that stands out; None where none does, or the run is too short."""
+def _of_others(key: Key, e: Mapping[Key, Array]) -> float:
+    """RMS of the middle one of the other runs of that channel; 0 where there are too few."""
+    levels = [float(np.sqrt(np.mean(x**2))) for other, x in e.items() if other != key and other[1] == key[1]]
+    return float(np.median(levels)) if len(levels) >= OTHERS else 0.0
+
+
+def burst(eq: Equations, key: Key, e: Array, of_others: float = 0.0) -> Burst | None:
+    """From the first to the last half second that stands out, beside the usual RMS `of_others` too; None where none
+    does, or the run is too short."""
     t, levels, speeds = half_seconds(eq, key, e)
     if levels.size < FEWEST:
         return None
     usual = _usual(levels, speeds)
     over = float(np.sqrt(np.mean(e**2) / max(float(np.mean(usual**2)), 1e-300)))
-    loud = np.flatnonzero(levels > np.maximum(BURST * usual, _rounded(eq, key)))
+    least = max(_rounded(eq, key), LOUDER * of_others)
+    loud = np.flatnonzero(levels > np.maximum(BURST * usual, least))
     if over < BURST_RUN or not loud.size:
         return None
     return Burst(key, float(t[loud[0]]), float(t[loud[-1]]) + LENGTH, over)

@@ -68,10 +68,10 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     if seen is None or not of_the_torque_sensor(s, (*mine, *others)):
         return seen
     torque = abs(seen.size) / s.value("compliance")
-    return replace(seen, torque=torque) if torque > SENSOR * _largest(eq) else None
+    return replace(seen, torque=torque) if torque > SENSOR * largest_torque(eq) else None
 
 
-def _largest(eq: Equations) -> float:
+def largest_torque(eq: Equations) -> float:
     """Torque that a run has for a tenth of its time, N·m: peaks of a resonance are no measure."""
     return max(float(np.nanpercentile(np.abs(p.torque), 90)) for r in eq.runs if "tau_l" in r.has for p in r.pieces)
 

@@ -7,7 +7,7 @@ of unseen runs are foretold by a line through the fitted ones'.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,11 +18,13 @@ from rig.analysis.tracing.floor.offsets import offset
 from rig.analysis.tracing.rest.drifting_zeros import (
     FITTED,
     PLAINER,
+    SENSOR,
     UNSEEN,
     constants,
     falling,
     foretold,
     free,
+    largest_torque,
     rivals,
     times,
 )
@@ -36,11 +38,12 @@ WARMER: Final = 0.5  # K between the coldest and the warmest run, at least
 @dataclass(frozen=True)
 class WarmZeros:
     """By how much a kelvin shifts the zeros of the angles [rad/K], over how many kelvin [K], and what of the scatter of
-    unseen zeros is foretold."""
+    unseen zeros is foretold; by how much it shifts the torque sensor's [N·m/K] where it is they that follow."""
 
     slope: float
     span: float
     foretold: float
+    torque: float = 0.0
 
     @property
     def size(self) -> float:
@@ -49,6 +52,13 @@ class WarmZeros:
 
     def sentence(self) -> str:
         """What is said of it."""
+        if self.torque:
+            return (
+                f"The zero of the torque sensor follows the temperature, by {self.torque:.3g} N·m a kelvin over "
+                f"{self.span:.1f} K: a line through the zeros of the fitted runs foretells {self.foretold:.0%} of how "
+                "far apart those of unseen runs lie. Every run has a zero of its own, so that no error shows it, and "
+                "no effect of the library explains it."
+            )
         return (
             f"The zeros of the angles follow the temperature, by {self.slope / ARCSEC:.3g} arcsec a kelvin over "
             f"{self.span:.1f} K: a line through those of the fitted runs foretells {self.foretold:.0%} of how far "
@@ -59,16 +69,30 @@ class WarmZeros:
 
 def warm_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> WarmZeros | None:
     """None where nobody read a temperature, or θ̃'s zeros follow it no better than the time, a speed or a torque. The
-    zero of the torque sensor, which may follow it as well, is taken off where it is known."""
+    zero of the torque sensor, which may follow it as well, is taken off where it is known, and told itself where it
+    alone does, by much.
+    """
     eq = s.design.eq
     mine, others = (free(eq, runs) for runs in (fitted, unseen))
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
-    warm, warm_later = (_warmth(eq, runs) for runs in (mine, others))
-    span = float(np.ptp(np.concatenate([warm, warm_later])))
-    if not span > WARMER:  # NaN where it was not read
+    if not float(np.ptp(_warmth(eq, (*mine, *others)))) > WARMER:  # NaN where it was not read
         return None
-    zeros, wanted = (np.array([_zero(s, i) for i in runs]) for runs in (mine, others))
+    if (angles := _following(eq, mine, others, [[_zero(s, i) for i in runs] for runs in (mine, others)])) is not None:
+        return angles
+    if any((i, "L") not in eq.rows for i in (*mine, *others)):
+        return None
+    bare = _following(eq, mine, others, [[offset(s, i, "A") for i in runs] for runs in (mine, others)])
+    torque = -bare.slope / s.value("compliance") if bare else 0.0
+    return replace(bare, torque=torque) if bare and abs(torque) * bare.span > SENSOR * largest_torque(eq) else None
+
+
+def _following(
+    eq: Equations, mine: Sequence[int], others: Sequence[int], found: Sequence[Sequence[float]]
+) -> WarmZeros | None:
+    """Of the zeros `found` of the fitted runs and of the unseen ones."""
+    zeros, wanted = (np.array(x) for x in found)
+    warm, warm_later = (_warmth(eq, runs) for runs in (mine, others))
     guess, x, own = foretold(_line(warm), _line(warm_later), zeros)
     spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
     left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
@@ -76,6 +100,7 @@ def warm_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> War
         return None
     if own > min(_by_time(eq, mine, zeros)):
         return None
+    span = float(np.ptp(np.concatenate([warm, warm_later])))
     return WarmZeros(float(x[1]), span, 1 - (left / spread) ** 2)
 
 

@@ -20,6 +20,8 @@ DENSEST = 1e-6  # s between rows: a thousand times faster than any rig logs; the
 SPARSEST = (
     0.201  # s between rows, 5 Hz as a clock has them: order 15 of a slow run (9.6 rpm) still has two of them a period
 )
+ROUNDED = 20  # rows, over which the rounding of a stamp is little, and few clocks lose one
+OTHER = 0.02  # relative, of a distance that is another one
 BRIDGED = 10.0  # usual distances between rows
 HARDLY = TURN / 120  # rad of the motor: of order 15 an eighth of a period
 
@@ -29,7 +31,17 @@ def grid(t: Array | None, rows: int, run: Source) -> tuple[Array, float, bool]:
     if t is None or t.size < 3:
         said = abs(stated(run.manifest, "sample_rate_hz", UNTIMED))
         return np.arange(rows) / said, 1 / said, False
-    return t, float(np.median(np.diff(t))), True
+    return t, usual_distance(t), True
+
+
+def usual_distance(t: Array) -> float:
+    """s between rows stamped `t` (n,): the middle one of all distances, or where stamps are rounded so that no distance
+    is the usual one, as 300 rows a second in whole milliseconds, that of ROUNDED rows on over as many."""
+    nearest = float(np.median(np.diff(t)))
+    if t.size <= 2 * ROUNDED:
+        return nearest
+    wide = float(np.median(t[ROUNDED:] - t[:-ROUNDED])) / ROUNDED
+    return wide if abs(wide - nearest) > OTHER * nearest else nearest
 
 
 def refuse_other_time(t: Array | None, motion: Motion | None) -> None:

@@ -31,6 +31,7 @@ from rig.model.effect import Reach
 def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
     """All of them, one after the other: each has its own reason, and most campaigns none."""
     selected = try_prefixes(selected, found, runs, covered)
+    selected = try_instead_of_eliminated(selected, found, runs, covered)
     selected = try_without_eliminated(selected, found, bank, runs, covered)
     selected = try_without_each(selected, found, bank, runs, covered)
     selected = try_each_added(selected, found, bank, runs, covered)
@@ -54,6 +55,30 @@ def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered:
         more = stands - stay - (frozenset() if selected.loud else CONFOUNDERS.keys())
         if more and stay < stands and other.left < selected.left:
             selected, stay = other, stands
+    return selected
+
+
+def try_instead_of_eliminated(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Where much is left: look-alikes of what was eliminated, each in its place and all the others beside it. Friction
+    that falls up to the fastest run is a drag with a law at the end of its range, and goes for that; without it what
+    stands beside it has no size of its own any more. One of them counts where more names stand, and it explains
+    everything or all there is."""
+    stay = {term.name for term in selected.solution.design.terms}
+    if selected.p.own.line is not None or not selected.loud:
+        return selected
+    evidence = {r.term.name: r.evidence for r in found.ranking}
+    d = found.solution.design
+    for gone in [name for name in found.names if name not in stay][:TRIED]:
+        but = {*found.names, *selected.taken}
+        least = ALIKE * evidence.get(gone, np.inf)
+        alike = [r.term for r in found.ranking if r.term.name not in but and r.evidence > least][:TRIED]
+        for term in alike:
+            bare = reduced(d, [i for i, other in enumerate(d.terms) if other.name == gone])
+            s = settled(refine(bare, term, runs, covered)[1], runs, covered)
+            other = select(selected.p, replace(found, solution=s), runs, covered)
+            more = stay < {term.name for term in other.solution.design.terms}
+            if more and (_settles(other, stay) or _takes_most(other, selected)):
+                return other
     return selected
 
 

@@ -18,7 +18,7 @@ from rig.analysis.tracing.selection.elimination import backward_elimination, sca
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, in_words
 from rig.analysis.tracing.selection.sizes import is_hardly_known, is_known_to, may_be_nothing
-from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MOSTLY, UNKNOWN
+from rig.analysis.tracing.thresholds import AS_WELL, AT_THE_FLOOR, MOSTLY, QUIET, UNKNOWN
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Reach
 
@@ -30,7 +30,8 @@ ROUGHLY: Final = 2.0
 def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
     """Without names whose size may as well be zero, or is hardly known beside a name that does more, or whose law may
     be any beside an unknown rest, unless something is left to explain that is not with them: where few repeats tell
-    the floor, that is no reason for such a name. Of two that stand in for each other either may be the one that can go:
+    the floor, that is no reason for such a name, nor is a single run for one that may be nothing beside others (exam
+    69, case 03: teeth that alias). Of two that stand in for each other either may be the one that can go:
     the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
@@ -53,7 +54,7 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
-        empty = gone <= nothing and _says_nothing(selected, gone)
+        empty = gone <= nothing and (_says_nothing(selected, gone) or (selected.names > gone and fewer.left < QUIET))
         if gone <= plain and fewer.loud:
             continue  # its size at rest, where no run was, may be any: that there is a fall is plain
         if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
