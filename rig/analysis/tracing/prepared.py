@@ -60,7 +60,7 @@ def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) 
         raise UsageError(f"{campaign.name}: {_nothing(eq.runs)}")
     _refuse_too_short(eq, parts.fitted, campaign.name)
     refuse_odd_torques(campaign.runs, campaign.name)
-    if all(eq.runs[i].locked or eq.runs[i].procedure == "standstill" for i in parts.fitted):
+    if all(_is_still(eq.runs[i]) for i in parts.fitted):
         said = f" ({'; '.join(campaign.notes)[:300]})" if campaign.notes else ""
         raise UsageError(
             f"{campaign.name}: no run to fit whose output is free and whose motor turns, expected one{said}"
@@ -78,6 +78,11 @@ def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) 
     if columns := own.columns():
         s = fit(design(replace(eq, own=columns), (), parts.fitted))
     return built(campaign, parts, eq, measure(s, parts.fitted), own)
+
+
+def _is_still(run: Recording) -> bool:
+    """Whether neither side of it turns freely, nor is it wound up from the output by a torque that was read."""
+    return run.procedure == "standstill" or (run.locked and not run.input_locked)
 
 
 def _nothing(runs: Sequence[Recording]) -> str:

@@ -31,6 +31,7 @@ class Effect(ABC):
     adds: ClassVar[frozenset[str]] = frozenset()  # parameters that several terms of it have `together`
     remembers: ClassVar[bool] = False  # its state when a run begins is unknown: beside it every run has its own zero
     backbone: ClassVar[bool] = False  # a loop in torque against wind-up has a mean curve that looks like it
+    in_the_spring: ClassVar[bool] = False  # the wind-up alone shows it, of a motor that is held too
     needs: ClassVar[frozenset[str]] = frozenset()  # channels without which it cannot be told from the baseline
     comes_round: ClassVar[bool] = False  # a wave of the motor's angle, the order of which is its first shape parameter
     of_reading: ClassVar[str] = ""  # the torque it is a function of, and whose reading it corrects: tau_m or torque

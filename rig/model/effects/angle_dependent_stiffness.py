@@ -35,6 +35,7 @@ class AngleDependentStiffness(Effect):
         ),
     }
     source: ClassVar[str] = "ghorbel2001"
+    in_the_spring: ClassVar[bool] = True
     backbone: ClassVar[bool] = True  # over a stroke the output's angle goes with the time since it began
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)

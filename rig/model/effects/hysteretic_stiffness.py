@@ -39,6 +39,7 @@ class HystereticStiffness(Effect):
         "T_h": "torque after a reversal over which the loop opens",
     }
     source: ClassVar[str] = "seyfferth1995"
+    in_the_spring: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("T_h", "law")
     loose: ClassVar[tuple[bool, ...]] = (True, False)
     remembers: ClassVar[bool] = True

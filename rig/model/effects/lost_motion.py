@@ -34,6 +34,7 @@ class LostMotion(Effect):
         "gap_by_half_turn_phase": "φ of that, cos(2·θ_m + φ)",
     }
     source: ClassVar[str] = "harmonicdrive"
+    in_the_spring: ClassVar[bool] = True
     backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("epsilon", "kind")
     loose: ClassVar[tuple[bool, ...]] = (True, False)

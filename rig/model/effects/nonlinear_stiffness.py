@@ -31,6 +31,7 @@ class NonlinearStiffness(Effect):
         "k_3": "cubic part of the spring T = K·φ + k_3·φ³",
     }
     source: ClassVar[str] = "harmonicdrive"
+    in_the_spring: ClassVar[bool] = True
     backbone: ClassVar[bool] = True
     shape_names: ClassVar[tuple[str, ...]] = ("kind", "T_0")
     loose: ClassVar[tuple[bool, ...]] = (False, True)

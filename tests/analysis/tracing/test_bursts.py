@@ -89,19 +89,6 @@ def test_reversals_are_left_out_and_the_loudest_is_told(eq: Any, rng: np.random.
     assert found.key == (1, "A")
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_friction_that_wanders_within_a_second_is_no_burst(eq: Any, seed: int) -> None:
-    """Of 20 half seconds one has three and a half times the usual level by chance, where each is of one reading or
-    two: a clean run of exam 69 had."""
-    rng = np.random.default_rng(seed)
-    e = noise(eq, rng, 10.0)
-    keep = np.exp(-1 / (0.6 * RATE))
-    wander = np.zeros(e.size)
-    for i in range(1, e.size):
-        wander[i] = keep * wander[i - 1] + np.sqrt(1 - keep**2) * rng.standard_normal()
-    assert burst(eq, KEY, 0.2 * e + 3e-3 * wander) is None
-
-
 def test_friction_that_wanders_within_a_second_is_no_burst(eq: Any) -> None:
     """Of 20 half seconds one has 4.5 times the usual level by chance, where each is little more than one reading."""
     e, slow = dict[tuple[int, str], np.ndarray](), np.exp(-1 / (0.6 * RATE))

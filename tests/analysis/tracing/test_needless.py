@@ -33,8 +33,8 @@ def repeated(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(("needed", "few", "over", "left"), [
-    ("presliding", False, 1.5, ["presliding"]), ("both", False, 1.5, ["stribeck", "presliding"]), ("both", True, 1.5, []),
-    ("both", False, 1.04, ["stribeck"]),
+    ("presliding", False, 1.5, ["presliding"]), ("both", False, 1.5, ["stribeck", "presliding"]),
+    ("both", True, 1.5, []), ("both", False, 1.04, ["stribeck"]),
 ])  # fmt: skip
 def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     monkeypatch: pytest.MonkeyPatch, needed: str, few: bool, over: float, left: list[str]

@@ -109,8 +109,10 @@ def _lesser(x: Array) -> float:
 
 
 def fill(eq: Equations, effects: Sequence[Effect], runs: Sequence[int], covered: Reach) -> Bank:
-    """Columns of all shapes of those `effects` that the channels measured can show, for those runs."""
-    able = [effect for effect in effects if effect.needs <= covered.has]
+    """Columns of all shapes of those `effects` that the channels measured can show, for those runs: of a motor that is
+    held in all of them those in the spring."""
+    held = all(eq.runs[run].input_locked for run in runs)
+    able = [effect for effect in effects if effect.needs <= covered.has and (effect.in_the_spring or not held)]
     terms = tuple(Term(effect, shape) for effect in able for shape in effect.shapes(covered))
 
     def of(run: int) -> tuple[Blocks, Blocks]:

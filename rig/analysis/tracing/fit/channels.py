@@ -125,7 +125,7 @@ class Rows:
     z: Array
     at: tuple[int, ...]
     keep: Array  # bool, before masking
-    theta_m: Array  # rad, (n,)
+    theta_m: Array  # rad, (n,); of a motor that is locked what the load goes, there
     own: Array
 
     @cached_property
@@ -143,6 +143,7 @@ def is_measured(run: Recording, channel: str) -> bool:
     what stands in for a torque sensor lacks the load's friction, which turns over later; and of a lock test without one
     the angles are spent on its torque."""
     turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
+    turns &= not (run.input_locked and channel == "M")  # what holds it takes any torque
     spent = channel == "A" and run.is_wound and not run.look.held_load
     return turns and not spent and NEEDS[channel] <= run.knows
 
@@ -151,7 +152,7 @@ def rows(run: Recording, channel: str) -> Rows:
     """Response and baseline columns of a channel, pieces joined, masked rows gone."""
     y, z, at = unmasked(run, channel)
     keep = np.concatenate([holds(piece, run, channel) for piece in run.pieces])
-    theta_m = np.concatenate([piece.theta_m[run.smoother.centres(piece.t.size)] for piece in run.pieces])
+    theta_m = np.concatenate([run.wound(piece)[run.smoother.centres(piece.t.size)] for piece in run.pieces])
     keep &= np.isfinite(y) & np.isfinite(z).all(1)
     shared, z = shared_columns(run, channel, at), z[keep]
     own = _own(run, channel, keep.size)[keep]
@@ -225,6 +226,8 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     if channel == "A" and run.look.rigid and not run.carries:
         y = y - _believed_wind_up(run)
         z[:, [names.index(name) for name in WIND_UP if name in names]] = 0.0
+    if run.input_locked:  # a shaft that gives a little way tells nothing of waves at other angles
+        z[:, [i for i, name in enumerate(names) if name in (*SERIES, "mesh")]] = 0.0
     if channel == "M" and _shaken(run, z[:, names.index("J_m")]):
         z[:, names.index("J_m")] = 0.0
     if channel == "M" and np.isfinite(lowest := lowest_answered(run)):

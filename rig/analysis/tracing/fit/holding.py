@@ -39,7 +39,7 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
     else:
         sliding &= smooth(told(piece, run)) > 1 - 1e-9
         if run.locked:  # friction that builds up begins where no run tells, and so does a loop
-            sliding &= has_turned(piece)[smooth.centres(piece.t.size)]
+            sliding &= has_turned(piece, run)[smooth.centres(piece.t.size)]
     return np.asarray(inside & sliding)
 
 
@@ -53,10 +53,12 @@ def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
 
 def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
     """Rows in which the motor's angle is known to better than a count; with a locked output one of every stay
-    too, and none before the first reversal."""
+    too, and none before the first reversal. Of one that is held it always is."""
     f = run.smoother
+    if run.input_locked:
+        return has_turned(piece, run)[f.centres(piece.t.size)]
     rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
     if not run.locked:
         return np.asarray(f(rest.astype(float)) < 1e-9, dtype=np.bool_)
     stays = one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
-    return np.asarray(stays & has_turned(piece)[f.centres(piece.t.size)])
+    return np.asarray(stays & has_turned(piece, run)[f.centres(piece.t.size)])

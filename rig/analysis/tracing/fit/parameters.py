@@ -46,6 +46,8 @@ def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
     covariance (p, p) of the coefficients."""
     c, out = covariance(s) if spread is None else spread, list[Parameter]()
     seen = np.diag(s.gram) > UNSEEN
+    late = INDEX["lag"]  # which is believed to be small, and no more than that is known where no load is balanced
+    seen[late] &= s.design.gram[late, late] > UNSEEN
     compliance, by = _of_the_gear(s, c)
     stiff = 1 / compliance if compliance > 0 else np.nan
     if seen[INDEX["compliance"]] and np.isfinite(stiff):

@@ -19,6 +19,7 @@ class Creep(Nameless):
     """
 
     name: ClassVar[str] = "creep"
+    in_the_spring: ClassVar[bool] = True
     in_short: ClassVar[str] = "a part of the wind-up comes seconds late"
     source: ClassVar[str] = "findley1976"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}

@@ -29,6 +29,7 @@ class EvenSpring(Nameless):
     """
 
     name: ClassVar[str] = "even_spring"
+    in_the_spring: ClassVar[bool] = True
     in_short: ClassVar[str] = "the spring is harder one way than the other"
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES
@@ -45,6 +46,7 @@ class SpringDrift(Nameless):
     """
 
     name: ClassVar[str] = "spring_drift"
+    in_the_spring: ClassVar[bool] = True
     in_short: ClassVar[str] = "the stiffness changes through the campaign"
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}

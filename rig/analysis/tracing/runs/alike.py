@@ -11,6 +11,7 @@ from rig.model.effect import Array
 
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
 SLIPS = 0.2  # the same of the speed of a locked run: a motor that sticks and slips goes back and forth now and then
+SAME_ANGLE = 0.1  # rad, of a motor that is locked: a spring is another one at another angle
 READINGS = 100  # of the angle of a locked run: a few for every stroke
 SAME_LOAD = 1.0  # N·m, how far the means of repeats lie apart: zeros of a sensor, friction that scatters
 ONE_WAY = 0.9  # of the rows, less those the other way
@@ -43,6 +44,8 @@ def moved_alike(a: Recording, b: Recording) -> bool:
     """The same, whatever the torque reads."""
     if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
         return False
+    if a.input_locked is not b.input_locked or (a.input_locked and abs(_held_at(a) - _held_at(b)) > SAME_ANGLE):
+        return False
     close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
     ways = zip(travel(a), travel(b), close, strict=True)
     return all(abs(u - v) <= least * max(abs(u), abs(v), 1e-9) for u, v, least in ways)
@@ -51,12 +54,18 @@ def moved_alike(a: Recording, b: Recording) -> bool:
 def travel(run: Recording) -> tuple[float, float]:
     """Range of the motor angle over the time it took, and mean |speed|; rad/s. Length of a run does not matter. Of a
     locked run the range, and the mean speed read now and then: what the motor trembles on its counts is no way gone."""
-    low, high = min(float(p.theta_m.min()) for p in run.pieces), max(float(p.theta_m.max()) for p in run.pieces)
+    angles = [run.wound(p) for p in run.pieces]
+    low, high = min(float(x.min()) for x in angles), max(float(x.max()) for x in angles)
     if run.locked:
-        return high - low, sum(_gone(p.theta_m) for p in run.pieces) / sum(p.t.size * p.dt for p in run.pieces)
+        return high - low, sum(_gone(x) for x in angles) / sum(p.t.size * p.dt for p in run.pieces)
     speed = float(np.mean([np.mean(np.abs(p.omega_m)) for p in run.pieces]))
     turning = abs(float(np.mean([np.mean(p.omega_m) for p in run.pieces]))) > 0.5 * speed
     return speed, speed if turning else high - low
+
+
+def _held_at(run: Recording) -> float:
+    """rad, of a motor that is locked."""
+    return float(run.pieces[0].theta_m.mean())
 
 
 def _heading(run: Recording) -> int:

@@ -205,7 +205,7 @@ def _unfit(made: Recording) -> str:
         return "it has no stretch without a gap that is long enough for the low-pass, some tenths of a second"
     angle = np.concatenate([p.theta_m for p in made.pieces])
     turned = float(np.ptp(angle)) / (2 * np.pi)
-    if made.locked and (why := _gave_way(made)):
+    if made.locked and not made.input_locked and (why := _gave_way(made)):
         return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
         return f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"

@@ -49,7 +49,7 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     moving = [run for run in runs if run.procedure != "standstill"]
     found += _answered(moving)
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
-    found += _held_output(moving)
+    found += _held_output(moving) + _held_motor(moving)
     found += _gain(moving)
     found += _fast(moving)
     return tuple(found)
@@ -161,6 +161,19 @@ def _held_output(runs: Sequence[Recording]) -> list[str]:
     return ["In lock tests the load angle follows the torque, and was compared by itself there. A housing that moves "
             "under the encoder and a lock that gives way look the same in it: a dial gauge on each tells them apart, "
             "and the spring is read from the runs that turn."]  # fmt: skip
+
+
+def _held_motor(runs: Sequence[Recording]) -> list[str]:
+    held = [run for run in runs if run.input_locked]
+    if not held:
+        return []
+    return [f"{_these(held)}: the motor stood while the output was wound up. What such runs tell is the spring at the "
+            "angle they stand at, with the zero of each run its own; kinematic error, frictions and inertias do not "
+            "show in them."]  # fmt: skip
+
+
+def _these(runs: Sequence[Recording]) -> str:
+    return runs[0].name if len(runs) == 1 else f"{len(runs)} runs, {runs[0].name} and others"
 
 
 def _one_load(runs: Sequence[Recording]) -> list[str]:

@@ -12,17 +12,18 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Array, Signals
 
 TURNED: Final = 0.2  # of the range: so far back is a reversal, no step of a motor that sticks and slips
 FROM_THE_MIDDLE: Final = 0.75  # of the range: a first stroke that is longer began at a reversal itself
 
 
-def has_turned(piece: Signals) -> npt.NDArray[np.bool_]:
+def has_turned(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
     """Rows (n,) from the first reversal on; all, where the run began at one or never turned back."""
     if piece.cut is None:
-        return np.arange(piece.t.size) >= first_reversal(piece.theta_m)
-    return np.asarray(piece.cut.rows) >= first_reversal(piece.cut.whole.theta_m)
+        return np.arange(piece.t.size) >= first_reversal(run.wound(piece))
+    return np.asarray(piece.cut.rows) >= first_reversal(run.wound(piece.cut.whole))
 
 
 def first_reversal(theta: Array) -> int:

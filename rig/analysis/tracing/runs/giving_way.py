@@ -22,7 +22,7 @@ LEFT: Final = 0.5  # of what goes with the torque, RMS, beside it in all tests, 
 def gives_way(runs: Sequence[Recording]) -> bool:
     """Whether in every lock test the load angle goes with the torque, by as much for each N·m, and more than a lock
     gives way."""
-    tests = [_of_a_test(run) for run in runs if run.locked and run.has >= {"theta_l", "tau_l"}]
+    tests = [_of_a_test(run) for run in runs if run.locked and not run.input_locked and run.has >= {"theta_l", "tau_l"}]
     if len(tests) < RUNS:
         return False
     compliance, with_torque, beside = np.array(tests).T

@@ -107,6 +107,9 @@ def grouped(runs: Sequence[Recording], moving: Sequence[int]) -> list[list[int]]
 
 
 def _level(run: Recording) -> tuple[float, float]:
+    """How far it was wound up where the motor is locked, else the weight and the speed."""
+    if run.input_locked:
+        return max(float(np.ptp(p.torque)) for p in run.pieces), 0.0
     tau_ext = float(run.pieces[0].tau_ext[0])
     return tau_ext, float(np.mean([np.mean(p.omega_m) for p in run.pieces]))
 

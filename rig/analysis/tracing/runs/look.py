@@ -15,6 +15,7 @@ class Look:
     steady: bool = False  # the mean of its motor torque is no run's own
     rigid: bool = False  # its wind-up is what is believed of the gear: nothing in these runs tells it
     inertia: bool = False  # its torque beside the inertia of the load, which nobody stated and no sensor weighs
+    narrow: float = 0.0  # Hz, of a low-pass that is lower than usual: chosen when it is read
     fast: bool = False  # rows twice as often, compared up to frequencies twice as high: chosen when it is read
     late_torque: float = 0.0  # s, by how much its torque sensor is brought forward: chosen when it is read
     late_load: float = 0.0  # s, the same of its load angle

@@ -15,6 +15,7 @@ from rig.analysis.tracing.runs.clocked import is_clocked, slowed
 from rig.analysis.tracing.runs.declared import believed, is_locked, locked_all_the_same, stated, states
 from rig.analysis.tracing.runs.grid import grid, is_even, joined, refuse_other_time, refuse_sparse, uniform
 from rig.analysis.tracing.runs.holes import without_holes
+from rig.analysis.tracing.runs.input_locked import is_input_locked
 from rig.analysis.tracing.runs.late import earlier
 from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.meanings import computed_torque
@@ -61,6 +62,7 @@ class Recording(Once):
     clocked: bool = False  # its seconds are those of the speed that it and others declare
     load_stated: bool = True  # whether the manifest says what hangs on the output
     load_known: bool = True  # but for friction; else the mean of its shaft torque is its own
+    input_locked: bool = False  # `locked` is the motor, and the output is wound up
 
     @property
     def knows(self) -> frozenset[str]:
@@ -78,6 +80,11 @@ class Recording(Once):
     def load_unread(self) -> bool:
         """Whether its shaft torque is what the load takes, as far as that is known, and the motor's tells how much."""
         return "tau_l" not in self.has and not self.locked and {"theta_m", "tau_m"} <= self.has
+
+    def wound(self, piece: Signals) -> Array:
+        """The angle that goes when a piece is wound up, rad of the motor (n,): the motor's, or the load's the other way
+        where it is the motor that is locked."""
+        return -self.ratio * piece.theta_l if self.input_locked else piece.theta_m
 
     @property
     def carries(self) -> bool:
@@ -154,8 +161,9 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     dt = float(np.median(np.diff(t))) if stamps else dt
     whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
     uneven = None if is_even(t, dt) else t
+    held = is_input_locked(channels, run.ratio)
     encoders = run.manifest.get("encoders") or {}
-    factor, smoother = _smoothing(channels["theta_m"], dt, encoders, FASTER if look.fast else 1.0)
+    factor, smoother = _smoothing(channels["theta_m"], dt, encoders, look)
     tau_ext = stated(run.conditions, "tau_ext", 0.0)
     whole = {name: _forward(name, x, look, dt) for name, x in whole.items()}
     made = [
@@ -168,7 +176,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         name=run.name,
         procedure=run.procedure,
         said=f"{run.procedure} {sorted((k, v) for k, v in run.conditions.items() if k != 'note')}",
-        locked=is_locked(run),
+        locked=is_locked(run) or held,
         start=start,
         ratio=run.ratio,
         pieces=tuple(piece for piece in made if piece is not None),
@@ -179,7 +187,13 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         rate=1 / dt,
         thinned=factor,
         noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(*run.notes, *locked_all_the_same(run), *_noted(motion, holes, stamps), *computed_torque(whole_run)),
+        notes=(
+            *run.notes,
+            *(() if held else locked_all_the_same(run)),
+            *_noted(motion, holes, stamps),
+            *computed_torque(whole_run),
+        ),
+        input_locked=held,
         step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
         step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
         speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
@@ -190,13 +204,14 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     )
 
 
-def _smoothing(theta_m: Array | None, dt: float, encoders: Mapping[str, float], often: float) -> tuple[int, Smoother]:
-    """One of how many rows, `dt` apart, is worked with, and the low-pass: `often` times as many and as wide as usual,
-    and narrower where the motor's encoder is coarse."""
+def _smoothing(theta_m: Array | None, dt: float, encoders: Mapping[str, float], look: Look) -> tuple[int, Smoother]:
+    """One of how many rows, `dt` apart, is worked with, and the low-pass: twice as many and as wide as usual where a
+    `look` is fast, and narrower where it says so or the motor's encoder is coarse."""
+    often, narrow = FASTER if look.fast else 1.0, look.narrow or np.inf
     factor = max(1, round(1 / dt / (often * RATE)))
     work = dt * factor
     sigma, of_the_motor = (
-        min(TAMEST / work, quiet(theta_m, encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
+        min(TAMEST / work, narrow, quiet(theta_m, encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
     )
     return factor, Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
 
