@@ -23,13 +23,17 @@ LARGEST = 20.0  # N·m
 
 
 def found(
-    monkeypatch: pytest.MonkeyPatch, zeros: Array, warmth: Array = ROOM, of_the_torque: Array | None = None
+    monkeypatch: pytest.MonkeyPatch,
+    zeros: Array,
+    warmth: Array = ROOM,
+    of_the_torque: Array | None = None,
+    has: frozenset[str] = MEASURED,
 ) -> WarmZeros | None:
     """Of runs with those zeros [rad] and temperatures [°C], every third of them unseen."""
     runs = [
         SimpleNamespace(
             locked=False,
-            has=MEASURED,
+            has=has,
             mean_torque=0.5 * (-1) ** i,
             pieces=[
                 SimpleNamespace(
@@ -91,3 +95,14 @@ def test_a_torque_sensor_whose_zero_follows_the_temperature_is_no_shift_of_the_a
     both = found(monkeypatch, noise - SOFT * torque + SLOPE * (ROOM - 22.0), of_the_torque=torque)
     assert both
     assert not both.torque
+
+
+@pytest.mark.parametrize(("wander", "told", "unread"), [(0.1, True, True), (0.75, True, False), (2.0, False, False)])
+def test_where_nobody_read_the_torque_the_temperature_must_foretell_more(
+    monkeypatch: pytest.MonkeyPatch, wander: float, told: bool, unread: bool
+) -> None:
+    """`wander` in arcsec, of zeros that lie 2 apart, RMS."""
+    zeros = SLOPE * (ROOM - 22.0) + wander * ARCSEC * np.random.default_rng(3).standard_normal(RUNS)
+    assert (found(monkeypatch, zeros) is not None) is told
+    assert (found(monkeypatch, zeros, has=frozenset({"t", "theta_m", "theta_l"})) is not None) is unread
+    assert found(monkeypatch, zeros, has=frozenset({"t", "theta_m", "tau_l"})) is None

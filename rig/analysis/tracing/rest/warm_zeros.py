@@ -32,6 +32,8 @@ from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
 
 LEFT: Final = 0.5  # of the scatter of the unseen zeros about their mean, beside one line with what was read
+UNREAD: Final = 0.3  # the same where nobody read the torque: what bearings take of it winds up by the temperature too
+READ: Final = frozenset({"t", "theta_m", "theta_l"})
 WARMER: Final = 0.5  # K between the coldest and the warmest run, at least
 
 
@@ -74,7 +76,7 @@ def warm_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> War
     """
     eq = s.design.eq
     mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= READ for i in (*mine, *others)):
         return None
     if not float(np.ptp(_warmth(eq, (*mine, *others)))) > WARMER:  # NaN where it was not read
         return None
@@ -96,7 +98,8 @@ def _following(
     guess, x, own = foretold(_line(warm), _line(warm_later), zeros)
     spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
     left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
-    if left > LEFT * spread or own > PLAINER * min(rivals(eq, mine, zeros), default=np.inf):
+    read = all(eq.runs[i].has >= MEASURED for i in (*mine, *others))
+    if left > (LEFT if read else UNREAD) * spread or own > PLAINER * min(rivals(eq, mine, zeros), default=np.inf):
         return None
     if own > min(_by_time(eq, mine, zeros)):
         return None
