@@ -11,7 +11,8 @@ from rig.analysis.tracing.fit.encoder_lines import with_lines
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.learnt import change
 from rig.analysis.tracing.fit.model import Solution, design, fit
-from rig.analysis.tracing.fit.search import Found, relawed, still
+from rig.analysis.tracing.fit.refine import refine
+from rig.analysis.tracing.fit.search import Found, relawed, settled, still
 from rig.analysis.tracing.fit.some import search_some, some
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
@@ -25,7 +26,10 @@ from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.workers import give_back
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
+from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 
+DRIFT: Final = ThermalFrictionDrift.name
+WARMS: Final = 30.0  # nats, of friction that warms: with less it is not asked for below the floor
 OTHER: Final = 0.05  # relative, of the gear: an inertia that ran away had gone by 0.15
 
 
@@ -82,6 +86,8 @@ def _selected(
     selected = _shaken_as_it_stands(selected, found, runs, covered)
     if alone := _at_the_floor_alone(p, again, selected, start, covered, calm):
         return alone, Found(start, found.ranking), covered
+    if other := _warmer(selected, found, runs, covered):
+        return other, found, covered
     if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
@@ -89,6 +95,21 @@ def _selected(
         other = _selected(p, start, tried, quiet, calm, _remembering(tried.bank.terms))
         return other if _is_better(other[0], selected) else (selected, found, covered)
     return selected, found, covered
+
+
+def _warmer(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected | None:
+    """With friction that warms beside what explains everything above the floor: repeats on another day differ by it, so
+    that it is in the floor of the motor's torque, and never above it. It counts where it is as certain as it would have
+    to be by itself."""
+    drift = next((r for r in found.ranking if r.term.name == DRIFT and r.evidence > WARMS), None)
+    if drift is None or selected.loud or not selected.names or DRIFT in selected.names | selected.taken:
+        return None
+    s = settled(refine(selected.solution.design, drift.term, runs, covered)[1], runs, covered)
+    again, s = beside(selected.p, s, covered)
+    again = replace(again, held_out=replace(again.held_out, calm=True))
+    other = select(again, replace(found, solution=s), runs, covered)
+    certain = other.names == {DRIFT, *selected.names} and is_certain(other, selected.p.held_out)
+    return other if certain else None
 
 
 def _is_better(other: Selected, selected: Selected) -> bool:
