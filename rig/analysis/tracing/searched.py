@@ -86,8 +86,8 @@ def _selected(
     selected = _shaken_as_it_stands(selected, found, runs, covered)
     if alone := _at_the_floor_alone(p, again, selected, start, covered, calm):
         return alone, Found(start, found.ranking), covered
-    if other := _warmer(selected, found, runs, covered):
-        return other, found, covered
+    if warmer := _warmer(selected, found, runs, covered):
+        return warmer, found, covered
     if not quiet or selected.loud:  # friction of one speed is told by all runs together, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):

@@ -214,3 +214,48 @@ def test_a_second_choice_that_takes_most_plainly_counts_though_something_is_aske
     monkeypatch.setattr(further, "_known", lambda other, stay: known)
     stands, drag = selected("cogging_torque", 0.1, then), selected("quadratic_drag", 0.1 if plain else 0.9, left)
     assert further._takes_most(drag, stands) is counts
+
+
+@pytest.mark.parametrize(
+    ("evidence", "explains", "loud", "expected"),
+    [
+        (99.0, True, True, {"eccentricity", "drag"}),
+        (99.0, False, True, set()),
+        (70.0, True, True, set()),  # no look-alike: it explained much less
+        (99.0, True, False, set()),  # nothing is left to explain
+    ],
+)
+def test_a_look_alike_in_an_eliminated_ones_place_keeps_what_stood_beside_that(
+    monkeypatch: pytest.MonkeyPatch, evidence: float, explains: bool, loud: bool, expected: set[str]
+) -> None:
+    """Friction that falls up to the fastest run went, and the eccentricity beside it had no size of its own any more
+    (exam 69, case 12)."""
+
+    def standing(names: tuple[str, ...], loud: bool) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in names)
+        solution = SimpleNamespace(design=SimpleNamespace(terms=terms))
+        p = SimpleNamespace(own=SimpleNamespace(line=None))
+        return SimpleNamespace(p=p, solution=solution, loud=loud, left=2.0, taken=frozenset())
+
+    def reduced(d: Any, gone: list[int]) -> Any:
+        return [term.name for i, term in enumerate(d.terms) if i not in gone]
+
+    def selected_again(p: Any, found: Any, *_: object) -> Any:
+        whole = {"eccentricity", "drag"} <= set(found.solution)
+        return standing(tuple(found.solution) if whole else (), not (whole and explains))
+
+    monkeypatch.setattr(further, "reduced", reduced)
+    monkeypatch.setattr(further, "refine", lambda bare, term, *_: (None, [*bare, term.name]))
+    monkeypatch.setattr(further, "settled", lambda names, *_: names)
+    monkeypatch.setattr(further, "replace", lambda found, solution: SimpleNamespace(solution=solution))
+    monkeypatch.setattr(further, "select", selected_again)
+    monkeypatch.setattr(further, "_settles", lambda other, stay: not other.loud)
+    monkeypatch.setattr(further, "_takes_most", lambda other, selected: False)
+    names = ("eccentricity", "stribeck")
+    ranking = [
+        SimpleNamespace(term=SimpleNamespace(name=name), evidence=e)
+        for name, e in (("eccentricity", 120.0), ("stribeck", 100.0), ("drag", evidence))
+    ]
+    found: Any = SimpleNamespace(solution=standing(names, True).solution, names=names, ranking=ranking)
+    kept = further.try_instead_of_eliminated(standing((), loud), found, (), None)  # type: ignore[arg-type]
+    assert {term.name for term in kept.solution.design.terms} == expected
