@@ -88,6 +88,7 @@ def test_a_motor_that_turns_and_one_beside_a_load_that_rests_are_not_held() -> N
     wound = torque / STIFFNESS
     assert is_input_locked({"theta_m": rest, "theta_l": wound, "tau_l": torque}, RATIO)
     assert not is_input_locked({"theta_m": turns, "theta_l": turns / RATIO, "tau_l": torque}, RATIO)
+    assert not is_input_locked({"theta_m": rest, "theta_l": turns / RATIO * 10.0, "tau_l": torque}, RATIO)  # it is dead
     assert not is_input_locked({"theta_m": RATIO * wound, "theta_l": rest, "tau_l": torque}, RATIO)
     assert not is_input_locked({"theta_m": rest, "theta_l": 1e-6 * torque / 20.0, "tau_l": torque}, RATIO)
     assert not is_input_locked({"theta_m": rest, "theta_l": wound, "tau_l": None}, RATIO)

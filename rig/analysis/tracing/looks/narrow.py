@@ -38,8 +38,8 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     the library has it still."""
     gear = so_far.solution.design.eq.runs[0].pieces[0].gear
     hz = max(BELOW * held_frequency(gear.K, gear.J_l) / TURN, SLOWEST)
-    again = read_again(so_far.p.campaign, narrow=hz)
-    if again is None or hz >= so_far.fitted_runs[0].smoother.sigma_hz:
+    lower = hz < so_far.fitted_runs[0].smoother.sigma_hz
+    if not lower or (again := read_again(so_far.p.campaign, narrow=hz)) is None:
         return so_far, found
     try:
         other, ranked = searched(prepare(again, hold_out))
