@@ -19,7 +19,7 @@ WINDS_UP: Final = 0.02  # rad of the motor: a standstill's reading wanders by le
 
 
 def is_input_locked(columns: Mapping[str, Array | None], ratio: float) -> bool:
-    """Whether the load went a little and the motor stood, of a run in which both angles and the shaft torque were read."""
+    """Whether the load went a little and the motor stood, of a run in which both angles and the torque were read."""
     theta_m, theta_l, tau_l = (columns.get(name) for name in ("theta_m", "theta_l", "tau_l"))
     if theta_m is None or theta_l is None or tau_l is None:
         return False
