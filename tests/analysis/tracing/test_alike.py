@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.runs.alike import alike
 
+TURNS: Any = {"input_locked": False, "wound": lambda piece: piece.theta_m}
 DT, STEP = 0.004, 0.014  # s; rad, how far a motor that sticks goes at once
 
 
@@ -20,7 +21,7 @@ def lock_test(reach: float, seconds: float, seed: int) -> Any:
     slips = STEP * np.round((smooth + 0.003 * np.sin(t + rng.uniform(0, 6))) / STEP)
     theta = slips + 1e-4 * rng.integers(0, 2, t.size)
     piece = SimpleNamespace(theta_m=theta, omega_m=np.gradient(theta, DT), t=t, dt=DT)
-    return SimpleNamespace(said="stiffness_lock", has=frozenset(), locked=True, pieces=(piece,))
+    return SimpleNamespace(said="stiffness_lock", has=frozenset(), locked=True, pieces=(piece,), **TURNS)
 
 
 def turning(speed: float, torque: float = 0.0) -> Any:
@@ -30,7 +31,7 @@ def turning(speed: float, torque: float = 0.0) -> Any:
         theta_m=speed * t, omega_m=np.full(t.size, speed), way=np.full(t.size, np.sign(speed)), t=t, dt=DT
     )
     return SimpleNamespace(
-        said="kinematic_error", has=frozenset({"tau_l"}), locked=False, mean_torque=torque, pieces=(piece,)
+        said="kinematic_error", has=frozenset({"tau_l"}), locked=False, mean_torque=torque, pieces=(piece,), **TURNS
     )
 
 

@@ -30,7 +30,9 @@ def test_the_slopes_are_its_derivatives() -> None:
 def test_a_channel_says_something_of_what_was_measured_and_reversals_need_the_torque_sensor(
     missing: set[str], said: str
 ) -> None:
-    run: Any = SimpleNamespace(procedure="kinematic_error", locked=False, knows=MEASURED - missing, is_wound=False)
+    run: Any = SimpleNamespace(
+        procedure="kinematic_error", locked=False, input_locked=False, knows=MEASURED - missing, is_wound=False
+    )
     assert "".join(channel for channel in "AMRL" if is_measured(run, channel)) == said
 
 
@@ -38,6 +40,7 @@ def test_of_a_lock_test_without_a_torque_sensor_the_angles_are_spent_on_the_torq
     run: Any = SimpleNamespace(
         procedure="stiffness_lock",
         locked=True,
+        input_locked=False,
         knows=MEASURED - {"tau_l"},
         is_wound=True,
         look=SimpleNamespace(held_load=False),

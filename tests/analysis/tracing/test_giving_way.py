@@ -40,7 +40,9 @@ def lock_test(angle: Any, torque: float = 60.0) -> Any:
     noise = 2e-6 * np.random.default_rng(int(torque)).standard_normal(T.size)
     piece = SimpleNamespace(t=T, theta_l=angle(tau) + noise, tau_l=tau)
     smoother = Smoother(16.0, 0.004, 2)
-    return SimpleNamespace(locked=True, has={"theta_m", "theta_l", "tau_l"}, pieces=(piece,), smoother=smoother)
+    return SimpleNamespace(
+        locked=True, input_locked=False, has={"theta_m", "theta_l", "tau_l"}, pieces=(piece,), smoother=smoother
+    )
 
 
 def still(tau: Array) -> Array:

@@ -28,6 +28,8 @@ def run(speed: float, start: float) -> Any:
     said = f"kinematic_error [('speed', {speed})]"
     return SimpleNamespace(
         locked=False,
+        input_locked=False,
+        wound=lambda piece: piece.theta_m,
         name=f"{speed}_{start}",
         procedure="kinematic_error",
         said=said,

@@ -49,7 +49,9 @@ def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
     turns: float, locked: bool, left_out: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     piece = SimpleNamespace(theta_m=np.linspace(0.0, 2 * np.pi * turns, 50))
-    made = SimpleNamespace(pieces=(piece,), locked=locked, procedure="kinematic_error", has=frozenset[str]())
+    made = SimpleNamespace(
+        pieces=(piece,), locked=locked, input_locked=False, procedure="kinematic_error", has=frozenset[str]()
+    )
     monkeypatch.setattr(campaign, "record", lambda run, start, hz, look: made)
     found = campaign._record(cast(Any, SimpleNamespace(name="jog", path=Path("jog"), manifest={})), 0.0)
     assert (

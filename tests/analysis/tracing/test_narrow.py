@@ -17,10 +17,9 @@ def selected(*names: str, loud: bool = True, has: frozenset[str] = ALL - {"theta
     run = SimpleNamespace(
         has=has, locked=locked, smoother=SimpleNamespace(sigma_hz=36.0), pieces=[SimpleNamespace(gear=GEAR)]
     )
+    p = SimpleNamespace(campaign="campaign", floors={}, held_out=SimpleNamespace(residuals=lambda s, held: {}))
     s = SimpleNamespace(design=SimpleNamespace(eq=SimpleNamespace(runs=[run])))
-    return SimpleNamespace(
-        names=set(names), loud=loud, fitted_runs=[run], solution=s, p=SimpleNamespace(campaign="campaign")
-    )
+    return SimpleNamespace(names=set(names), loud=loud, fitted_runs=[run], solution=s, held=None, p=p)
 
 
 def test_it_is_asked_for_where_much_is_left_and_an_angle_or_a_torque_was_not_read() -> None:
@@ -33,20 +32,27 @@ def test_it_is_asked_for_where_much_is_left_and_an_angle_or_a_torque_was_not_rea
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "loud", "counts"),
+    ("before", "after", "loud", "inside", "counts"),
     [
-        ((), (), False, True),
-        (("error_by_speed",), (), False, True),  # no name of the library
-        (("torque_ripple",), (), False, False),
-        (("torque_ripple",), ("torque_ripple", "cogging_torque"), False, True),
-        ((), ("torque_ripple",), True, False),
+        ((), (), False, False, True),
+        ((), (), False, True, False),  # an order that is in the floor of slow rows too
+        (("error_by_speed",), (), False, False, True),  # no name of the library
+        (("torque_ripple",), (), False, False, False),
+        (("torque_ripple",), ("torque_ripple", "cogging_torque"), False, False, True),
+        ((), ("torque_ripple",), True, False, False),
     ],
 )
 def test_it_counts_where_it_leaves_nothing_and_takes_no_name_away(
-    monkeypatch: pytest.MonkeyPatch, before: tuple[str, ...], after: tuple[str, ...], loud: bool, counts: bool
+    monkeypatch: pytest.MonkeyPatch,
+    before: tuple[str, ...],
+    after: tuple[str, ...],
+    loud: bool,
+    inside: bool,
+    counts: bool,
 ) -> None:
     asked: list[float] = []
     monkeypatch.setattr(narrow, "read_again", lambda campaign, narrow: asked.append(narrow) or campaign)
+    monkeypatch.setattr(narrow, "hidden", lambda *_: "an order" if inside else None)
     monkeypatch.setattr(narrow, "prepare", lambda campaign, hold_out: None)
     other = selected(*after, loud=loud)
     monkeypatch.setattr(narrow, "searched", lambda p: (other, "ranked"))

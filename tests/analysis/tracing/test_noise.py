@@ -190,6 +190,7 @@ def log_at(speed: float) -> Any:
     piece = SimpleNamespace(t=t, dt=0.02, theta_m=speed * t, omega_m=np.full(t.size, speed), way=np.ones(t.size))
     run = run_at(speed, 0.0)
     run.said, run.procedure, run.counts_m = "other []", "other", 0.0
+    run.input_locked, run.wound = False, lambda piece: piece.theta_m
     piece.torque = run.pieces[0].torque
     run.pieces = (piece,)
     return run

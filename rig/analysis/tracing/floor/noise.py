@@ -17,7 +17,7 @@ from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
-from rig.analysis.tracing.runs.alike import moved_alike, repeats
+from rig.analysis.tracing.runs.alike import as_fast, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
@@ -188,7 +188,7 @@ def _alone(
     if channel != "A":
         return []
     compared = {i for s in found for i in s.pair}
-    rest = [i for i in among if (i, channel) in e and not any(moved_alike(eq.runs[i], eq.runs[j]) for j in compared)]
+    rest = [i for i in among if (i, channel) in e and not any(as_fast(eq.runs[i], eq.runs[j]) for j in compared)]
     return [s for i in rest if (s := neighbours(eq, e, (i, channel))) is not None]
 
 

@@ -11,7 +11,7 @@ from scipy.special import fdtri
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.offsets import ENOUGH
-from rig.analysis.tracing.runs.alike import alike, moved_alike
+from rig.analysis.tracing.runs.alike import alike, as_fast
 from rig.analysis.tracing.thresholds import CHANCE, GAIN, LENIENT, MISSING
 from rig.model.effect import Array
 
@@ -78,7 +78,7 @@ def gain_of(measured: Measured, eq: Equations, key: Key) -> float:
     run, channel = key
     if channel != "A" or key in measured.by_run or "tau_l" not in eq.runs[run].has:
         return 0.0
-    like = [i for i, c in measured.by_run if c == channel and moved_alike(eq.runs[i], eq.runs[run])]
+    like = [i for i, c in measured.by_run if c == channel and as_fast(eq.runs[i], eq.runs[run])]
     shown = max((_swing(eq, i) for i in like), default=0.0)
     unseen = float(np.sqrt(max(1.0 - (shown / max(_swing(eq, run), 1e-9)) ** 2, 0.0)))
     return GAIN * unseen / eq.runs[run].pieces[0].gear.K
@@ -101,7 +101,7 @@ def _compared(measured: Measured, eq: Equations, key: Key) -> float:
         return measured.by_run[key]
     run, channel = key
     known = {i: v for (i, c), v in measured.by_run.items() if c == channel}
-    like = [v for i, v in known.items() if moved_alike(eq.runs[i], eq.runs[run])]
+    like = [v for i, v in known.items() if as_fast(eq.runs[i], eq.runs[run])]
     usual = {i: v for i, v in known.items() if (i, channel) not in measured.apart}
     same = {i: v for i, v in usual.items() if eq.runs[i].procedure == eq.runs[run].procedure}
     if like:

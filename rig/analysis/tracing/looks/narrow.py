@@ -16,6 +16,7 @@ from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, read_again
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
+from rig.analysis.tracing.selection.hidden import hidden
 from rig.analysis.tracing.selection.selected import Selected
 from rig.core.errors import UsageError
 from rig.core.units import TURN
@@ -34,8 +35,8 @@ def wanted(selected: Selected) -> bool:
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
-    """The whole search again through a lower low-pass. It counts where that leaves nothing, and all that had a name of
-    the library has it still."""
+    """The whole search again through a lower low-pass. It counts where that leaves nothing, hides nothing, and all that
+    had a name of the library has it still."""
     gear = so_far.solution.design.eq.runs[0].pieces[0].gear
     hz = max(BELOW * held_frequency(gear.K, gear.J_l) / TURN, SLOWEST)
     lower = hz < so_far.fitted_runs[0].smoother.sigma_hz
@@ -46,4 +47,11 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     except UsageError:  # too few rows, or an inertia below nothing: what was told stands as well
         return so_far, found
     named = so_far.names - CONFOUNDERS.keys()
-    return (other, ranked) if not other.loud and other.names >= named else (so_far, found)
+    counts = not other.loud and other.names >= named and _is_all(other)
+    return (other, ranked) if counts else (so_far, found)
+
+
+def _is_all(selected: Selected) -> bool:
+    """Whether nothing is hidden in its floor either: that was told better by all there is to compare."""
+    p, s = selected.p, selected.solution
+    return hidden(p, s, p.held_out.residuals(s, selected.held), p.floors) is None

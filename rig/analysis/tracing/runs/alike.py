@@ -42,7 +42,12 @@ def alike(a: Recording, b: Recording) -> bool:
 
 def moved_alike(a: Recording, b: Recording) -> bool:
     """The same, whatever the torque reads."""
-    if a.said != b.said or a.has != b.has or a.locked != b.locked or _heading(a) * _heading(b) < 0:
+    return _heading(a) * _heading(b) >= 0 and as_fast(a, b)
+
+
+def as_fast(a: Recording, b: Recording) -> bool:
+    """The same, whichever way round."""
+    if a.said != b.said or a.has != b.has or a.locked != b.locked:
         return False
     if a.input_locked is not b.input_locked or (a.input_locked and abs(_held_at(a) - _held_at(b)) > SAME_ANGLE):
         return False
