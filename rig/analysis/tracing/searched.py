@@ -30,6 +30,7 @@ from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 
 DRIFT: Final = ThermalFrictionDrift.name
 WARMS: Final = 30.0  # nats, of friction that warms: with less it is not asked for below the floor
+SCATTERS: Final = 0.5  # of the floor, how far friction lies apart from run to run, RMS: clean rigs have a tenth
 OTHER: Final = 0.05  # relative, of the gear: an inertia that ran away had gone by 0.15
 
 
@@ -102,7 +103,11 @@ def _warmer(selected: Selected, found: Found, runs: Sequence[int], covered: Reac
     that it is in the floor of the motor's torque, and never above it. It counts where it is as certain as it would have
     to be by itself."""
     drift = next((r for r in found.ranking if r.term.name == DRIFT and r.evidence > WARMS), None)
-    if drift is None or selected.loud or not selected.names or DRIFT in selected.names | selected.taken:
+    measured = selected.p.measured
+    scatters = measured.friction.square > (SCATTERS * measured.noise.sigma["M"]) ** 2
+    if not scatters or drift is None or selected.loud or not selected.names:
+        return None
+    if DRIFT in selected.names | selected.taken:
         return None
     s = settled(refine(selected.solution.design, drift.term, runs, covered)[1], runs, covered)
     again, s = beside(selected.p, s, covered)

@@ -20,18 +20,20 @@ def selected(*names: str, loud: bool = False) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("evidence", "before", "loud", "after", "certain", "counts"),
+    ("scatter", "evidence", "before", "loud", "after", "certain", "counts"),
     [
-        (107.0, ("crosstalk",), False, ("crosstalk", DRIFT), True, True),
-        (107.0, ("crosstalk",), False, ("crosstalk", DRIFT), False, False),
-        (107.0, ("crosstalk",), False, (DRIFT,), True, False),  # takes another one's name
-        (20.0, ("crosstalk",), False, ("crosstalk", DRIFT), True, False),  # hardly any evidence
-        (107.0, (), False, (DRIFT,), True, False),  # by itself it is asked for elsewhere
-        (107.0, ("crosstalk",), True, ("crosstalk", DRIFT), True, False),  # something is left: asked for there
+        (4.7, 107.0, ("crosstalk",), False, ("crosstalk", DRIFT), True, True),
+        (4.7, 107.0, ("crosstalk",), False, ("crosstalk", DRIFT), False, False),
+        (0.6, 107.0, ("crosstalk",), False, ("crosstalk", DRIFT), True, False),  # repeats differ by no friction
+        (4.7, 107.0, ("crosstalk",), False, (DRIFT,), True, False),  # takes another one's name
+        (4.7, 20.0, ("crosstalk",), False, ("crosstalk", DRIFT), True, False),  # hardly any evidence
+        (4.7, 107.0, (), False, (DRIFT,), True, False),  # by itself it is asked for elsewhere
+        (4.7, 107.0, ("crosstalk",), True, ("crosstalk", DRIFT), True, False),  # something is left: asked for there
     ],
 )
 def test_it_counts_where_it_is_as_certain_as_by_itself(
     monkeypatch: pytest.MonkeyPatch,
+    scatter: float,
     evidence: float,
     before: tuple[str, ...],
     loud: bool,
@@ -50,6 +52,10 @@ def test_it_counts_where_it_is_as_certain_as_by_itself(
     monkeypatch.setattr(searched, "is_certain", lambda one, floors: certain and floors == "first")
     ranking = [SimpleNamespace(term=SimpleNamespace(name=DRIFT), evidence=evidence)]
     found: Any = SimpleNamespace(ranking=ranking)
-    got = searched._warmer(selected(*before, loud=loud), found, (), nothing)  # type: ignore[arg-type]
+    stands = selected(*before, loud=loud)
+    stands.p.measured = SimpleNamespace(
+        friction=SimpleNamespace(square=scatter**2), noise=SimpleNamespace(sigma={"M": 4.0})
+    )
+    got = searched._warmer(stands, found, (), nothing)  # type: ignore[arg-type]
     assert (got is other) is counts
     assert asked in ([], [True])
