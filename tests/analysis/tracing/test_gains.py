@@ -15,7 +15,8 @@ from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.runs.record import record
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.thresholds import ALONE
 from rig.runfile.run import Run
 from tests.analysis.tracing.spiked import Columns, spiked

@@ -12,7 +12,7 @@ import pytest
 from rig.analysis.tracing.floor.held_out import unseen
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.analysis.tracing.runs.recording import record
+from rig.analysis.tracing.runs.record import record
 from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded
 from rig.analysis.tracing.trace import trace
 from rig.runfile.run import Run

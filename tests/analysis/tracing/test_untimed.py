@@ -8,7 +8,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.runs.record import record
+from rig.analysis.tracing.runs.recording import Recording
 from rig.runfile.run import Run
 
 

@@ -25,7 +25,7 @@ from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Reach
 
 MOST: Final = 77_000  # rows of the fitted runs in a channel that are all searched: half an hour of campaign
-LEFT: Final = 60_000  # of more than those: what is found is then fitted to all rows again, and may as well be few
+LEFT: Final = 40_000  # of more than those: what is found is then fitted to all rows again, and may as well be few
 PERIOD: Final = 12.0  # s from one stretch to the next: a slow motor turns twice
 FEWEST: Final = 2000  # rows of a run in all its channels: of fewer none are left out
 WORTH: Final = 0.9  # of a run's rows: a shortened one is a copy

@@ -19,7 +19,8 @@ from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.mixed import mixed
 from rig.analysis.tracing.runs.odd_torques import odd_torques
-from rig.analysis.tracing.runs.recording import Recording, record
+from rig.analysis.tracing.runs.record import record
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once

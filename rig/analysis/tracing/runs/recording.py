@@ -8,31 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
-from rig.analysis.motion.smallest_step import smallest_step
-from rig.analysis.motion.source import Motion, Source, motion_of
-from rig.analysis.motion.tame import Tame
-from rig.analysis.tracing.runs.clocked import is_clocked, slowed
-from rig.analysis.tracing.runs.declared import believed, is_locked, locked_all_the_same, stated, states
-from rig.analysis.tracing.runs.grid import grid, is_even, joined, refuse_other_time, refuse_sparse, uniform
-from rig.analysis.tracing.runs.holes import without_holes
-from rig.analysis.tracing.runs.input_locked import is_input_locked
-from rig.analysis.tracing.runs.late import earlier
-from rig.analysis.tracing.runs.look import FIRST, Look
-from rig.analysis.tracing.runs.meanings import computed_torque
-from rig.analysis.tracing.runs.resolution import noise_of, quiet
-from rig.analysis.tracing.runs.sliding import direction
-from rig.analysis.tracing.runs.smoothing import Smoother, flat, flat_rate, thin
-from rig.analysis.tracing.runs.stamped import evened
-from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing, substituted
-from rig.analysis.tracing.thresholds import BANDWIDTH, FASTER, RATE
-from rig.core.drivetrain import RATIOS
-from rig.core.errors import UsageError
+from rig.analysis.tracing.runs.derived import derived
+from rig.analysis.tracing.runs.look import Look
+from rig.analysis.tracing.runs.smoothing import Smoother, flat
+from rig.analysis.tracing.runs.stand_ins import in_stand_ins, reloaded, rewound, rubbing
 from rig.core.once import Once
 from rig.model.effect import MEASURED, Array, Known, Signals
-from rig.runfile.run import Run
 
 MOVES = 0.05  # of its fastest, below which a run rests
-TAMEST = 1 / 7  # of the sample rate: the widest low-pass whose second derivative is free of aliases
 
 
 @dataclass(frozen=True)
@@ -140,168 +123,6 @@ def mean_way(run: Recording) -> float:
     return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
 
 
-def record(whole_run: Run, start: float, hz: float | None = None, look: Look = FIRST) -> Recording:
-    """Read the columns the tracer uses; what is absurd counts as missing. Rows of a run without a time that declares
-    its speed come `hz` times a second, where that is known. A fast `look` takes more of them. Raises UsageError when
-    the run has no angle it can use, rows too far apart or too close, or a ratio no gear has.
-    """
-    run = Tame(whole_run)
-    _refuse_ratio(run.ratio)
-    motion = motion_of(run)
-    refuse_other_time(run.column("t"), motion)
-    channels, breaks, holes = without_holes(_channels(run, motion), motion.breaks if motion else ())
-    clocked = is_clocked(run)
-    if hz is not None and clocked:
-        channels["t"] = np.arange(next(x.size for x in channels.values() if x is not None)) / hz
-    has = frozenset(name for name, values in channels.items() if values is not None)
-    rows = next((x.size for x in channels.values() if x is not None), whole_run.rows)
-    t, dt, steady = grid(channels["t"], rows, run)
-    refuse_sparse(rows, dt)
-    t, stamps = evened(t, channels["theta_m"] if channels["theta_m"] is not None else channels["theta_l"], dt)
-    dt = float(np.median(np.diff(t))) if stamps else dt
-    whole = {name: np.full(rows, np.nan) if c is None else c for name, c in channels.items() if name != "t"}
-    uneven = None if is_even(t, dt) else t
-    held = is_input_locked(channels, run.ratio)
-    encoders = run.manifest.get("encoders") or {}
-    factor, smoother = _smoothing(channels["theta_m"], dt, encoders, look)
-    tau_ext = stated(run.conditions, "tau_ext", 0.0)
-    whole = {name: _forward(name, x, look, dt) for name, x in whole.items()}
-    made = [
-        _piece(t[lo:hi], {n: c[lo:hi] for n, c in whole.items()}, dt, factor, smoother, run, start, tau_ext, "t" in has)
-        for lo, hi in joined(t, whole["theta_m"], dt, breaks, steady)
-    ]
-    if hz is not None and "t" not in has and run.procedure == "kinematic_error":
-        made = [piece if piece is None else slowed(piece) for piece in made]
-    return Recording(
-        name=run.name,
-        procedure=run.procedure,
-        said=f"{run.procedure} {sorted((k, v) for k, v in run.conditions.items() if k != 'note')}",
-        locked=is_locked(run) or held,
-        start=start,
-        ratio=run.ratio,
-        pieces=tuple(piece for piece in made if piece is not None),
-        smoother=smoother,
-        has=has,
-        counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
-        counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
-        rate=1 / dt,
-        thinned=factor,
-        noise={n: noise_of(n, c, encoders, uneven) / float(np.sqrt(factor)) for n, c in whole.items() if n in has},
-        notes=(
-            *run.notes,
-            *(() if held else locked_all_the_same(run)),
-            *_noted(motion, holes, stamps),
-            *computed_torque(whole_run),
-        ),
-        input_locked=held,
-        step_m=0.0 if channels["theta_m"] is None else smallest_step(channels["theta_m"]),
-        step_l=0.0 if channels["theta_l"] is None else smallest_step(channels["theta_l"]),
-        speed_rpm=abs(stated(run.conditions, "speed_rpm", 0.0)),
-        load_stated=states(run.conditions, "tau_ext"),
-        clocked=hz is not None and clocked,
-        declared={n: abs(s) for n in ("K", "J_m", "J_l") if (s := stated(run.declared, n, 0.0))},
-        look=look,
-    )
-
-
-def _smoothing(theta_m: Array | None, dt: float, encoders: Mapping[str, float], look: Look) -> tuple[int, Smoother]:
-    """One of how many rows, `dt` apart, is worked with, and the low-pass: twice as many and as wide as usual where a
-    `look` is fast, and narrower where it says so or the motor's encoder is coarse."""
-    often, narrow = FASTER if look.fast else 1.0, look.narrow or np.inf
-    factor = max(1, round(1 / dt / (often * RATE)))
-    work = dt * factor
-    sigma, of_the_motor = (
-        min(TAMEST / work, narrow, quiet(theta_m, encoders, width)) for width in (often * BANDWIDTH, BANDWIDTH)
-    )
-    return factor, Smoother(sigma, work, 2 if 1 / work > 3 * sigma else 1, of_the_motor)
-
-
-def _noted(motion: Motion | None, *said: str) -> list[str]:
-    """What was noted of a run's motion, and what is `said` of rows that are missing and of its time, if anything."""
-    return [*(motion.notes if motion else ()), *filter(None, said)]
-
-
-def _channels(run: Source, motion: Motion | None) -> dict[str, Array | None]:
-    names = ("tau_m", "tau_l", "temperature")
-    if motion is None:
-        found = {name: _there(run.column(name)) for name in (*names, "theta_l")}
-        return {"t": run.column("t"), "theta_m": None, **found}
-    picked = {name: _there(motion.pick(run.column(name))) for name in names}
-    return {"t": motion.t, "theta_m": motion.theta_m, "theta_l": motion.theta_l, **picked}
-
-
-def _forward(name: str, x: Array, look: Look, dt: float) -> Array:
-    """A column as it is looked at, its rows `dt` apart."""
-    late = {"tau_l": look.late_torque, "theta_l": look.late_load}.get(name, 0.0)
-    return earlier(x, late / dt) if late else x
-
-
-def _there(x: Array | None) -> Array | None:
-    """A column of which most is numbers; one of mostly holes is no measurement."""
-    return x if x is not None and float(np.mean(np.isfinite(x))) > 0.5 else None
-
-
-def _refuse_ratio(ratio: float) -> None:
-    if not RATIOS[0] <= ratio <= RATIOS[1]:
-        raise UsageError(f"gear.ratio is {ratio:g}, expected {RATIOS[0]:g} to {RATIOS[1]:g}")
-
-
-def _piece(
-    t: Array,
-    c: dict[str, Array],
-    dt: float,
-    factor: int,
-    smooth: Smoother,
-    run: Source,
-    start: float,
-    tau_ext: float,
-    timed: bool,
-) -> Signals | None:
-    """One piece at the working rate."""
-    c = {name: uniform(t, x, dt) for name, x in c.items()}
-    first = t[0]
-    if factor > 1:
-        thinned = {name: thin(x, factor) for name, x in c.items()}
-        first += thinned["theta_m"][1] * dt
-        c = {name: x for name, (x, _) in thinned.items()}
-    n = c["theta_m"].size
-    if n < 10 * smooth.half:
-        return None
-    c = substituted(c, smooth.dt, run, tau_ext, timed)
-    time = start + first + smooth.dt * np.arange(n)
-    derived = _derived(c, smooth)
-    return Signals(
-        t=time,
-        dt=smooth.dt,
-        ratio=run.ratio,
-        theta_m=c["theta_m"],
-        theta_l=c["theta_l"],
-        tau_m=c["tau_m"],
-        tau_l=c["tau_l"],
-        tau_ext=np.full(n, tau_ext),
-        way=direction(smooth.same(c["theta_m"], 1), smooth.dt),
-        temperature=c["temperature"],
-        gear=believed(run),
-        thinned=factor,
-        past=(),
-        cut=None,
-        **derived,
-    )
-
-
-def _derived(c: Mapping[str, Array], smooth: Smoother) -> dict[str, Array]:
-    """Speeds, accelerations and the smooth torque from readings at the working rate."""
-    dt = smooth.dt
-    return {
-        "omega_m": flat_rate(c["theta_m"], dt, 1),
-        "alpha_m": flat_rate(c["theta_m"], dt, 2),
-        "omega_l": flat_rate(c["theta_l"], dt, 1),
-        "alpha_l": flat_rate(c["theta_l"], dt, 2),
-        "torque": flat(c["tau_l"]),
-        "torque_rate": flat_rate(c["tau_l"], dt, 1),
-    }
-
-
 def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tuple[Signals, ...]:
     """Every piece changed; of parts, what they were cut from."""
     wholes: dict[int, Signals] = {}
@@ -331,5 +152,7 @@ def _noisier(piece: Signals, run: Recording, rng: np.random.Generator) -> Signal
     added = {n: s * rng.standard_normal(piece.t.size) for n, s in run.noise.items() if hasattr(piece, n)}
     added |= in_stand_ins(added, piece, dt, run.locked, "t" in run.has)
     c = {n: getattr(piece, n) + added.get(n, 0.0) for n in ("theta_m", "theta_l", "tau_m", "tau_l")}
-    derived = _derived(c, run.smoother)
-    return replace(piece, **{**c, **derived, "torque": piece.torque + flat(added.get("tau_l", np.zeros(piece.t.size)))})
+    return replace(
+        piece,
+        **{**c, **derived(c, run.smoother), "torque": piece.torque + flat(added.get("tau_l", np.zeros(piece.t.size)))},
+    )
