@@ -17,6 +17,7 @@ from rig.model.effect.known import Known
 Array = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.int64]
 
+COLD: Final = 7200.0  # s of rest after which a drive is cold again: of a warm-up of 40 min a twentieth is left
 ALIKE: Final = 1e-9  # relative: what rounding leaves of two speeds of which one was made from the other
 
 
@@ -86,6 +87,18 @@ class Signals(Once):
                 since, until = np.maximum(self.t - run.start, 0.0), np.maximum(self.t - run.end, 0.0)
                 out += power * t_w * (np.exp(-until / t_w) - np.exp(-since / t_w))
         return out
+
+    @cached_property
+    def in_use(self) -> Array:
+        """s since the drive was last cold, (n,): since the campaign began, or the first run after a long rest."""
+        began, still = 0.0, -math.inf
+        for run in sorted(self.past, key=lambda run: run.start):
+            if self.t.size and run.start > self.t[0]:
+                break
+            if run.start - still > COLD and still > -math.inf:
+                began = run.start
+            still = max(still, run.end)
+        return np.maximum(self.t - began, 0.0)
 
     @cached_property
     def _series(self) -> tuple[Array, ...]:

@@ -16,13 +16,14 @@ CLOCK, HEAT, SOAK, LOGGED = 0.0, 1.0, 2.0, 3.0
 class ThermalFrictionDrift(Effect):
     """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in one of four laws:
 
-    0: c = exp(−t/t_w), t since the campaign began      [wolf2018]
+    0: c = exp(−t/t_w), t since the campaign began, or since it went on after a night      [wolf2018]
     1: c = exp(−β·H(t)), H the heat of its own friction, which leaks with t_w: fast runs warm it, pauses cool it
     2: c = exp(−√(t/t_w)), heat that soaks into a thick body: fast at first, for long after
     3: c = −s·(1 − exp(−(Θ − 20 °C)/s)), Θ a logged temperature: what the friction loses per kelvin at 20 °C, less and
        less as it gets warm, by e over s; s takes the place of t_w
 
-    What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on.
+    What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on;
+    after a rest of hours the drive is cold.
 
     An oil whose viscosity falls by e over some kelvins has friction F·exp(−a·(1 − exp(−t/t_w))), a = ln(1 + τ_1/τ_c)
     where all of it falls alike. No run of a campaign tells that from law 0 with a t_w that is shorter, by up to a/2
@@ -80,7 +81,7 @@ class ThermalFrictionDrift(Effect):
                 -(np.nan_to_num(signals.temperature, nan=self.REFERENCE) - self.REFERENCE) / scale
             )
         else:
-            cold = np.exp(-((np.maximum(signals.t, 0.0) / t_w) ** (0.5 if law == SOAK else 1.0)))
+            cold = np.exp(-((signals.in_use / t_w) ** (0.5 if law == SOAK else 1.0)))
         return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
 
     def plausible(self, fit: Fit) -> bool:

@@ -17,6 +17,7 @@ from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
+from rig.analysis.tracing.floor.stroke_by_stroke import beside_the_angle
 from rig.analysis.tracing.runs.alike import as_fast, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.thresholds import TURNED_BACK
@@ -100,7 +101,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         compared = [*_alone(eq, e, channel, among, found), *found]
         by_run |= {(i, channel): max(s.rms, least) for s in compared for i in s.pair}
         free |= {(i, channel): s.freedom for s in found for i in s.pair}
-        by_run |= _never_compared(eq, e, channel, among, found)
+        by_run |= _never_compared(eq, e, channel, among, found, friction)
         local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     if eq.runs[0].look.zeros and (scatter_of_zeros := about_a_line(solution)) is not None:
@@ -193,12 +194,22 @@ def _alone(
 
 
 def _never_compared(
-    eq: Equations, e: Mapping[Key, Array], channel: str, among: Sequence[int], found: Sequence[Scatter]
+    eq: Equations,
+    e: Mapping[Key, Array],
+    channel: str,
+    among: Sequence[int],
+    found: Sequence[Scatter],
+    friction: Scattering,
 ) -> dict[Key, float]:
-    """In M, locked runs of which no two were compared: all that is left of them counts as noise.
+    """In M, locked runs of which no two were compared: what is left of each beside what goes with the angle and the
+    way counts as noise, and how far friction lies apart from run to run.
 
     A motor that creeps against a spring sticks and slips: its friction is no other run's, and tells nothing of theirs.
     """
     compared = {eq.runs[i].procedure for s in found for i in s.pair}
-    rest = [i for i in among if eq.runs[i].locked and eq.runs[i].procedure not in compared]
-    return {(i, "M"): float(np.sqrt(np.mean(e[i, "M"] ** 2))) for i in rest if channel == "M" and (i, "M") in e}
+    keys = [(i, "M") for i in among if eq.runs[i].locked and eq.runs[i].procedure not in compared]
+    return {
+        key: float(np.sqrt(np.mean(beside_the_angle(eq.rows[key].theta_m, e[key]) ** 2) + friction.of(eq.runs[key[0]])))
+        for key in keys
+        if channel == "M" and key in e
+    }

@@ -1,7 +1,8 @@
 """At means of the motor torque: where every repeat needs less than the one before it, none has a mean of its own.
 
 How far a run's mean lies from the others' is read from repeats, and is the run's own. Of a drive that warms while all
-conditions are gone through once, and then once more, that is the warming itself, and little of it is within a run.
+conditions are gone through once, and then once more, that is the warming itself, and little of it is within a run. Of
+one that is cold again the next day repeats tell nothing, and all runs together do.
 """
 
 from __future__ import annotations
@@ -15,22 +16,32 @@ import numpy as np
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.offsets import offset
 from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.rest.drifting_zeros import constants, falling, foretold
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.campaign import Campaign, looking
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
+from rig.model.effect import Array
 from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 
 WARMING: Final = ThermalFrictionDrift.name
 FEWEST: Final = 4  # pairs of repeats
+MANY: Final = 10  # runs that go one way: three numbers are their speed's, two the use's
+LEFT: Final = 0.5  # of what runs' friction differs by beside their speed: of one time constant a fifth is left
 WIDE: Final = 2.0  # times the noise, how far repeats lie apart
 
 
 def wanted(selected: Selected) -> bool:
-    """Whether the later of two repeats has less friction throughout, by far more than noise, and nothing says why."""
+    """Whether the later of two repeats has less friction throughout, by far more than noise, or all runs have the less
+    the longer the drive has been in use, and nothing says why."""
+    return WARMING not in selected.names and (_less_each_time(selected) or _less_with_use(selected))
+
+
+def _less_each_time(selected: Selected) -> bool:
     s = selected.solution
     noise = s.design.eq.noise
-    if WARMING in selected.names or not noise.local["M"] > WIDE * noise.sigma["M"]:
+    if not noise.local["M"] > WIDE * noise.sigma["M"]:
         return False
     runs = s.design.eq.runs
     pairs = [sorted(pair, key=lambda i: runs[i].start) for pair in repeats(runs, selected.p.split.fitted)]
@@ -38,9 +49,38 @@ def wanted(selected: Selected) -> bool:
     return len(gone) >= FEWEST and max(gone) < 0
 
 
+def _less_with_use(selected: Selected) -> bool:
+    """Of runs that go one way, beside what their speed makes; repeats on another day are as long after its start, and
+    tell nothing of it."""
+    eq = selected.solution.design.eq
+    runs = [i for i in range(len(eq.runs)) if _turns_one_way(selected, i, i)]
+    if len(runs) < MANY:
+        return False
+    friction = np.array([_friction(selected, i) for i in runs])
+    speed = np.array([eq.runs[i].turning for i in runs])
+    by_speed = np.stack([np.ones(speed.size), speed, speed**2], 1)
+    _, _, before = foretold(by_speed, by_speed, friction)
+    colder = _colder_in_use([eq.runs[i] for i in runs]) + _colder_by_heat([eq.runs[i] for i in runs])
+    tried = [np.hstack([by_speed, cold[:, None]]) for cold in colder]
+    _, fit, after = min((foretold(z, z, friction) for z in tried), key=lambda found: found[2])
+    return bool(fit[-1] > 0 and after < LEFT * before)
+
+
+def _colder_in_use(runs: Sequence[Recording]) -> list[Array]:
+    """How cold the drive is in each of `runs`, (n,), as it warms by the clock, with several time constants."""
+    used = np.array([np.mean([np.mean(piece.in_use) for piece in run.pieces]) for run in runs])
+    return [falling(used, tau)[:, 1] for tau in constants(max(float(np.ptp(used)), 1.0))]
+
+
+def _colder_by_heat(runs: Sequence[Recording]) -> list[Array]:
+    """The same as it warms by its own friction."""
+    leaks = ThermalFrictionDrift.LEAKS
+    return [-np.array([np.mean([np.mean(p.heat(t_w)) for p in run.pieces]) for run in runs]) for t_w in leaks]
+
+
 def _turns_one_way(selected: Selected, a: int, b: int) -> bool:
     eq = selected.solution.design.eq
-    return all((i, "M") in selected.solution.keys and abs(_way(eq.runs[i].pieces)) == 1.0 for i in (a, b))
+    return all((i, "M") in eq.rows and not eq.runs[i].locked and abs(_way(eq.runs[i].pieces)) == 1.0 for i in (a, b))
 
 
 def _way(pieces: Sequence[object]) -> float:
@@ -54,8 +94,8 @@ def _friction(selected: Selected, run: int) -> float:
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """The same where no run's motor torque has a mean of its own. It counts where it names the warming beside all that
-    had a name, and explains everything."""
+    had a name, with what these means tell besides, as a drag, and explains everything."""
     looks = [replace(run.look, steady=True) for run in so_far.p.campaign.runs]
     other, ranked = searched(prepare(looking(campaign, looks), hold_out))
-    warm = not other.loud and other.names == {WARMING, *so_far.names}
+    warm = not other.loud and other.names >= {WARMING, *so_far.names}
     return (other, ranked) if warm else (so_far, found)

@@ -15,7 +15,7 @@ SAME_ANGLE = 0.1  # rad, of a motor that is locked: a spring is another one at a
 READINGS = 100  # of the angle of a locked run: a few for every stroke
 SAME_LOAD = 1.0  # N·m, how far the means of repeats lie apart: zeros of a sensor, friction that scatters
 ONE_WAY = 0.9  # of the rows, less those the other way
-SOON = 3.0  # times the usual gap between repeats: later ones may have drifted
+SOON = 3.0  # times the usual gap between repeats, and its own length: later ones may have drifted
 
 
 def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, int]]:
@@ -30,7 +30,7 @@ def repeats(runs: Sequence[Recording], among: Sequence[int]) -> list[tuple[int, 
             used |= {i, j}
             out.append((gap, i, j))
     usual = float(np.median([gap for gap, _, _ in out])) if out else 0.0
-    return [(i, j) for gap, i, j in out if gap <= SOON * usual]
+    return [(i, j) for gap, i, j in out if gap - min(runs[i].duration, runs[j].duration) <= SOON * usual]
 
 
 def alike(a: Recording, b: Recording) -> bool:
