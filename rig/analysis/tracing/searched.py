@@ -18,7 +18,7 @@ from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
 from rig.analysis.tracing.floor.vibration import VIBRATION
 from rig.analysis.tracing.prepared import Prepared, built
-from rig.analysis.tracing.selection.certain import is_calm, is_certain
+from rig.analysis.tracing.selection.certain import is_calm, is_calm_there, is_certain
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
 from rig.analysis.tracing.selection.further import select_further
 from rig.analysis.tracing.selection.select import select
@@ -43,7 +43,7 @@ def searched(p: Prepared) -> tuple[Selected, Found]:
     tried = Tried(p, with_lines(covered, start, runs))
     calm = quiet or is_calm(p)
     selected, found, covered = _selected(p, start, tried, quiet, calm)
-    if calm and not is_certain(selected, p.held_out):
+    if (calm and not is_certain(selected, p.held_out)) or is_calm_there(p, selected):
         found = Found(start, found.ranking)
         selected = select(p, found, runs, covered)
     del tried  # half a gigabyte, and the report is made by two processes

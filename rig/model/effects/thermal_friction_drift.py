@@ -89,9 +89,9 @@ class ThermalFrictionDrift(Effect):
         return bool(fit.coefficients[0] + self.AT * fit.coefficients[1] > 0)
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
-        """Also where it goes on for most of what was measured, or longer: then it is nearly a straight line, or a root,
-        of the time, and how long it would have gone on nobody can say."""
-        return super().is_scaled(scale, reach) or scale.value > reach.duration / 2
+        """Also where it may go on for most of what was measured, or longer: then it is nearly a straight line, or a
+        root, of the time, how long it would have gone on nobody can say, and an interval is as wide to either side."""
+        return super().is_scaled(scale, reach) or scale.ci95[1] > reach.duration / 2
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, its time constant, and what is gone after a while of it."""

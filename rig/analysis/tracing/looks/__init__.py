@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.looks import fast, gain, held_load, late_torque, narrow, reversals, warming, zeros
+from rig.analysis.tracing.looks import fast, gain, held_load, late_torque, means, narrow, reversals, zeros
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.selection.selected import Selected
 
-LOOKS = (late_torque, reversals, held_load, gain, zeros, warming, fast, narrow)
+LOOKS = (late_torque, reversals, held_load, gain, zeros, means, fast, narrow)
 
 
 def second_looks(

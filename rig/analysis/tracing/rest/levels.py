@@ -53,7 +53,7 @@ def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, floa
         return None
     runs = _runs(r)
     level = levels(runs.speed)
-    share = _between(runs.left, level)
+    share = between(runs.left, level)
     if share is None:
         return None
     edges = _edges(runs.speed, level)
@@ -95,7 +95,7 @@ def _edges(speed: Array, level: Index) -> Array:
     return np.asarray(np.sqrt(means[1:] * means[:-1]))
 
 
-def _between(left: Array, level: Index) -> float | None:
+def between(left: Array, level: Index) -> float | None:
     """The share of `left` (k,) that lies between levels; None where there are too few runs to tell, or chance does as
     much, or it is small beside the floor."""
     groups = [left[level == n] for n in np.unique(level)]

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.floor.held_out import HeldOut, unseen
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.selection.confounders import confounders_in
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, by_speed, is_loud
 from rig.analysis.tracing.selection.sizes import is_hardly_known
 from rig.analysis.tracing.thresholds import ALL, LESS, MISSING, PLAIN_TO_SEE, QUIET, SEEN, VOUCHED_FOR
+from rig.model.effect import Array
 
 
 def is_certain(selected: Selected, floors: HeldOut) -> bool:
@@ -46,5 +50,19 @@ def _is_plain_to_see(selected: Selected, score: HeldOutScore) -> bool:
 def is_calm(p: Prepared) -> bool:
     """Whether the baseline is at the floor on the held-out runs, and no speed has a friction of its own."""
     held = unseen(p.baseline, p.held_out)
-    most, one = p.held_out.beyond_chance(p.held_out.residuals(p.baseline, held))
-    return most < QUIET and one < MISSING and not by_speed(p, p.baseline, held)
+    return _is_at_the_floor(p, p.held_out.residuals(p.baseline, held)) and not by_speed(p, p.baseline, held)
+
+
+def is_calm_there(p: Prepared, selected: Selected) -> bool:
+    """Whether all that is selected are laws without a name, and the baseline is at the floor in every channel they act
+    in: what another channel has beyond its floor is no reason for them."""
+    channels = {c for score in selected.scores for _, c in score.ground}
+    if not channels or not selected.names <= CONFOUNDERS.keys():
+        return False
+    left = p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out))
+    return _is_at_the_floor(p, {key: e for key, e in left.items() if key[1] in channels})
+
+
+def _is_at_the_floor(p: Prepared, left: Mapping[Key, Array]) -> bool:
+    most, one = p.held_out.beyond_chance(left)
+    return most < QUIET and one < MISSING

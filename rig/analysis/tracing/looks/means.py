@@ -1,8 +1,9 @@
-"""At means of the motor torque: where every repeat needs less than the one before it, none has a mean of its own.
+"""At means of the motor torque: where friction goes with the time or the speed, none has a mean of its own.
 
 How far a run's mean lies from the others' is read from repeats, and is the run's own. Of a drive that warms while all
 conditions are gone through once, and then once more, that is the warming itself, and little of it is within a run. Of
-one that is cold again the next day repeats tell nothing, and all runs together do.
+one that is cold again the next day repeats tell nothing, and all runs together do. And a friction that falls with the
+speed is the same all through a run that keeps its speed: only between runs it shows.
 """
 
 from __future__ import annotations
@@ -17,15 +18,19 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.offsets import offset
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.rest.drifting_zeros import constants, falling, foretold
+from rig.analysis.tracing.rest.levels import between, levels
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
 from rig.model.effect import Array
+from rig.model.effects.quadratic_drag import QuadraticDrag
+from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 
 WARMING: Final = ThermalFrictionDrift.name
+BY_SPEED: Final = frozenset({StribeckFriction.name, QuadraticDrag.name})
 FEWEST: Final = 4  # pairs of repeats
 MANY: Final = 10  # runs that go one way: three numbers are their speed's, two the use's
 LEFT: Final = 0.5  # of what runs' friction differs by beside their speed: of one time constant a fifth is left
@@ -34,8 +39,9 @@ WIDE: Final = 2.0  # times the noise, how far repeats lie apart
 
 def wanted(selected: Selected) -> bool:
     """Whether the later of two repeats has less friction throughout, by far more than noise, or all runs have the less
-    the longer the drive has been in use, and nothing says why."""
-    return WARMING not in selected.names and (_less_each_time(selected) or _less_with_use(selected))
+    the longer the drive has been in use, or another one at every speed, and nothing says why."""
+    warms = WARMING not in selected.names and (_less_each_time(selected) or _less_with_use(selected))
+    return warms or (BY_SPEED.isdisjoint(selected.names) and _by_speed(selected))
 
 
 def _less_each_time(selected: Selected) -> bool:
@@ -53,17 +59,29 @@ def _less_with_use(selected: Selected) -> bool:
     """Of runs that go one way, beside what their speed makes; repeats on another day are as long after its start, and
     tell nothing of it."""
     eq = selected.solution.design.eq
-    runs = [i for i in range(len(eq.runs)) if _turns_one_way(selected, i, i)]
+    runs, friction, speed = _one_way(selected)
     if len(runs) < MANY:
         return False
-    friction = np.array([_friction(selected, i) for i in runs])
-    speed = np.array([eq.runs[i].turning for i in runs])
     by_speed = np.stack([np.ones(speed.size), speed, speed**2], 1)
     _, _, before = foretold(by_speed, by_speed, friction)
     colder = _colder_in_use([eq.runs[i] for i in runs]) + _colder_by_heat([eq.runs[i] for i in runs])
     tried = [np.hstack([by_speed, cold[:, None]]) for cold in colder]
     _, fit, after = min((foretold(z, z, friction) for z in tried), key=lambda found: found[2])
     return bool(fit[-1] > 0 and after < LEFT * before)
+
+
+def _by_speed(selected: Selected) -> bool:
+    """Of runs that go one way, beyond what those at one speed differ by, and by as much as noise."""
+    _, friction, speed = _one_way(selected)
+    noise = selected.solution.design.eq.noise.sigma["M"]
+    return between(friction / noise, levels(speed)) is not None if speed.size else False
+
+
+def _one_way(selected: Selected) -> tuple[list[int], Array, Array]:
+    """The k runs that go one way, their friction beyond the baseline's [N·m] (k,), and their speed [rad/s] (k,)."""
+    runs = [i for i in range(len(selected.solution.design.eq.runs)) if _turns_one_way(selected, i, i)]
+    friction = np.array([_friction(selected, i) for i in runs])
+    return runs, friction, np.array([selected.solution.design.eq.runs[i].turning for i in runs])
 
 
 def _colder_in_use(runs: Sequence[Recording]) -> list[Array]:
@@ -93,9 +111,10 @@ def _friction(selected: Selected, run: int) -> float:
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
-    """The same where no run's motor torque has a mean of its own. It counts where it names the warming beside all that
-    had a name, with what these means tell besides, as a drag, and explains everything."""
+    """The same where no run's motor torque has a mean of its own. It counts where it names what friction goes with,
+    beside all that had a name and nothing else, and explains everything."""
     looks = [replace(run.look, steady=True) for run in so_far.p.campaign.runs]
     other, ranked = searched(prepare(looking(campaign, looks), hold_out))
-    warm = not other.loud and other.names >= {WARMING, *so_far.names}
-    return (other, ranked) if warm else (so_far, found)
+    new = other.names - so_far.names
+    told = not other.loud and other.names > so_far.names and new <= BY_SPEED | {WARMING}
+    return (other, ranked) if told else (so_far, found)
