@@ -34,7 +34,9 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
     69, case 03: teeth that alias). Of two that stand in for each other either may be the one that can go:
     the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
-    most = max((score.overall for score in selected.scores), default=0.0) if not selected.p.own.made else np.inf
+    theirs = {key for columns in selected.p.own.made.values() for key in columns}  # where what is a run's own stands
+    largest = max((score.overall for score in selected.scores), default=0.0)
+    most = {x.name: np.inf if theirs & {*x.ground} else largest for x in selected.scores}
     vague = _vague(selected) if selected.scores and selected.loud else set()
     insignificant = [
         score
@@ -43,7 +45,11 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
         and (
             score.name in vague
             or may_be_nothing(effect[score.name], selected.words.get(score.name, ()))
-            or (score.overall < most and not _is_sure(score, most) and all(is_hardly_known(p) for p in sizes))
+            or (
+                score.overall < most[score.name]
+                and not _is_sure(score, most[score.name])
+                and all(is_hardly_known(p) for p in sizes)
+            )
         )
     ]
     needless = {score.name for score in insignificant}
