@@ -13,8 +13,10 @@ from rig.analysis.tracing.fit.covariance import scatter
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Design, Solution, design
 from rig.analysis.tracing.floor.friction import Scattering
+from rig.analysis.tracing.floor.local import at_rows
 from rig.analysis.tracing.floor.noise import Measured
 from rig.analysis.tracing.floor.of_a_run import floor_beside_gain, floor_of, gain_of, leniency
+from rig.analysis.tracing.floor.rubbing import Rubbing
 from rig.analysis.tracing.floor.uncertain import beside, is_inferred, of_the_inertia
 from rig.analysis.tracing.thresholds import CHANCE, EXPLAINED, LENIENT, MISSING, RUBS_ANEW, TURNED
 from rig.model.effect import Array
@@ -33,6 +35,7 @@ class HeldOut:
     friction: Scattering = field(default_factory=Scattering)  # of the motor's friction from run to run
     rubs: Mapping[Key, float] = field(default_factory=dict)  # share of that in the square of a floor
     calm: bool = False  # the baseline alone is at the floor
+    rubbing: Mapping[Key, Rubbing] = field(default_factory=dict)  # of the blocks in `rubs` that are no reversals
 
     def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
@@ -95,7 +98,8 @@ class HeldOut:
         return self.ratio(e, keys) / max(_by_chance(int(rows.sum())), rubs)
 
     def _worst_run(self, e: Mapping[Key, Array]) -> float:
-        return max(self.ratio(e, [k]) / self.lenient[k] for k in e)
+        whole = (self.ratio(e, [k]) / self.lenient[k] for k in e)
+        return max(*whole, *(self.rubbing[k].over(e[k]) for k in e if k in self.rubbing), 0.0)
 
 
 def _by_channel(e: Mapping[Key, Array]) -> list[list[Key]]:
@@ -122,7 +126,14 @@ def held_out_blocks(eq: Equations, measured: Measured, runs: Sequence[int]) -> H
     inferred = frozenset(key for key in held if is_inferred(eq, key))
     floors |= {key: floor_beside_gain(measured, eq, key) for key in gains}
     mine = {key: floors[key] for key in eq.of(runs)}
-    return HeldOut(tuple(runs), mine, seen, lenient, gains, inferred, measured.friction, rubs)
+    rubbing = {key: _rubbing(eq, measured, key, mine[key]) for key in rubs if key[1] == "M"}
+    return HeldOut(tuple(runs), mine, seen, lenient, gains, inferred, measured.friction, rubs, rubbing=rubbing)
+
+
+def _rubbing(eq: Equations, measured: Measured, key: Key, floor: float) -> Rubbing:
+    own = floor**2 * (1.0 - measured.friction.share(eq.runs[key[0]], floor))
+    least = measured.noise.sigma["M"]  # what pairs differ by beside their friction, few of them
+    return Rubbing(at_rows(eq, key, "way"), max(float(np.sqrt(own)), least), leniency(measured, eq, key))
 
 
 def _rubs(eq: Equations, measured: Measured, floors: Mapping[Key, float]) -> dict[Key, float]:
