@@ -1,0 +1,90 @@
+"""Zeros of runs that go with the speed, whichever way: a bracket that is thrown outward, telemetry on a shaft.
+
+Every run may have a zero of its own, so that no error shows it; but zeros that wander come back with no speed, and
+those of unseen runs are foretold by a curve over the speed through the fitted ones'. What shifts them one way forth and
+the other way back is a reading that comes late, and none of this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.rest.drifting_zeros import (
+    FITTED,
+    LEFT,
+    PLAINER,
+    UNSEEN,
+    constants,
+    falling,
+    foretold,
+    free,
+    times,
+)
+from rig.analysis.tracing.rest.levels import LEVELS, levels
+from rig.core.units import ARCSEC
+from rig.model.effect import MEASURED, Array
+
+
+@dataclass(frozen=True)
+class ZerosBySpeed:
+    """By how much the zeros of the angles differ between the slowest and the fastest runs [rad], what of the scatter of
+    unseen zeros is foretold, and by how much the torque sensor's do [N·m] where it is they that go with the speed."""
+
+    size: float
+    foretold: float
+    torque: float = 0.0
+
+    def sentence(self) -> str:
+        """What is said of it."""
+        what = (
+            f"The zero of the torque sensor goes with the speed, whichever way, by {abs(self.torque):.3g} N·m"
+            if self.torque
+            else f"The zeros of the angles go with the speed, whichever way, by {abs(self.size) / ARCSEC:.3g} arcsec"
+        )
+        return (
+            f"{what} between the slowest and the fastest runs: a curve over the speed through those of the fitted runs "
+            f"foretells {self.foretold:.0%} of how far apart those of unseen runs lie. Every run has a zero of its "
+            "own, so that no error shows it, and no effect of the library explains it."
+        )
+
+
+def zeros_by_speed(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> ZerosBySpeed | None:
+    """None where θ̃'s zeros go with no speed, or as well with time or torque, or where the wind-up that shifts them
+    was not measured."""
+    eq = s.design.eq
+    mine, others = (free(eq, runs) for runs in (fitted, unseen))
+    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+        return None
+    zeros, wanted = (np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others))
+    fast, later = (np.array([eq.runs[i].turning for i in runs]) for runs in (mine, others))
+    if np.unique(levels(fast)).size < LEVELS:
+        return None
+    guess, fit, own = foretold(_curve(fast), _curve(later), zeros)
+    spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
+    left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
+    if left > LEFT * spread or own > PLAINER * min(_others(eq, mine, zeros)):
+        return None
+    size = float(np.ptp(_curve(np.concatenate([fast, later])) @ fit))
+    torque = size / s.value("compliance") if of_the_torque_sensor(s, (*mine, *others)) else 0.0
+    return ZerosBySpeed(size, 1 - (left / spread) ** 2, torque)
+
+
+def _curve(speed: Array) -> Array:
+    """A constant and a parabola over the speed [rad/s] (n,), (n, 3)."""
+    return np.stack([np.ones(speed.size), speed, speed**2], 1)
+
+
+def _others(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
+    """RMS left of the zeros by what else may shift them: the way, a torque, a drift of any time constant."""
+    way = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs])
+    torque = np.array([eq.runs[i].mean_torque for i in runs])
+    since = times(eq, runs)
+    made = [np.stack([np.ones(x.size), x], 1) for x in (way, torque)]
+    made += [falling(since, tau) for tau in constants(max(float(np.ptp(since)), 1.0))]
+    return [foretold(z, z, zeros)[2] for z in made]
