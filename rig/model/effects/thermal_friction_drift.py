@@ -49,6 +49,7 @@ class ThermalFrictionDrift(Effect):
     loose: ClassVar[tuple[bool, ...]] = (True, False, True)
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
     LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
+    TWICE: Final = 2.0  # times a time constant: one that is known worse may be any
     AT: Final = 10.0  # rad/s
     WITHIN: Final = 600.0  # s
     HEATED: Final = 1000.0  # J
@@ -90,8 +91,11 @@ class ThermalFrictionDrift(Effect):
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Also where it may go on for most of what was measured, or longer: then it is nearly a straight line, or a
-        root, of the time, how long it would have gone on nobody can say, and an interval is as wide to either side."""
-        return super().is_scaled(scale, reach) or scale.ci95[1] > reach.duration / 2
+        root, of the time, and how long it would have gone on nobody can say. An interval that reaches up to there is as
+        wide downward, where it is known better."""
+        half = (scale.ci95[1] - scale.ci95[0]) / 2
+        reaches = half < self.TWICE * scale.value and scale.ci95[1] > reach.duration / 2
+        return super().is_scaled(scale, reach) or reaches or scale.value > reach.duration / 2
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """What the warm-up takes away, its time constant, and what is gone after a while of it."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rig.analysis.tracing.runs.alike import alike
+from rig.analysis.tracing.runs.alike import alike, repeats
 
 TURNS: Any = {"input_locked": False, "wound": lambda piece: piece.theta_m}
 DT, STEP = 0.004, 0.014  # s; rad, how far a motor that sticks goes at once
@@ -55,3 +55,17 @@ def test_lock_tests_at_another_rate_or_to_another_torque_are_none() -> None:
     assert not alike(first, lock_test(0.07, 100.0, 2))
     assert not alike(first, lock_test(0.07, 25.0, 2))
     assert not alike(first, lock_test(0.14, 50.0, 2))
+
+
+def test_repeats_may_lie_as_far_apart_as_one_of_them_lasts() -> None:
+    """One that begins when the other ends is no later than short ones that follow each other."""
+
+    def lasting(speed: float, start: float, duration: float) -> Any:
+        return SimpleNamespace(**{**vars(turning(speed)), "start": start, "duration": duration})
+
+    short = [lasting(v, 40.0 * i, 30.0) for i, v in enumerate((5.0, 5.0, 9.0, 9.0, 14.0, 14.0))]
+    slow = [lasting(1.0, 300.0, 180.0), lasting(1.0, 500.0, 180.0)]
+    runs = [*short, *slow]
+    assert (6, 7) in repeats(runs, range(8))
+    runs[7].start = 900.0
+    assert (6, 7) not in repeats(runs, range(8))

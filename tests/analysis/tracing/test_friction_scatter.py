@@ -13,6 +13,7 @@ from rig.analysis.tracing.floor import friction as module
 from rig.analysis.tracing.floor.friction import Scattering, evened
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.floor.repeats import Scatter
+from rig.analysis.tracing.floor.rubbing import Rubbing
 
 ROWS, NOISE, SCATTERS = 2000, 2e-3, 2e-3  # N·m
 BOTH = np.repeat([1.0, -1.0], ROWS // 2)
@@ -122,3 +123,16 @@ def test_a_channel_is_loud_by_less_where_friction_does_not_scatter() -> None:
     assert quiet.loud(e, 1.4)
     assert not rubs.loud(e, 1.4)
     assert rubs.loud({key: 1.6 * x for key, x in e.items()}, 1.4)
+
+
+def test_a_run_is_judged_beside_a_friction_of_its_own() -> None:
+    """More than one coefficient of friction makes is loud, however far friction scatters; that itself is not."""
+    way = np.repeat([1.0, -1.0], 200)
+    torque = np.tile(np.linspace(0.0, 2.0, 200), 2)
+    key = (0, "M")
+    rubs = HeldOut(
+        (0,), {key: 1.5}, {}, {key: 2.0}, {}, friction=Scattering(1.25, 4), rubs={key: 0.5},
+        rubbing={key: Rubbing(way, 1.0, 1.0)},
+    )  # fmt: skip
+    assert not rubs.loud({key: 1.8 * way + 0.4}, 1.4)
+    assert rubs.loud({key: 3.0 * torque * way}, 1.4)

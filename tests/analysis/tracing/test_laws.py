@@ -78,6 +78,17 @@ def test_heat_comes_from_friction_stays_with_a_slow_leak_and_goes_with_a_fast_on
     np.testing.assert_allclose(later.heat(20.0), at.heat(20.0)[2:])
 
 
+def test_a_drive_is_cold_again_after_a_night_and_not_after_a_coffee() -> None:
+    day = 86_400.0
+    past = tuple(Moved(start, start + 60.0, 10.0, 100.0) for start in (0.0, 1000.0, day, day + 2000.0))
+    at = dataclasses.replace(motion(n=2), past=past)
+    for start, used in ((0.0, 0.0), (1000.0, 1000.0), (day, 0.0), (day + 2000.0, 2000.0)):
+        there = dataclasses.replace(at, t=start + np.array([0.0, 50.0]))
+        np.testing.assert_allclose(there.in_use, used + np.array([0.0, 50.0]))
+    alone = dataclasses.replace(at, t=np.array([day, day + 50.0]), past=())
+    np.testing.assert_allclose(alone.in_use, alone.t)
+
+
 @pytest.mark.parametrize("side", [STIFF, COUPLING])
 @pytest.mark.parametrize(("soft", "about", "within"), [(1e-3, 0.0, 2e-3), (0.05, 0.05, 1e-3)])
 def test_a_coupling_twists_the_gear_away_from_what_the_encoder_reads(

@@ -18,12 +18,13 @@ def solution(eq: str, *terms: Any) -> Any:
 
 def prepared(*own: str) -> Any:
     """With those effects that every run has in its own way."""
-    return SimpleNamespace(own=SimpleNamespace(made=dict.fromkeys(own), parameters={}))
+    return SimpleNamespace(own=SimpleNamespace(made={name: {(0, "M"): None} for name in own}, parameters={}))
 
 
 def scored(name: str, overall: float, **said: Any) -> Any:
     """A score of which nothing speaks for the name, but for what is said."""
     so_far = {"as_repeats": False, "fairly": False, "plain": False, "all_there_is": False, "share": 0.7}
+    so_far["ground"] = ((0, "M"),)
     return SimpleNamespace(name=name, overall=overall, **(so_far | said))
 
 
