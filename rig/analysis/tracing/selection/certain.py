@@ -12,6 +12,7 @@ from rig.analysis.tracing.selection.elimination import scales
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.selected import Selected, by_speed, is_loud
 from rig.analysis.tracing.selection.sizes import is_hardly_known
+from rig.analysis.tracing.selection.zeros_foretold import are_foretold
 from rig.analysis.tracing.thresholds import ALL, LESS, MISSING, PLAIN_TO_SEE, QUIET, SEEN, VOUCHED_FOR
 from rig.model.effect import Array
 
@@ -20,10 +21,12 @@ def is_certain(selected: Selected, floors: HeldOut) -> bool:
     """Whether what the search found where nothing is above the `floors` may be said all the same: they are measured on
     few repeats, and can be too high. Every name must be large and its size known, or repeats vouch for it, of one size
     in all runs and what it acts on must be explained, and nothing unnamed be needed beside it, by those floors: by the
-    ones that are measured beside it small effects of others may stand out."""
+    ones that are measured beside it small effects of others may stand out. Of one that stands in the means of runs, of
+    which their rows keep little, it is enough that it foretells those of unseen runs."""
     loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
     plain = selected.scores and not confounders_in(selected.solution) and not loud
     to_see = bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
+    to_see = to_see or (bool(plain) and len(selected.scores) == 1 and are_foretold(selected.p, selected))
     return to_see and (len(selected.scores) == 1 or _foretell(selected))
 
 

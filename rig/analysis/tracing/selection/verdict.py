@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
@@ -46,7 +47,20 @@ QUIETER: Final = 0.95  # of what was left before: less than that is no fall to t
 
 def decide(asked: Asked) -> Conclusion:
     """The verdict, from held-out residuals and the effects that may be named."""
-    return whose_spring(_decided(asked))
+    return _whose_curve(asked, whose_spring(_decided(asked)))
+
+
+def _whose_curve(asked: Asked, said: Conclusion) -> Conclusion:
+    """Of a spring that is not linear in a torque that the load does not feel: the sensor is not, and no name."""
+    if not is_the_sensors(asked.s, said.verdict.effects, [*asked.p.split.fitted, *asked.p.split.held_out]):
+        return said
+    stand = tuple(name for name in said.verdict.effects if name not in SPRINGS)
+    sentence = (
+        "The torque sensor is not linear: what it reads off winds nothing up, and the weights that were declared tell "
+        "of it as much as the wind-up does. No effect of the library does so."
+    )
+    verdict = Verdict(Status.UNKNOWN, stand, (), "load", None, None, sentence)
+    return Conclusion(verdict, said.home, ("load",), along("load"))
 
 
 def _decided(asked: Asked) -> Conclusion:
