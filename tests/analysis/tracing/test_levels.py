@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import _between, _runs, levels
+from rig.analysis.tracing.rest.levels import between, _runs, levels
 from tests.analysis.tracing.spiked import Columns, spiked
 
 SPEEDS = np.repeat([6.3, 12.6, 21.0, 31.4, 41.9], 4)  # rad/s of the motor, four runs at each
@@ -34,22 +34,22 @@ def test_runs_at_speeds_a_tenth_apart_share_a_level() -> None:
 
 
 def test_a_hump_that_four_runs_share_is_told_under_the_floor_of_each() -> None:
-    share = _between(scattered(1) + 2.0 * (levels(SPEEDS) == 2), levels(SPEEDS))
+    share = between(scattered(1) + 2.0 * (levels(SPEEDS) == 2), levels(SPEEDS))
     assert share is not None
     assert share > 0.6
 
 
 def test_chance_is_not_told_once_in_three_thousand_campaigns() -> None:
-    assert not [seed for seed in range(3000) if _between(scattered(seed) * 4.0, levels(SPEEDS)) is not None]
+    assert not [seed for seed in range(3000) if between(scattered(seed) * 4.0, levels(SPEEDS)) is not None]
 
 
 @pytest.mark.parametrize("speeds", [SPEEDS[:8], SPEEDS[::2][:7]])
 def test_two_speeds_or_a_few_runs_tell_nothing(speeds: np.ndarray) -> None:
-    assert _between(100.0 * levels(speeds) + scattered(2)[: speeds.size], levels(speeds)) is None
+    assert between(100.0 * levels(speeds) + scattered(2)[: speeds.size], levels(speeds)) is None
 
 
 def test_what_is_the_same_to_a_hundredth_of_a_floor_is_too_small_to_tell() -> None:
-    assert _between(0.01 * scattered(3) + 0.1 * (levels(SPEEDS) == 2), levels(SPEEDS)) is None
+    assert between(0.01 * scattered(3) + 0.1 * (levels(SPEEDS) == 2), levels(SPEEDS)) is None
 
 
 def test_a_runs_mean_is_put_back_and_turns_with_its_way() -> None:
