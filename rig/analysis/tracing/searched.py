@@ -105,7 +105,7 @@ def _warmer(selected: Selected, found: Found, runs: Sequence[int], covered: Reac
     drift = next((r for r in found.ranking if r.term.name == DRIFT and r.evidence > WARMS), None)
     measured = selected.p.measured
     scatters = measured.friction.square > (SCATTERS * measured.noise.sigma["M"]) ** 2
-    if not scatters or drift is None or selected.loud:
+    if not scatters or drift is None or selected.loud or not selected.names:
         return None
     if DRIFT in selected.names | selected.taken:
         return None

@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import between, _runs, levels
+from rig.analysis.tracing.rest.levels import _runs, between, levels
 from tests.analysis.tracing.spiked import Columns, spiked
 
 SPEEDS = np.repeat([6.3, 12.6, 21.0, 31.4, 41.9], 4)  # rad/s of the motor, four runs at each
