@@ -31,14 +31,14 @@ class AsRead:
         return {name: np.full(self.t.size, np.nan) if x is None else x for name, x in self.columns.items()}
 
 
-def as_read(run: Source, hz: float | None) -> AsRead:
-    """The columns the tracer uses. Rows of a run without a time that declares its speed come `hz` times a second, where
-    that is known. Raises UsageError when the run has no angle it can use, a time in another unit, or rows too far apart
-    or too close."""
+def as_read(run: Source, in_file: int, hz: float | None) -> AsRead:
+    """The columns the tracer uses, of a file of so many rows. Those of a run without a time that declares its speed
+    come `hz` times a second, where that is known. Raises UsageError when the run has no angle it can use, a time in
+    another unit, or rows too far apart or too close."""
     motion = motion_of(run)
     refuse_other_time(run.column("t"), motion)
     columns, breaks, holes = without_holes(_columns(run, motion), motion.breaks if motion else ())
-    rows = next(x.size for x in columns.values() if x is not None)
+    rows = next((x.size for x in columns.values() if x is not None), in_file)
     clocked = hz is not None and is_clocked(run)
     if hz is not None and clocked:
         columns["t"] = np.arange(rows) / hz

@@ -40,7 +40,7 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
     """
     run = Tame(whole_run)
     _refuse_ratio(run.ratio)
-    read = as_read(run, hz)
+    read = as_read(run, whole_run.rows, hz)
     encoders = run.manifest.get("encoders") or {}
     theta_m, theta_l = read.columns["theta_m"], read.columns["theta_l"]
     factor, smoother = _smoothing(theta_m, read.dt, encoders, look)
