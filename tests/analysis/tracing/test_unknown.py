@@ -380,3 +380,11 @@ def test_what_a_torque_sensor_before_the_output_does_not_see_is_the_motors(
     r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)), sensed=sensed)
     found = _of_the_output(Home("motor_angle", channel, 1.0, order=0.4), r)
     assert found.coordinate == expected
+
+
+@pytest.mark.parametrize(("order", "expected"), [(3.46, "load_angle"), (9.46, "motor_angle")])
+def test_more_teeth_than_the_gear_has_twice_over_are_none_of_the_outputs(order: float, expected: str) -> None:
+    motor = np.linspace(0.0, 900.0, 4000)
+    at = {"motor_angle": motor, "load_angle": motor / 50.0}
+    r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)))
+    assert _of_the_output(Home("motor_angle", "A", 1.0, order=order), r).coordinate == expected

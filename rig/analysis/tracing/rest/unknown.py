@@ -128,8 +128,9 @@ def _drive(r: Rest) -> Array:
 
 def _of_the_output(found: Home, r: Rest) -> Home:
     """An order of the motor that is none of its own, but a whole one of the output's turn, and no lobe of the wave
-    generator seen from the flexspline: the teeth of something on the output. What a torque sensor before the output
-    does not see is on the motor: a belt goes round less than once a turn."""
+    generator seen from the flexspline: the teeth of something on the output, which are no more than the gear's own
+    twice over. What a torque sensor before the output does not see is on the motor: a belt goes round less than once a
+    turn."""
     if found.channel == "M" and r.sensed:
         return found
     load, motor = r.at["load_angle"], r.at["motor_angle"]
@@ -139,7 +140,8 @@ def _of_the_output(found: Home, r: Rest) -> Home:
     ratio = float(np.polyfit(load[known], motor[known], 1)[0])
     own, whole, lobes = found.order, found.order * ratio, found.order * ratio / (ratio + 1)
     off = [abs(x - round(x)) for x in (own, whole, lobes)]
-    if off[1] < WHOLE_ORDER and off[0] > WHOLE_ORDER / 2 and off[2] > WHOLE_ORDER / 2:
+    few = abs(whole) < 2 * 2 * (abs(ratio) + 1) + WHOLE_ORDER
+    if few and off[1] < WHOLE_ORDER and off[0] > WHOLE_ORDER / 2 and off[2] > WHOLE_ORDER / 2:
         return replace(found, coordinate="load_angle", order=float(round(whole)))
     return found
 
