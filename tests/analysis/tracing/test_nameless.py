@@ -114,7 +114,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(backwards=0.02) == {"sector_drag"}
     assert everything - laws(fast_backwards=0.02) == {"uneven_drag"}  # slow runs alone go both ways: any drag does so
     assert everything - laws(turned_both_ways=0.1) == {"sector_drag"}  # of a turn: a weight does as much one way
-    assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump"}
+    assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump", "even_spring"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
     assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}
     drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}

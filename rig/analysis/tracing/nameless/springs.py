@@ -11,6 +11,7 @@ from rig.analysis.tracing.nameless.law import (
     BOTH_ANGLES,
     FAST,
     SEVERAL,
+    SOME,
     WIDE,
     Amount,
     Nameless,
@@ -33,6 +34,10 @@ class EvenSpring(Nameless):
     in_short: ClassVar[str] = "the spring is harder one way than the other"
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where torques pull both ways: of one way alone it may as well be harder the more it is wound up."""
+        return when(reach.pulled > SOME)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
