@@ -94,7 +94,7 @@ def refuse_mode(bench: Bench, procedure: Procedure) -> None:
 
 
 def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady when the procedure asks for more than the bench allows."""
+    """Raises NotReady when the procedure asks for more than the bench allows, or for a loop that cannot hold it."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
     reserved = ("shaft",) if procedure.output_locked else ("speed", "shaft")
     by_torque_first = sorted(margins(bench, procedure), key=lambda margin: margin[0] != "torque")  # what was given
@@ -107,6 +107,31 @@ def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
                 f"{procedure.title()} asks for up to {wanted} of {TOLD[what]}{why}, the bench allows {allowed}: "
                 f"{LIMITS[what]}"
             )
+    refuse_swinging_up(bench, procedure)
+
+
+def refuse_swinging_up(bench: Bench, procedure: Procedure) -> None:
+    """Raises NotReady when the host's loop with the gains of the bench would swing up by itself on the declared gear."""
+    margin = loop_margin(bench, procedure)
+    if margin is not None and margin <= 1.0:
+        g, gear, loop = bench.gains, bench.file.gear, bench.file.loop
+        raise NotReady(
+            f"{procedure.title()}: the position loop would swing up by itself with Kp {g.Kp:g} N·m/rad, Ki {g.Ki:g} "
+            f"N·m/(rad·s), Kd {g.Kd:g} N·m·s/rad on the declared gear (J_m {gear.J_m:g} kg·m², J_l {gear.J_l:g} kg·m², "
+            f"K {gear.K:g} N·m/rad) at loop.rate {loop.rate:g} Hz and loop.speed_filter {loop.speed_filter:g} s; "
+            "expected gains that let it come to rest: hdrig tune finds some"
+        )
+
+
+def loop_margin(bench: Bench, procedure: Procedure) -> float | None:
+    """By what the gains of the bench may be multiplied before that; None where the host closes no loop with them: the
+    drive does, or a locked gear is wound up with stiffer ones."""
+    if bench.mode is not Mode.TORQUE or procedure.output_locked or not procedure.closes_loop:
+        return None
+    from rig.control.stability import Loop  # scipy, which a program that only reads runs need not load
+
+    setting = bench.setting(lambda text: None)
+    return Loop(setting.drivetrain, setting.period, bench.file.loop.speed_filter).margin(bench.gains)
 
 
 def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:

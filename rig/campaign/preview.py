@@ -6,10 +6,11 @@ import math
 
 from rig.bench import Bench
 from rig.campaign.swing import ORDER_2, swing
+from rig.control.stability import MOST
 from rig.core.procedure import Procedure
 from rig.core.units import DEG, RPM
 from rig.guard import Guard
-from rig.refusals import TOLD, margins
+from rig.refusals import TOLD, loop_margin, margins
 from rig.runfile.room import rows_bytes
 
 
@@ -30,6 +31,8 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
             lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
             continue
         lines.append(f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, {margin(asked / limit)}")
+    if (gain := loop_margin(bench, procedure)) is not None:
+        lines.append(f"gains       {gains_words(gain)}, by the declared gear")
     what, left = tightest(bench, procedure)
     said = f"{100 * left:.0f} % of its limit left" if left >= 0 else margin(1 - left)
     lines += [f"tightest    {what}: {said}", f"guard       {guard_words(bench, procedure)}"]
@@ -45,6 +48,13 @@ def guard_words(bench: Bench, procedure: Procedure) -> str:
         f"ends this run beyond {guard.travel / DEG:.1f} deg of the motor from its start, "
         f"{guard.limits.speed / RPM:g} rpm{shaft}"
     )
+
+
+def gains_words(gain: float) -> str:
+    """By what all gains may be multiplied before the loop swings up by itself."""
+    if gain <= 1.0:
+        return "let the loop swing up by itself"
+    return f"{'over ' if gain >= MOST else ''}{gain:.3g} times as large they would let the loop swing up by itself"
 
 
 def margin(share: float) -> str:

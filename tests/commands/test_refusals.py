@@ -100,6 +100,16 @@ def test_a_torque_beyond_the_sensor(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_loop_that_would_swing_up_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for kp in ("1e9", "300"):
+        run = ("run", "kinematic-error", "--set", f"control.Kp={kp}", "--out", str(tmp_path))
+        said = refused(capsys, *run)
+        assert f"the position loop would swing up by itself with Kp {float(kp):g} N·m/rad" in said
+        assert "expected gains that let it come to rest: hdrig tune finds some" in said
+        assert refused(capsys, *run, "--dry-run") == said
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
