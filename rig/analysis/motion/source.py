@@ -99,17 +99,25 @@ def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
     return theta
 
 
-def _left_out(columns: Mapping[str, Array | None], kept: int) -> str:
-    """How many rows are not used, which channel has no finite value in most of them, and what else there may be."""
+def _left_out(columns: Mapping[str, Array | None], gone: int) -> str:
+    """How many rows are not used, `gone` in all, which of the channels as they were read has no finite value in most
+    of them, and what else there may be."""
     holes = {name: ~np.isfinite(c) for name, c in columns.items() if c is not None}
     name = max(holes, key=lambda n: np.count_nonzero(holes[n]))
     missing, size = holes[name], holes[name].size
     count, first, last = np.count_nonzero(missing), int(missing.argmax()), size - 1 - int(missing[::-1].argmax())
     where = f"row {first}" if first == last else f"{count} of them (row {first} to {last})"
     reasons = [f"{name} has no finite value in {where}"] if count else []
-    if count < size - kept:
+    if count < gone:
         reasons.append("an angle was missing, stale or frozen, or the guard had tripped")
-    return f"{size - kept} of {size} rows left out: {'; else '.join(reasons)}."
+    return f"{gone} of {size} rows left out: {'; else '.join(reasons)}."
+
+
+def _told(read: Mapping[str, Array | None], theta_m: Array, theta_l: Array | None) -> int:
+    """Rows whose angles were read and are taken for missing since, which a note of their own says."""
+    known = np.all([np.isfinite(c) for c in read.values() if c is not None], axis=0)
+    missing = np.isnan(theta_m) if theta_l is None else np.isnan(theta_m) | np.isnan(theta_l)
+    return int(np.count_nonzero(known & missing))
 
 
 def motion_of(run: Source) -> Motion | None:
@@ -119,11 +127,13 @@ def motion_of(run: Source) -> Motion | None:
     if theta_m is None:
         return None
     t, flags = run.column("t"), run.column("flags")
+    read = {"theta_m": theta_m, "theta_l": theta_l, "t": t}
     theta_m = _once(theta_m, theta_l, t, notes)
     theta_m, theta_l = _taken_anew(theta_m, theta_l, float(run.ratio), t, notes)
     rows, breaks = _trusted([c for c in (theta_m, theta_l, t) if c is not None], flags)
     if rows is not None:
-        notes.append(_left_out({"theta_m": theta_m, "theta_l": theta_l, "t": t}, rows.size))
+        gone = theta_m.size - rows.size - _told(read, theta_m, theta_l)
+        notes += [_left_out(read, gone)] if gone else []
         theta_m, theta_l = picked(theta_m, rows), None if theta_l is None else picked(theta_l, rows)
         t = None if t is None else picked(t, rows)
     t = _usable(t, notes)

@@ -32,6 +32,18 @@ def test_rows_that_stand_there_twice_are_taken_once_across_stretches_too(
     np.testing.assert_array_equal(found.theta_m, once.theta_m)
     copies = len(range(*twice.indices(5000)))
     assert found.notes[0] == f"{copies} of {5000 + copies} rows have time and angles of the row before: taken once."
+    assert not any("finite" in note for note in found.notes)
+
+
+def test_rows_that_miss_an_angle_are_counted_beside_those_that_stand_there_twice() -> None:
+    made = run(twice=slice(10, 15))
+    made.columns["theta_m"][100:103] = np.nan
+    found = motion_of(made)
+    assert found is not None
+    assert found.notes[:2] == (
+        "5 of 5005 rows have time and angles of the row before: taken once.",
+        "3 of 5005 rows left out: theta_m has no finite value in 3 of them (row 100 to 102).",
+    )
 
 
 def test_a_time_that_stands_still_while_the_motor_turns_is_no_copy() -> None:
