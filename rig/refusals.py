@@ -111,7 +111,7 @@ def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
 
 
 def refuse_swinging_up(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady when the host's loop with the gains of the bench would swing up by itself on the declared gear."""
+    """Raises NotReady when the host's loop with the bench's gains would swing up by itself on its declared gear."""
     margin = loop_margin(bench, procedure)
     if margin is not None and margin <= 1.0:
         g, gear, loop = bench.gains, bench.file.gear, bench.file.loop

@@ -97,3 +97,14 @@ def test_power_that_is_little_of_torque_and_speed_has_no_sign(rng: np.random.Gen
 def test_where_most_runs_read_nothing_none_is_odd_for_it(rng: np.random.Generator) -> None:
     runs = [run(rng, speed, tau_l=lambda x: 0 * x) for speed in SPEEDS]
     assert odd_torques(runs) == {}
+
+
+def test_a_run_that_reads_each_torque_in_the_others_place_is_told_and_its_repeat_is_not(
+    rng: np.random.Generator,
+) -> None:
+    runs = [run(rng, speed, tau_l=lambda x: 2 * x) for speed in SPEEDS for _ in range(2)]
+    piece = runs[3].pieces[0]
+    piece.tau_m, piece.tau_l = piece.tau_l, piece.tau_m
+    assert odd_torques(runs) == {
+        runs[3].name: "its τ_m is what its repeats read in τ_l, and its τ_l what they read in τ_m: exchanged"
+    }

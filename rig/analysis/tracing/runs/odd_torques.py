@@ -1,4 +1,5 @@
-"""A torque that one run reads otherwise than the others do: a sensor that hung, another unit, the other sign.
+"""A torque that one run reads otherwise than the others do: a sensor that hung, another unit, the other sign, or the
+other torque.
 
 Such a run makes repeats differ by more than any effect does: the floor is then what is wrong with it.
 """
@@ -16,6 +17,7 @@ from rig.analysis.tracing.runs.recording import Recording
 
 TORQUES: Final = {"tau_m": "τ_m", "tau_l": "τ_l"}
 UNIT: Final = 20.0  # times what repeats read: friction that warms away halves, and the next unit is 100 or 1000
+AS_LARGE: Final = 1.3  # times: as far as repeats of one condition differ in size, and two torques by more
 SHARE: Final = 0.1  # of size times speed: less power has no sign
 MOST: Final = 0.8  # of the runs that turn freely: the sign they agree in is right
 
@@ -50,7 +52,28 @@ def odd_torques(runs: Sequence[Recording]) -> dict[str, str]:
                 others = [other for other in mine if other is not one]
                 if others and (said := _said(one, others)):
                     wrong.setdefault(one.run.name, said.format(words))
+    return wrong | _exchanged([run for run in runs if TORQUES.keys() <= run.has and run.procedure != "standstill"])
+
+
+def _exchanged(runs: Sequence[Recording]) -> dict[str, str]:
+    """Runs that read in each torque what their repeats read in the other, further from what most runs do than these."""
+    both = {run.name: np.log([_read(run, channel).size or np.nan for channel in TORQUES]) for run in runs}
+    apart = {name: float(at_motor - at_load) for name, (at_motor, at_load) in both.items()}
+    wrong: dict[str, str] = {}
+    for run in runs:
+        like = [both[other.name] for other in runs if other is not run and _moved(other, run)]
+        usual = float(np.median([apart[other.name] for other in runs if other.locked is run.locked]))
+        if not like or not all(np.abs(both[run.name] - x[::-1]).max() < np.log(AS_LARGE) for x in like):
+            continue
+        further = all(abs(apart[run.name] - usual) > abs(float(x[0] - x[1]) - usual) for x in like)
+        if further and abs(apart[run.name]) > np.log(AS_LARGE**2):
+            wrong[run.name] = "its τ_m is what its repeats read in τ_l, and its τ_l what they read in τ_m: exchanged"
     return wrong
+
+
+def _moved(a: Recording, b: Recording) -> bool:
+    """Whether both are of one condition by all that is no torque."""
+    return a.locked is b.locked and moved_alike(a, b)
 
 
 def _said(one: Read, others: Sequence[Read]) -> str | None:
