@@ -72,8 +72,11 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
 
 
 def largest_torque(eq: Equations) -> float:
-    """Torque that a run has for a tenth of its time, N·m: peaks of a resonance are no measure."""
-    return max(float(np.nanpercentile(np.abs(p.torque), 90)) for r in eq.runs if "tau_l" in r.has for p in r.pieces)
+    """Torque that a run has for a tenth of its time, N·m: peaks of a resonance are no measure, nor is what a lock test
+    winds up, where any run turns freely."""
+    read = [r for r in eq.runs if "tau_l" in r.has]
+    turning = [r for r in read if not r.locked] or read
+    return max(float(np.nanpercentile(np.abs(p.torque), 90)) for r in turning for p in r.pieces)
 
 
 def _drift(eq: Equations, mine: Sequence[int], others: Sequence[int], found: Sequence[Array]) -> DriftingZeros | None:
